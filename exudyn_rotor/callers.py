@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import sys
 
-_WITHIN = "exudyn_rotor.", "contextlib"  # its decorators stand between functions of the package
+# what stands between functions of the package: decorators, cached properties
+_WITHIN = "exudyn_rotor.", "contextlib", "functools"
 
 
 def user_level() -> int:

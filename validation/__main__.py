@@ -24,6 +24,7 @@ SCRIPTS = {
     "set_up": Script("speed.set_up", "time of the set-up"),
     "growth": Script("speed.growth", "time and memory of the set-up over the size of the mesh"),
     "linear": Script("speed.linear", "time of linear analyses"),
+    "beside_ross": Script("speed.beside_ross", "beside ROSS"),
     "trade": Script("trade.trade", "accuracy for the time"),
     "against_3d": Script("exudyn_3d.against_3d", "agreement with the 3D body"),
     "full_3d": Script("exudyn_3d.full_3d", "agreement of full bodies with the full 3D body"),
@@ -45,7 +46,6 @@ SCRIPTS = {
     "basis": Script("basis", ""),
     "full_bodies": Script("full_bodies", ""),
     "extremes": Script("extremes.table", "the extremes"),
-    "savers": Script("savers", "no file lost"),
     "kernels": Script("kernels", ""),
 }
 

@@ -228,12 +228,6 @@ class AnnularSeal(Bearing):
         fx, fy = -K @ (x, y) - D @ (vx, vy)
         return float(fx), float(fy)
 
-    def slopes(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """For scenes: stiffness and damping, as :meth:`Bearing.slopes`."""
-        return _matrices(self, speed)
-
 
 @lru_cache(maxsize=64)
 def _matrices(seal: AnnularSeal, speed: float) -> tuple[np.ndarray, np.ndarray]:

@@ -15,12 +15,13 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.film.equilibria import Equilibria
 from exudyn_rotor.bearings.support import COEFFICIENTS, NoCoefficientsError, Support
 
-_STEP = 1e-4  # of the clearance, or of the velocity there
 _REMEMBERED = 1000  # coefficients of a bearing
+_DIFFERENCE, _STILL = 1e-6, 1e-6  # of the largest motion, which is at least that in SI units
 _HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a bearing holds count
 
 Law = Callable[[float, float, float, float, float, float], tuple[float, float]]
 ClearanceAlong = Callable[..., float]  # by a direction (2,), which may be left out
+LawAlong = Callable[[np.ndarray, np.ndarray, float], tuple[np.ndarray, np.ndarray]]
 LawWithTorque = Callable[[float, float, float, float, float, float], tuple[float, float, float]]
 
 
@@ -106,6 +107,15 @@ class Bearing(LoadedBearing):
         return None
 
     @property
+    def law_along(self) -> LawAlong:
+        """For harmonic balance: forces and their derivatives by motions (t, 4), unchecked.
+
+        Of displacements and velocities [m], [m/s], spin angles (t,) and the spin speed: forces
+        (t, 2) [N], and minus their derivatives by the motion, (t, 2, 4).
+        """
+        return self._along
+
+    @property
     def clearance_along(self) -> ClearanceAlong:
         """For scenes: how far that way, of length 1 (2,), or at least, the journal may go [m].
 
@@ -142,11 +152,24 @@ class Bearing(LoadedBearing):
     ) -> tuple[float, float]:
         """Return the force on the journal [N]."""
 
-    @abstractmethod
+    def _along(
+        self, motion: np.ndarray, angles: np.ndarray, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """See :attr:`law_along`; by differences, unless a law knows better."""
+        law, sizes = self.law, np.abs(motion).max(axis=0)
+        steps = _DIFFERENCE * np.repeat([max(*sizes[:2], _STILL), max(*sizes[2:], _STILL)], 2)
+        force, slopes = np.empty((len(motion), 2)), np.empty((len(motion), 2, 4))
+        for row, (state, angle) in enumerate(zip(motion, angles.tolist(), strict=True)):
+            force[row] = law(*state.tolist(), angle, speed)
+            slopes[row] = differenced(law, state, steps, angle, speed)
+        return force, slopes
+
     def slopes(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:
         """For scenes: less the derivatives (2, 2) of :attr:`law` by place and by velocity."""
+        found = self._along(np.array([[x, y, vx, vy]]), np.array([angle]), speed)[1][0]
+        return found[:, :2], found[:, 2:]
 
     @abstractmethod
     def coefficients(
@@ -246,17 +269,16 @@ def by_tangent(
     return tuple(f + beyond * (f - g) for f, g in zip(edge, inside, strict=True))
 
 
-def slopes_outside(
-    law: Callable[..., tuple[float, ...]], motion: tuple[float, ...], size: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return less the derivatives (2, 2) of a law by place and velocity, outside its film.
-
-    By differences over a share of the clearance `size`: the force is straight along the way out.
-    """
-    *place, vx, vy, angle, speed = motion
-    moves = _STEP * size * np.array([1.0, 1.0, *[max(abs(speed), hypot(vx, vy) / size)] * 2])
-    start, found = law(*motion)[:2], []
-    for move in np.diag(moves):
-        ahead = law(*(np.array([*place, vx, vy]) + move).tolist(), angle, speed)
-        found.append(np.subtract(start, ahead[:2]) / move.sum())
-    return np.array(found[:2]).T, np.array(found[2:]).T
+def differenced(
+    law: Callable[..., tuple[float, ...]],
+    motion: np.ndarray,
+    steps: np.ndarray,
+    angle: float,
+    speed: float,
+) -> np.ndarray:
+    """Return less the central differences (2, 4) of a law's force by place and velocity (4,)."""
+    ends = [
+        [law(*(motion + move).tolist(), angle, speed)[:2] for move in (-each, each)]
+        for each in np.diag(steps)
+    ]
+    return np.array([np.subtract(*pair) for pair in ends]).T / (2.0 * steps)

@@ -133,27 +133,6 @@ class ClearanceStop(Bearing):
         drag = self.friction * normal * tanh(sliding / self.slip_speed)
         return drag * ny - normal * nx, -drag * nx - normal * ny, -self.radius * drag
 
-    def slopes(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """For scenes: less the derivatives of (1) and (2), as :meth:`Bearing.slopes`."""
-        e, none = hypot(x, y), np.zeros((2, 2))
-        depth = e - self.clearance
-        if depth <= 0.0:
-            return none, none
-        n, t, v = np.array([x, y]) / e, np.array([-y, x]) / e, np.array([vx, vy])
-        rate, damping = v @ n, self.damping * depth / self.clearance
-        firm = self.stiffness + self.damping * rate / self.clearance
-        if firm < 0.0:
-            return none, none
-        share = tanh((self.radius * speed + v @ t) / self.slip_speed)
-        normal, drag = depth * firm, self.friction * share
-        push, across = n + drag * t, (v @ t) / e
-        smooth = self.friction * normal * (1.0 - share**2) / self.slip_speed
-        K = np.outer(push, firm * n + damping * across * t)
-        K += normal / e * np.outer(t - drag * n, t) - smooth * rate / e * np.outer(t, t)
-        return K, damping * np.outer(push, n) + smooth * np.outer(t, t)
-
     def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
         """Return the centre, shape (2,): an open stop carries nothing.
 

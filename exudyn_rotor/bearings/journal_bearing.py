@@ -15,7 +15,7 @@ from exudyn_rotor.bearings.bearing import (
     LawWithTorque,
     Linearised,
     by_tangent,
-    slopes_outside,
+    differenced,
 )
 from exudyn_rotor.bearings.controlled_support import FilmSupport
 from exudyn_rotor.bearings.film.equilibria import Equilibria
@@ -106,6 +106,15 @@ class JournalBearing(Bearing):
         """
         return self._film_law(torque=True)
 
+    def _along(
+        self, motion: np.ndarray, angles: np.ndarray, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        law, forces, slopes = self._film_law(torque=False), [], []
+        for x, y, vx, vy in motion.tolist():
+            forces.append(law(x, y, vx, vy, 0.0, speed))
+            slopes.append(np.hstack(law.slopes(x, y, vx, vy, 0.0, speed)))
+        return np.array(forces), np.array(slopes)
+
     def _film_law(self, torque: bool) -> FilmLaw:
         if self.remembers:
             raise ValueError(
@@ -113,12 +122,6 @@ class JournalBearing(Bearing):
                 "force by place and velocity alone; add_supports gives it to a scene"
             )
         return FilmLaw(self.film, torque)
-
-    def slopes(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """For scenes: less the derivatives of the film's force, as :meth:`Bearing.slopes`."""
-        return self._film_law(torque=False).slopes(x, y, vx, vy, angle, speed)
 
     def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
         """Return where the journal rests under a static load [m], shape (2,).
@@ -213,7 +216,11 @@ class FilmLaw:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return stiffness [N/m] and damping [N s/m], each (2, 2), as :meth:`Bearing.slopes`."""
         if hypot(x, y) > self._to_the_edge(x, y):
-            return slopes_outside(self, (x, y, vx, vy, angle, speed), self._film.clearance)
+            size = self._film.clearance
+            rate = max(size * abs(speed), hypot(vx, vy))
+            steps = _STEP * np.array([size, size, rate, rate])
+            found = differenced(self, np.array([x, y, vx, vy]), steps, angle, speed)
+            return found[:, :2], found[:, 2:]
         return self._state(np.array([x, y]), np.array([vx, vy]), speed).tangent
 
     def torque(self, x: float, y: float, vx: float, vy: float, angle: float, speed: float) -> float:

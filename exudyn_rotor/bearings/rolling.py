@@ -178,11 +178,12 @@ class RollingBearing(Bearing):
         px, py = float(loads @ c), float(loads @ s)
         return -px - d * vx, -py - d * vy, self.cage_ratio * (x * py - y * px)
 
-    def slopes(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    def _along(
+        self, motion: np.ndarray, angles: np.ndarray, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:
-        """For scenes: stiffness of the contacts and damping, as :meth:`Bearing.slopes`."""
-        return self._tangent(np.array([x, y]), angle), self.damping * np.eye(2)
+        _, force, stiffness = contacts(self, motion[:, :2], angles)
+        damping = np.broadcast_to(self.damping * np.eye(2), stiffness.shape)
+        return force - self.damping * motion[:, 2:], np.concatenate([stiffness, damping], axis=-1)
 
     def equilibrium(
         self, speed: float, load: ArrayLike | None = None, angle: float = 0.0

@@ -26,7 +26,7 @@ from scipy.optimize import brentq
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import LawWithTorque
-from exudyn_rotor.bearings.short_film import THINNEST, ShortFilmBearing, Tangent
+from exudyn_rotor.bearings.short_film import THINNEST, ShortFilmBearing
 
 _MOST = 1.0 - 1e-9  # eccentricity ratio of an equilibrium
 
@@ -92,12 +92,6 @@ class ShortJournalBearing(ShortFilmBearing):
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
         return self._film(x, y, vx, vy, speed)
-
-    def slopes(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> Tangent:
-        """For scenes: less the derivatives of the film's force, as :meth:`Bearing.slopes`."""
-        return self._film_tangent((x, y, vx, vy), speed, speed)
 
     @property
     def law_with_torque(self) -> LawWithTorque:

@@ -32,7 +32,6 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.short_film import (
     THINNEST,
     ShortFilmBearing,
-    Tangent,
     damping_at_rest,
 )
 
@@ -118,12 +117,19 @@ class SqueezeFilmDamper(ShortFilmBearing):
         fx, fy = self._film(x, y, vx, vy, 0.0)
         return fx - k * x, fy - k * y
 
-    def slopes(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> Tangent:
-        """For scenes: less the derivatives of film and spring, as :meth:`Bearing.slopes`."""
-        K, D = self._film_tangent((x, y, vx, vy), 0.0, speed)
-        return self.centring_stiffness * np.eye(2) + K, D
+    @property
+    def _film_turns(self) -> bool:
+        return False
+
+    def _along(
+        self, motion: np.ndarray, angles: np.ndarray, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        force, slopes = super()._along(motion, angles, speed)
+        inside = np.hypot(*motion[:, :2].T) <= THINNEST * self.clearance
+        k = self.centring_stiffness * inside  # the law outside has it
+        force = force - k[:, None] * motion[:, :2]
+        slopes[:, :, :2] += k[:, None, None] * np.eye(2)
+        return force, slopes
 
     def _law_of_small_motions(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float

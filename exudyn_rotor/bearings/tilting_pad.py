@@ -130,11 +130,6 @@ class TiltingPadBearing(Bearing):
         )
 
     @property
-    def slopes(self) -> Law:
-        """None by place and velocity alone: an error, as of :attr:`law`."""
-        return self._law
-
-    @property
     def tangents(self) -> np.ndarray:
         """Directions t at the pivots along (n1, n2), shape (pads, 2)."""
         pivots = np.array([pad.start + self.pivot * pad.arc for pad in self.film.pads])

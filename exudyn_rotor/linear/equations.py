@@ -26,22 +26,23 @@ class UnconvergedError(ValueError):
 
 @dataclass(frozen=True, eq=False)
 class PeriodicSystem:
-    """Linear equations at one spin speed.
+    """Linear equations at one spin speed, or a stack of equations at s speeds.
 
     Attributes
     ----------
-    speed : float
+    speed : float or ndarray, shape (s,)
         Spin speed Ω [rad/s].
-    M : ndarray, shape (k, k)
-    D, K : mapping of int to ndarray, shape (k, k)
-        Fourier terms: ``K(θ) = Σ K[n] exp(i n θ)``; K[−n] is the conjugate of K[n].
+    M : ndarray, shape (k, k) or (s, k, k)
+    D, K : mapping of int to ndarray, shape (k, k) or (s, k, k)
+        Fourier terms: ``K(θ) = Σ K[n] exp(i n θ)``; K[−n] is the conjugate of K[n]. NaN at speeds
+        of a stack at which there are no equations.
     H : sequence of (float, ndarray), optional
         Structural damping: a motion ``e^{iνt}`` has the stiffness ``K + i Σ sign(ν − nΩ) H_n``,
         with the frequency ν − nΩ that the rotor sees. Only forced motions know the frequency ν;
         all other analyses leave structural damping out.
     """
 
-    speed: float
+    speed: float | np.ndarray
     M: np.ndarray
     D: Terms
     K: Terms
@@ -50,17 +51,31 @@ class PeriodicSystem:
     @property
     def size(self) -> int:
         """Number of coordinates k."""
-        return len(self.M)
+        return self.M.shape[-1]
 
     @property
     def step(self) -> int:
         """Common step p of the harmonics of the coefficients; 0 where they are constant."""
-        return 0 if self.speed == 0.0 else gcd(*self.D, *self.K)
+        return 0 if np.all(self.speed == 0.0) else gcd(*self.D, *self.K)
 
     @property
     def is_constant(self) -> bool:
         """True where the coefficients do not change in time."""
         return self.step == 0
+
+    @property
+    def known(self) -> np.ndarray:
+        """Which speeds of a stack have equations, (s,)."""
+        return np.isfinite(self.K[0].sum(axis=(1, 2)))
+
+    def __getitem__(self, place: int | np.ndarray) -> PeriodicSystem:
+        """Return the equations at one speed, or at some speeds, of a stack."""
+        M = self.M if self.M.ndim == 2 else self.M[place]
+        D, K = (
+            {n: X[place] for n, X in terms.items() if n == 0 or np.any(X[place])}
+            for terms in (self.D, self.K)
+        )
+        return PeriodicSystem(self.speed[place], M, D, K, self.H)
 
     def matrices(self, theta: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return M, D, K at a spin angle [rad]."""
@@ -100,6 +115,8 @@ def turned(motion: Terms, turns: int) -> dict[int, np.ndarray]:
 
 def without_rounding(terms: Terms) -> dict[int, np.ndarray]:
     """Return Fourier terms without those that are rounding beside the largest; 0 always stays."""
+    if len(terms) == 1 and 0 in terms:
+        return dict(terms)
     largest = max((np.abs(X).max(initial=0.0) for X in terms.values()), default=0.0)
     kept = {
         n: X for n, X in terms.items() if n == 0 or np.abs(X).max(initial=0.0) > _ROUNDING * largest
@@ -139,11 +156,40 @@ def congruent(U: Terms, X: np.ndarray, V: Terms | None = None) -> dict[int, np.n
                 add(result, {a + b: left.T @ X @ right})
         return result
     for sign in (1.0, -1.0):
-        part = 0.5 * (X + sign * X.T)
+        part = 0.5 * (X + sign * np.swapaxes(X, -1, -2))
         if np.any(part):
             for n, Y in congruent(U, part, U).items():
-                add(result, {n: 0.5 * (Y + sign * Y.T)})
+                add(result, {n: 0.5 * (Y + sign * np.swapaxes(Y, -1, -2))})
     return result
+
+
+def joined(systems: Sequence[PeriodicSystem]) -> PeriodicSystem:
+    """Return equations of equally many coordinates, each at one speed, as a stack."""
+    speeds = np.array([one.speed for one in systems], dtype=float)
+    return spread(speeds, [(place, one) for place, one in enumerate(systems)])
+
+
+def spread(
+    speeds: np.ndarray, parts: Sequence[tuple[int | np.ndarray, PeriodicSystem]]
+) -> PeriodicSystem:
+    """Return parts of a stack, each with its places among the speeds (s,), as one; else NaN."""
+    first = parts[0][1]
+    shape = len(speeds), first.size, first.size
+    alike = all(part.M is first.M or np.array_equal(part.M, first.M) for _, part in parts)
+    M = first.M if alike and first.M.ndim == 2 else np.full(shape, np.nan)
+    known = np.zeros(len(speeds), dtype=bool)
+    D, K = {}, {}
+    for places, part in parts:
+        known[places] = True
+        if M is not first.M:
+            M[places] = part.M
+        for terms, given in ((D, part.D), (K, part.K)):
+            for n, X in given.items():
+                terms.setdefault(n, np.zeros(shape, dtype=float if n == 0 else complex))
+                terms[n][places] = X
+    for X in (*D.values(), *K.values()):
+        X[~known] = np.nan
+    return PeriodicSystem(speeds, M, D, K, first.H)
 
 
 def rate_of(U: Terms) -> dict[int, np.ndarray]:

@@ -52,11 +52,6 @@ class ConstrainedInverse:
         """Whether there is no factor; modes are to be found by :meth:`precondition`."""
         return self._relief.iterative
 
-    @property
-    def by_blocks(self) -> bool:
-        """Whether :meth:`solve` is much quicker for many loads at once."""
-        return self._relief.by_blocks
-
     def precondition(self, load: np.ndarray) -> np.ndarray:
         """Return roughly what :meth:`solve` does, for shape (3n, k), with ``C u = 0``."""
         # the reactions are those of the exact solution, by CG = (GCᵀ)ᵀ

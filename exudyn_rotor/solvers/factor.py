@@ -47,8 +47,8 @@ class SparseCholesky:
 
     Attributes
     ----------
-    by_blocks : bool
-        Whether solving for many right-hand sides at once is much quicker than one by one.
+    uses_pardiso : bool
+        Whether Pardiso made the factor.
 
     Raises
     ------
@@ -61,8 +61,8 @@ class SparseCholesky:
         matrix = sp.csr_array(matrix)
         if not np.all(matrix.diagonal() > 0.0):
             raise NotPositiveDefiniteError("the matrix has a diagonal entry that is not positive")
-        self.by_blocks = pardiso.is_used(self.shape[0])
-        if self.by_blocks:
+        self.uses_pardiso = pardiso.is_used(self.shape[0])
+        if self.uses_pardiso:
             self._solve = _by_pardiso(pardiso.Ordered(matrix) if ordered is None else ordered)
         else:
             self._solve = _dense(matrix) if self.shape[0] <= DENSE_SIZE else _sparse(matrix)
@@ -82,7 +82,7 @@ class SparseCholesky:
             raise NotPositiveDefiniteError(
                 f"the matrix is singular: a solve leaves the relative residual {residual:.1e}"
             )
-        if self.by_blocks:  # without negative pivots
+        if self.uses_pardiso:  # without negative pivots
             return
         lowest = _ritz_values(self._solve, start)[0]
         if lowest <= 0.0:

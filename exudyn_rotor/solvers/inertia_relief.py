@@ -170,11 +170,6 @@ class InertiaRelief:
             displacement = self._factor.solve(balanced)
         return self._elastic(displacement)
 
-    @property
-    def by_blocks(self) -> bool:
-        """Whether :meth:`solve` is much quicker for many loads at once."""
-        return not self.iterative and self._factor.by_blocks
-
     def precondition(self, load: np.ndarray) -> np.ndarray:
         """Return roughly what :meth:`solve` does, for shape (m, k); symmetric and definite."""
         return self._elastic(self._two_level(self._balanced(load)))

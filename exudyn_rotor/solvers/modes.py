@@ -9,7 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from exudyn_rotor.solvers.davidson import ApproximateInverse, davidson_modes
-from exudyn_rotor.solvers.lanczos import WIDE, Modes, lanczos_modes
+from exudyn_rotor.solvers.lanczos import Modes, lanczos_modes
 
 _RESIDUAL = 1e-7  # below what lanczos.check_modes allows
 
@@ -19,9 +19,6 @@ class Inverse(ApproximateInverse, Protocol):
 
     @property
     def iterative(self) -> bool: ...
-    @property
-    def by_blocks(self) -> bool: ...
-
     def solve(self, load: np.ndarray) -> np.ndarray: ...
 
 
@@ -36,8 +33,5 @@ def lowest_modes(
     """Return the `count` lowest modes; parameters as of :func:`davidson_modes`."""
     if inverse.iterative:
         return davidson_modes(stiffness, mass, inverse, count, tolerance, balanced)
-    if inverse.by_blocks:
-        # the error of eigenvalues is of second order in the residual
-        residual = min(_RESIDUAL, np.sqrt(tolerance))
-        return lanczos_modes(mass, inverse.solve, count, residual, width=WIDE)
-    return lanczos_modes(mass, inverse.solve, count, tolerance)
+    # the error of eigenvalues is of second order in the residual
+    return lanczos_modes(mass, inverse.solve, count, min(_RESIDUAL, np.sqrt(tolerance)))

@@ -9,10 +9,18 @@ from functools import cached_property
 import numpy as np
 import scipy.linalg as la
 
-from exudyn_rotor.linear.equations import PeriodicSystem, Terms, add, without_rounding
+from exudyn_rotor.bearings.support import NoCoefficientsError
+from exudyn_rotor.linear.equations import (
+    PeriodicSystem,
+    Terms,
+    UnconvergedError,
+    add,
+    without_rounding,
+)
 from exudyn_rotor.linear.model.body import Body, RotorBody
 from exudyn_rotor.linear.model.element import Element, End, OwnBody
 
+NO_EQUATIONS = NoCoefficientsError, UnconvergedError
 _ROUNDING = 1e-14  # share of a stiffness that is the rounding of its change by the speed
 
 
@@ -87,8 +95,9 @@ class Assembly:
                     add(powers[power], {0: wide})
         for element, U in zip(self.elements, self.motions, strict=True):
             if not element.varies:
-                D, K = element.terms(0.0, U, self.turns)
-                _, faster = element.terms(1.0, U, self.turns)
+                given = element.matrices(0.0)
+                D, K = element.terms(given, 0.0, U, self.turns)
+                _, faster = element.terms(given, 1.0, U, self.turns)
                 add(powers_D[0], D)
                 add(powers_K[0], K)
                 add(powers_K[1], faster)
@@ -97,24 +106,51 @@ class Assembly:
 
     def system(self, speed: float) -> PeriodicSystem:
         """Return the equations at a spin speed [rad/s]."""
+        return self._system(float(speed), [one.matrices(speed) for one in self._varying])
+
+    def systems(self, speeds: np.ndarray) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
+        """Return the equations at spin speeds (s,), stacked, and why there are none at some.
+
+        Speeds at which there are none are left out of the stack.
+        """
+        found, refused = [], {}
+        for place, speed in enumerate(speeds.tolist()):
+            try:
+                found.append([one.matrices(speed) for one in self._varying])
+            except NO_EQUATIONS as error:
+                refused[place] = error
+        if not found:
+            return None, refused
+        stacks = [tuple(map(np.stack, zip(*each, strict=True))) for each in zip(*found)]  # noqa: B905
+        return self._system(np.delete(speeds, list(refused)), stacks), refused
+
+    @cached_property
+    def _varying(self) -> list[Element]:
+        return [element for element in self.elements if element.varies]
+
+    def _system(self, speed: float | np.ndarray, coefficients: Sequence) -> PeriodicSystem:
+        """Return the equations at a speed, or a stack, by the `coefficients` of what varies."""
+        factor = np.asarray(speed)[..., None, None] if np.ndim(speed) else speed
         D, K = {}, {}
         for terms, powers in zip((D, K), self._steady, strict=True):
             for power, given in enumerate(powers):
-                if power == 0 or (given and speed):
-                    add(terms, given, speed**power)
+                add(terms, given, factor**power)
+        rest = iter(coefficients)
         for element, U in zip(self.elements, self.motions, strict=True):
             if element.varies:
-                damping, stiffness = element.terms(speed, U, self.turns)
+                damping, stiffness = element.terms(next(rest), factor, U, self.turns)
                 add(D, damping)
                 add(K, stiffness)
-        if len(D) > 1 or len(K) > 1:
-            D, K = without_rounding(D), without_rounding(K)
-        H = []
-        for body, place in zip(self.bodies, self.slices, strict=True):
-            for n, X in body.H:
-                H.append((n, np.zeros((self.size, self.size), dtype=X.dtype)))
-                H[-1][1][place, place] = X
-        return PeriodicSystem(float(speed), self.M, D, K, H)
+        return PeriodicSystem(speed, self.M, without_rounding(D), without_rounding(K), self._H)
+
+    @cached_property
+    def _H(self) -> list[tuple[float, np.ndarray]]:
+        """Structural damping of all bodies, see :class:`PeriodicSystem`."""
+        return [
+            (n, self.wide({0: self.wide({0: X}, place)[0].T}, place)[0].T)
+            for body, place in zip(self.bodies, self.slices, strict=True)
+            for n, X in body.H
+        ]
 
     def seen(self, body: Body, interface: str) -> dict[int, np.ndarray]:
         """Return the motion (6, k) of an interface, seen from outside, for loads and results."""

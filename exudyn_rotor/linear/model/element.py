@@ -91,17 +91,24 @@ class Element:
         """Return whether the coefficients at a speed are the same in all directions."""
         return all(is_isotropic_matrix(X) for X in self.matrices(speed))
 
-    def terms(self, speed: float, U: Terms, turns: int) -> tuple[dict, dict]:
-        """Return the Fourier terms of damping and stiffness, each (k, k), at a speed Ω [rad/s].
+    def terms(
+        self,
+        coefficients: tuple[np.ndarray, np.ndarray],
+        speed: float | np.ndarray,
+        U: Terms,
+        turns: int,
+    ) -> tuple[dict, dict]:
+        """Return the Fourier terms of damping and stiffness, each (k, k), or (s, k, k) of a stack.
 
-        `U` is :attr:`motion` in axes that turn with `turns` times Ω.
+        `coefficients` are what :attr:`matrices` gives at the speed Ω [rad/s], or stacks of them at
+        speeds of the shape (s, 1, 1); `U` is :attr:`motion` in axes that turn with `turns` times Ω.
         """
-        K, D = self.matrices(speed)
+        K, D = coefficients
         if self.turns:
             if self.turns == turns:  # seen from axes that turn with it, it stands still
                 U = turned(U, -turns)
             else:
-                K = K - self.turns * speed * D @ axial_skew(len(D))
+                K = K - self.turns * speed * D @ axial_skew(D.shape[-1])
         damping, stiffness = congruent(U, D), congruent(U, K)
         if len(U) > 1:
             add(stiffness, congruent(U, D, rate_of(U)), speed)

@@ -13,6 +13,7 @@ At rest nothing turns, and nothing is averaged.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -22,8 +23,9 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor import checks
+from exudyn_rotor.callers import user_level
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear.equations import PeriodicSystem, Terms, turned
+from exudyn_rotor.linear.equations import PeriodicSystem, Terms, spread, turned
 from exudyn_rotor.linear.model.assembly import Assembly, rotors_of
 from exudyn_rotor.linear.model.body import (
     EVEN,
@@ -38,6 +40,7 @@ from exudyn_rotor.linear.model.body import (
 )
 from exudyn_rotor.linear.model.element import Element, elements_of
 from exudyn_rotor.linear.model.links import Link
+from exudyn_rotor.linear.model.spin import ARM
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.stiffening import LEVELS
@@ -46,7 +49,6 @@ AXES = ("auto", "inertial", "rotor")
 ON_FOUNDATION = "{} (foundation)"
 _HELD = 1e-10  # share of the largest stiffness per unit mass that counts as none
 _ALONE = 1.0 - 1e-6  # share of a free motion's energy in one rigid motion, but for rounding
-_ARM = 1e-4  # arm off the axis, squared and in radii of gyration, at which springs hold the spin
 
 
 class Matrices(NamedTuple):
@@ -222,7 +224,7 @@ class LinearModel:
             if element.turns and element.ends[0][0] == name:
                 turned_by = alone.motion(element.ends[0][1]) @ alone.spin.turn
                 K, _ = element.matrices(0.0)
-                arm = np.abs(turned_by[:2]).max() ** 2 * alone.invariants.mass > _ARM
+                arm = np.abs(turned_by[:2]).max() ** 2 * alone.invariants.mass > ARM
                 if np.any(K[5]) or (arm and turned_by @ K @ turned_by != 0.0):
                     return True
         return False
@@ -250,6 +252,33 @@ class LinearModel:
             For a speed beyond a table, or at which a film carries nothing.
         """
         return self.assembly(speed).system(speed)
+
+    def at_all(self, speeds: Sequence[float]) -> PeriodicSystem:
+        """Return the equations at spin speeds (s,) [rad/s] as one stack.
+
+        NaN at speeds where there are none, of which one warning tells.
+
+        Raises
+        ------
+        NoCoefficientsError, UnconvergedError
+            Where there are equations at none of the speeds.
+        """
+        speeds = np.asarray(speeds, dtype=float)
+        parts, refused = [], {}
+        for places in (np.flatnonzero(speeds), np.flatnonzero(speeds == 0.0)):
+            if places.size:
+                part, errors = self._systems(speeds[places])
+                refused |= {int(places[i]): error for i, error in errors.items()}
+                if part is not None:
+                    parts.append((np.delete(places, list(errors)), part))
+        if not parts:
+            raise refused[min(refused)]
+        _warn_of_refused(speeds, refused)
+        return spread(speeds, parts)
+
+    def _systems(self, speeds: np.ndarray) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
+        """Return the stack at speeds (s,), all zero or none, and why there are none at some."""
+        return self.assembly(speeds[0]).systems(speeds)
 
     def matrices(self, speed: float) -> Matrices:
         """Return mass, damping and stiffness at a spin speed [rad/s].
@@ -571,6 +600,18 @@ class LinearModel:
         lines.append("free motions: " + (", ".join(self.free_motions) or "none"))
         lines.append(f"stiffening: {self.stiffening}, unevenness {self.unevenness:.1e}")
         return "\n".join(lines)
+
+
+def _warn_of_refused(speeds: np.ndarray, refused: Mapping[int, Exception]) -> None:
+    if refused:
+        places = sorted(refused)
+        shown = ", ".join(f"{speeds[i]:.5g}" for i in places[:5])
+        more = " …" if len(places) > 5 else ""
+        warnings.warn(
+            f"no values at {shown}{more} rad/s, which are NaN: {refused[places[0]]}",
+            UserWarning,
+            stacklevel=user_level(),
+        )
 
 
 def beside(momenta: np.ndarray) -> np.ndarray | None:

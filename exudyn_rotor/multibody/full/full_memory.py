@@ -7,7 +7,7 @@ Exudyn factorises the Jacobian of an implicit step by Eigen's ``SparseLU``, orde
 from __future__ import annotations
 
 from exudyn_rotor.solid_rotor import SolidRotor
-from exudyn_rotor.solvers.fill import estimated_fill
+from exudyn_rotor.solvers.choice import estimated_fill
 from exudyn_rotor.solvers.memory import TooLittleMemoryError, available_memory
 
 # coordinates below which a step takes less memory than any machine has
@@ -20,7 +20,7 @@ _PER_ENTRY, _PER_FACTOR_ENTRY = 300.0, 22.0
 
 def needed_bytes(rotor: SolidRotor) -> float:
     """Return about what a full body takes in an implicit run, beside the rotor itself [bytes]."""
-    fill = estimated_fill(rotor.stiffness, rotor.nodes)
+    fill = estimated_fill(3 * rotor.node_count)
     return _PER_ENTRY * rotor.stiffness.nnz + _PER_FACTOR_ENTRY * fill.entries
 
 

@@ -12,6 +12,7 @@ import exudyn
 import numpy as np
 
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
+from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.attached import Attached, AttachedBearing, attached_to
 from exudyn_rotor.linear.model.scene.differences import (
@@ -72,9 +73,15 @@ class Probe:
         return min(self.step, _STEPS[-1]) if known else self.step
 
     @property
+    def films(self) -> list[AttachedBearing]:
+        """Bearings with films of finite length."""
+        kinds = JournalBearing | TiltingPadBearing
+        return [one for one in self.bearings if isinstance(one.bearing, kinds)]
+
+    @property
     def remembering(self) -> list[AttachedBearing]:
         """Bearings whose films conserve mass."""
-        journals = [one for one in self.bearings if isinstance(one.bearing, JournalBearing)]
+        journals = [one for one in self.films if isinstance(one.bearing, JournalBearing)]
         return [one for one in journals if one.bearing.remembers]
 
     @contextmanager

@@ -20,8 +20,8 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.equations import PeriodicSystem, Terms, add, turned
-from exudyn_rotor.linear.model.assembly import Assembly
+from exudyn_rotor.linear.equations import PeriodicSystem, Terms, add, joined, turned
+from exudyn_rotor.linear.model.assembly import NO_EQUATIONS, Assembly
 from exudyn_rotor.linear.model.body import RotorAlone, RotorBody, StandingBody, rotor_body
 from exudyn_rotor.linear.model.element import is_isotropic_matrix
 from exudyn_rotor.linear.model.linear_model import LinearModel, beside
@@ -201,6 +201,15 @@ class SceneModel(LinearModel):
                 found = {0: found[0]}
             add(terms, {n: np.pad(Y, (0, self.size - k)) for n, Y in found.items()})
         return replace(system, M=own)
+
+    def _systems(self, speeds: np.ndarray) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
+        found, refused = [], {}
+        for place, speed in enumerate(speeds.tolist()):
+            try:
+                found.append(self.at(speed))
+            except NO_EQUATIONS as error:
+                refused[place] = error
+        return joined(found) if found else None, refused
 
     @property
     def _running_size(self) -> int:

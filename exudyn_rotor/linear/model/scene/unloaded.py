@@ -12,9 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.rolling import RollingBearing
-from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.attached import AttachedBearing
 from exudyn_rotor.linear.model.scene.equilibrium import solved
@@ -35,7 +33,7 @@ def check_films(scene: SceneCoordinates, probe: Probe) -> None:
     ------
     UnconvergedError
     """
-    films = [one for one in probe.bearings if _needs_a_side(one)]
+    films = [one for one in probe.films if _needs_a_side(one)]
     if not films or probe.speed == 0.0:
         return
     start = journal_start(scene, probe.speed, _ORDERS)
@@ -57,8 +55,6 @@ def check_films(scene: SceneCoordinates, probe: Probe) -> None:
 
 
 def _needs_a_side(one: AttachedBearing) -> bool:
-    if not isinstance(one.bearing, JournalBearing | TiltingPadBearing):
-        return False
     given = one.bearing.film
     return given.cavitation != "none" and given.supply_pressure == 0.0
 

@@ -1,0 +1,263 @@
+"""Advice before and after a run, against responses, frequencies and runs computed otherwise."""
+
+import re
+import warnings
+
+import exudyn as exu
+import numpy as np
+import pytest
+from exudyn.rigidBodyUtilities import InertiaCuboid
+from models import centered_disc
+from run_scenes import scene, solve
+
+from exudyn_rotor import (
+    AssumptionWarning,
+    HarmonicForce,
+    PrescribedMotion,
+    Support,
+    add_rotor,
+    campbell,
+    check_run,
+    harmonic_response,
+    propose,
+    recommended_settings,
+    unbalance_response,
+)
+
+STIFFNESS, DAMPING = 2e7, 3e4
+SUPPORTS = [Support(name, STIFFNESS, damping=DAMPING) for name in ("left", "right")]
+
+
+@pytest.fixture(scope="module")
+def solid():
+    rotor = centered_disc()
+    return rotor.add_point_mass([0.15, 0, 0.215], 0.005)
+
+
+@pytest.fixture(scope="module")
+def reduced(solid):
+    return solid.reduce(20, prestress=True)
+
+
+@pytest.fixture(scope="module")
+def plain(solid):
+    return solid.reduce(6).without_shapes()
+
+
+@pytest.fixture(autouse=True)
+def _quiet_where_not_asked():
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AssumptionWarning)
+        yield
+
+
+# ------------------------------------------------------------------ fewer modes
+
+
+# ------------------------------------------------------------------ modes
+
+
+def _difference(ours, theirs, rows=2):
+    """Return the largest relative difference of displacements at any speed or frequency."""
+    a, b = (one.motion[..., :rows].reshape(len(one.motion), -1) for one in (ours, theirs))
+    return (np.linalg.norm(a - b, axis=1) / np.linalg.norm(b, axis=1)).max()
+
+
+@pytest.mark.parametrize(("high", "axial"), [(300.0, 0.0), (1500.0, 0.0), (300.0, 1.0)])
+def test_proposed_modes_meet_the_accuracy(reduced, high, axial):
+    """Unbalance and harmonic responses over the whole range, at points of their own."""
+    along = np.diag([1.0, 1.0, axial])
+    supports = [Support(n, STIFFNESS * along, DAMPING * along) for n in ("left", "right")]
+    rows = 3 if axial else 2
+    speeds, frequencies = np.linspace(20.0, high, 30), np.linspace(0.0, 2000.0, 41)
+    given = {"supports": supports, "accuracy": None}
+
+    def responses(rotor):
+        found = [unbalance_response(rotor, speeds, **given)]
+        for place, force in (("left", [1, 0]), ("right", [0, 1]), ("left", [1, -1j])):
+            load = [HarmonicForce(place, force)]
+            found.append(harmonic_response(rotor, frequencies, load, speed=high, **given))
+        return found
+
+    whole = responses(reduced)
+    for accuracy in (1e-2, 1e-3):
+        options = {"load_frequencies": [2000.0], "supports": supports, "accuracy": accuracy}
+        proposal = propose(reduced, speeds=(0.0, high), **options)
+        assert proposal.count < proposal.total
+        few = responses(proposal.truncated(reduced))
+        errors = [_difference(*pair, rows) for pair in zip(few, whole, strict=True)]
+        assert max(errors) < 0.5 * accuracy
+
+
+def test_modes_of_a_scene_with_a_foundation_meet_the_accuracy(solid):
+    """A foundation stands still in space, so it couples harmonics of the speed."""
+    model = solid.reduce(10).without_shapes()
+    mbs, body = _on_foundation(model)
+    proposal = propose(mbs, body=body, speeds=300.0, accuracy=1e-2, axial=False)
+    assert proposal.count < proposal.total
+    responses = []
+    for rotor in (proposal.truncated(model), model):
+        mbs, body = _on_foundation(rotor)
+        load = HarmonicForce("left", [1, 0])
+        responses.append(harmonic_response(mbs, [50.0, 250.0], load, speed=300.0, body=body))
+    assert _difference(*responses) < 0.5e-2
+
+
+def _on_foundation(rotor):
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, translation="none", spin=300.0)
+    block = InertiaCuboid(density=2500.0, sideLengths=[0.4, 0.3, 0.4])
+    base = mbs.CreateRigidBody(inertia=block, referencePosition=[0, -0.2, 0.25])
+    ground = mbs.CreateGround()
+    options = {"stiffness": [1e7, 2e7, 1e7], "damping": [3e3] * 3}
+    for x, z in ((-0.1, 0.0), (0.1, 0.0), (-0.1, 0.5), (0.1, 0.5)):
+        places = {"localPosition0": [x, -0.25, z], "localPosition1": [x, -0.05, z - 0.25]}
+        mbs.CreateCartesianSpringDamper(itemNumbers=[ground, base], **places, **options)
+    for name, z in (("left", 0.0), ("right", 0.5)):
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[base, body.marker(name)],
+            localPosition0=[0, 0.2, z - 0.25],
+            stiffness=[2e7] * 3,
+            damping=[2e4] * 3,
+        )
+    mbs.Assemble()
+    return mbs, body
+
+
+# ------------------------------------------------------------------ step
+
+
+def test_proposed_step_has_the_allowed_period_error(plain):
+    """A free mode at the end of the band: its phase after 20 periods, against cos ωt."""
+    omega = plain.frequencies[6]
+    proposal = propose(plain, speeds=0.0, load_frequencies=omega, accuracy=2e-3)
+    mbs = exu.SystemContainer().AddSystem()
+    start = np.zeros(plain.size - 1)  # without the spin, which is prescribed
+    start[5] = 1e-3
+    options = {"modal_coordinates": start, "marker_body": False, "stiffening": "none"}
+    body = add_rotor(mbs, plain, translation="none", spin=0.0, **options)
+    body.start_recording()
+    mbs.Assemble()
+    steps = round(20.25 * 2 * np.pi / omega / proposal.step)
+    solve(mbs, steps, steps * proposal.step)
+    zeta, rate = (part[0][5] for part in (body.recorded().q[-1:], body.recorded().q_t[-1:]))
+    turned = omega * steps * proposal.step
+    phase = np.arctan2(-rate / omega, zeta)
+    slip = (turned - phase + np.pi) % (2 * np.pi) - np.pi
+    assert slip / turned == pytest.approx(0.5 * 2e-3, rel=0.02)
+    assert check_run(body, accuracy=2e-3)["step"].value == pytest.approx(slip / turned, rel=0.02)
+
+
+def _steady_orbit(rotor, proposal, stiffness, finer=1, translation=None):
+    """Return the last revolutions of the right journal (s, 3) [m], with weight and unbalance."""
+    options = proposal.options() | ({"translation": translation} if translation else {})
+    mbs, body = scene(
+        rotor, stiffness=stiffness, markers="position", gravity=[0, -9.81, 0], **options
+    )
+    sensor = body.add_interface_sensor("right", exu.OutputVariableType.Displacement)
+    mbs.Assemble()
+    turn = 2 * np.pi / proposal.speeds[1]
+    steps = int(np.ceil(turn / proposal.step))
+    turns = int(np.ceil(1.0 / turn))
+    settings = recommended_settings(turns * turn, turn / (steps * finer), accuracy=1e-9)
+    settings.timeIntegration.verboseMode, settings.solution.file.write = 0, False
+    settings.solution.sensors.writePeriod = turn / steps
+    mbs.SolveDynamic(settings)
+    return mbs.GetSensorStoredData(sensor)[-2 * steps :, 1:]
+
+
+@pytest.mark.parametrize(
+    ("speed", "translation", "accuracy"),
+    [(150.0, "none", 1e-2), (150.0, "none", 1e-3), (400.0, "free", 1e-2)],
+)
+def test_steady_orbit_at_the_proposed_step_meets_the_accuracy(plain, speed, translation, accuracy):
+    """Against steps a quarter as long, which err by a 16th; 400 rad/s is near a critical speed."""
+    stiffness = [2e6, 4e6, 2e6]
+    supports = [Support(n, np.diag(stiffness), 500.0 * np.eye(3)) for n in ("left", "right")]
+    proposal = propose(plain, speeds=speed, supports=supports, accuracy=accuracy)
+    assert proposal.translation == translation
+    exact = _steady_orbit(plain, proposal, stiffness, finer=4)
+    size = np.linalg.norm(exact, axis=1).max()
+    error = np.linalg.norm(_steady_orbit(plain, proposal, stiffness) - exact, axis=1).max() / size
+    assert 0.02 * accuracy < error < 0.75 * accuracy
+    if translation == "free":
+        worse = _steady_orbit(plain, proposal, stiffness, translation="none") - exact
+        assert np.linalg.norm(worse, axis=1).max() > 1.3 * error * size
+
+
+def test_reasons_name_what_asks_for_a_small_step(plain):
+    supports = [Support(n, 2e4 * np.eye(3), 500.0 * np.eye(3)) for n in ("left", "right")]
+    options = {"supports": supports, "accuracy": 1e-2}
+    slow = propose(plain, speeds=1000.0, load_frequencies=30.0, **options)
+    assert slow.translation == "free"
+    assert "slow motion in space is fast in the rotor frame" in str(slow)
+    assert "step: ωh" in str(propose(plain, speeds=150.0, **options))
+
+
+# ------------------------------------------------------------------ formulation
+
+
+@pytest.mark.parametrize(
+    ("supports", "options", "expected"),
+    [
+        (SUPPORTS, {"speeds": 100.0}, ("none", 100.0)),
+        (SUPPORTS, {"speeds": (50.0, 100.0)}, ("in-plane", "free")),
+        (SUPPORTS, {"speeds": (50.0, 100.0), "axial": True}, ("free", "free")),
+        ([Support("left", 1e7 * np.eye(3))], {"speeds": (0.0, 100.0)}, ("free", "free")),
+        ([Support("left", 1e7 * np.ones((3, 3)))], {"speeds": (0.0, 9.0)}, ("free", "free")),
+        (None, {"speeds": (0.0, 100.0)}, ("free", "free")),
+    ],
+)
+def test_formulation_follows_from_what_is_known(plain, supports, options, expected):
+    proposal = propose(plain, supports=supports, **options)
+    assert (proposal.translation, proposal.spin) == expected
+
+
+@pytest.mark.parametrize("high", [30.0, 300.0, 1000.0])
+def test_change_by_the_full_level_is_that_of_the_frequencies(reduced, high):
+    """The lateral frequencies of the rotor on its supports, from the Campbell diagram."""
+    supports = [Support(name, STIFFNESS) for name in ("left", "right")]
+    options = {"supports": supports}
+    tilt, full = (
+        np.sort(np.abs(campbell(reduced, [high], stiffening=s, **options).frequencies_rotor))[0]
+        for s in ("tilt", "full")
+    )
+    band = (tilt > 1.0) & (tilt < 2 * high)
+    shift = np.max(np.abs(full - tilt)[band] / np.maximum(tilt, high)[band], initial=0.0)
+    proposal = propose(reduced, speeds=high, **options)
+    said = float(re.search(r"beyond 'tilt' frequencies change by (\S+),", str(proposal))[1])
+    assert (said > 1e-3) == (shift > 1e-3)
+    assert proposal.stiffening == "full"
+
+
+def test_proposal_prints_what_add_rotor_takes(reduced):
+    proposal = propose(reduced, speeds=300.0, supports=SUPPORTS)
+    assert set(proposal.options()) == {"translation", "spin", "stiffening"}
+    text = str(proposal)
+    assert f"{proposal.count} of 20" in text
+    assert all(reason in text for reason in proposal.reasons)
+    with pytest.raises(ValueError, match="chose from 20"):
+        proposal.truncated(proposal.truncated(reduced))
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"speeds": []}, "speeds: "),
+        ({"speeds": -1.0}, "speeds: "),
+        ({"speeds": np.nan}, "speeds: "),
+        ({"speeds": (2.0, 1.0)}, "speeds: "),
+        ({"speeds": 0.0}, "nothing moves"),
+        ({"speeds": 1.0, "load_frequencies": [np.inf]}, "load_frequencies: "),
+        ({"speeds": 1.0, "load_frequencies": []}, "load_frequencies: "),
+        ({"speeds": 1.0, "accuracy": 0.0}, "accuracy: "),
+        ({"speeds": 1.0, "tilt": -0.1}, "tilt: "),
+        ({"speeds": 1.0, "interfaces": ["middle"]}, "'left', 'right'"),
+        ({"speeds": 1.0, "interfaces": []}, "left, right"),
+        ({"speeds": 1.0, "supports": [Support("middle")]}, "no such interface"),
+        ({"speeds": 1.0, "spin": PrescribedMotion.run_up(0.0, 1.0, 1.0)}, "leave spin out"),
+    ],
+)
+def test_bad_requests_are_refused(plain, options, message):
+    with pytest.raises(ValueError, match=message):
+        propose(plain, **options)

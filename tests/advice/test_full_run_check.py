@@ -1,0 +1,107 @@
+"""Checks of runs of full bodies, against those of the same rotor with all its modes."""
+
+import warnings
+
+import exudyn
+import numpy as np
+import pytest
+from run_scenes import solve
+from scipy.spatial.transform import Rotation
+from soft_bars import bar, run
+
+from exudyn_rotor import (
+    AssumptionWarning,
+    JournalBearing,
+    OilFilm,
+    Pad,
+    PrescribedMotion,
+    ShortJournalBearing,
+    add_rotor,
+    add_supports,
+    check_run,
+    propose,
+)
+
+RUN_UP = PrescribedMotion.run_up(0.0, 300.0, 1e-2)
+SCENES = {
+    "run-up": {"translation": "none", "spin": RUN_UP, "stiffening": "none"},
+    "free": {"translation": "free", "spin": "free", "initial_speed": 300.0, "stiffening": "tilt"},
+    "frozen": {
+        "translation": "none",
+        "spin": "free",
+        "initial_speed": 300.0,
+        "spin_coupling": "frozen",
+        "stiffening": "full",
+    },
+}
+OF_MODES = {"unresisted load", "top modes", "residual", "divergence"}
+
+
+@pytest.fixture(scope="module")
+def solid():
+    return bar("z")
+
+
+@pytest.fixture(scope="module")
+def beside():
+    return bar("y")
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_rows_are_those_of_all_modes(solid, scene):
+    """Mass-orthonormal modes, all of them, span the same displacements."""
+    whole = check_run(run(solid, solid, **SCENES[scene]), warn=False)
+    modes = check_run(run(solid, solid.reduce(54), **SCENES[scene]), warn=False)
+    assert {row.name for row in whole.rows} == {row.name for row in modes.rows} - OF_MODES
+    for row in whole.rows:
+        assert row.value == pytest.approx(modes[row.name].value, rel=3e-3, abs=1e-15)
+        assert row.ok == modes[row.name].ok
+
+
+SIZE = {"radius": 0.03, "length": 0.02, "viscosity": 0.02}
+PADS = [Pad(start=-0.5 * np.pi - 1.0, arc=2.0, clearance=1e-4)]
+PLACE = np.array([2e-5, -1.1e-4])  # the mean angle of the pad is along -n2
+SHORT = ShortJournalBearing(interface="left", clearance=1e-4, **SIZE)
+PAD = JournalBearing(interface="left", film=OilFilm(pads=PADS, **SIZE))
+FILMS = {"short": (SHORT, 0.99e-4), "pad": (PAD, 1e-4 - PAD.film.thinnest)}
+
+
+@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
+@pytest.mark.parametrize("spin", [300.0, "free"])
+@pytest.mark.parametrize("kind", FILMS)
+def test_a_journal_out_of_its_film_fails_the_check(beside, kind, spin):
+    """Its mean displacement, in whatever axes the rotor lies, for full and reduced bodies."""
+    film, reach = FILMS[kind]
+    options = {"translation": "none", "spin": spin, "stiffening": "none"}
+    options["rotation"] = Rotation.from_rotvec([0.3, -0.7, 0.4]).as_matrix()
+    moved = beside.axis.plane @ PLACE
+    for model in (beside, beside.reduce(2)):
+        trial = add_rotor(exudyn.SystemContainer().AddSystem(), model, **options).motion
+        start = np.tile(moved, beside.node_count)
+        if model is not beside:  # the first three modes are mass-orthonormal translations
+            S = trial.invariants.S
+            start = np.r_[S[:, :3].T @ moved, np.zeros(S.shape[1] - 3)]
+        mbs = exudyn.SystemContainer().AddSystem()
+        body = add_rotor(mbs, model, modal_coordinates=start, **options)
+        add_supports(body, film)
+        mbs.Assemble()
+        row = check_run(body, warn=False)["film"]
+        assert row.value == pytest.approx(np.linalg.norm(PLACE) / reach, rel=1e-3)
+        assert not row.ok
+
+
+def test_step_and_speed_too_high_are_told(solid):
+    mbs = exudyn.SystemContainer().AddSystem()
+    body = add_rotor(mbs, solid, spin=300.0, translation="none")
+    body.start_recording(1e-3 * np.arange(21))
+    mbs.Assemble()
+    solve(mbs, 20, 0.02)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        proposal = propose(solid.reduce(4), speeds=(0.0, 200.0), supports=[])
+    with pytest.warns(AssumptionWarning) as caught:
+        check = check_run(body, proposal=proposal)
+    assert {"step", "spin step", "speed"} <= {row.name for row in check.failed}
+    assert len(caught) == len(check.failed)
+    assert check["spin step"].value == pytest.approx(0.3, rel=1e-9)
+    assert check["speed"].value == pytest.approx(1.5)

@@ -1,0 +1,225 @@
+"""Checks after a run: every number against one known otherwise, every limit exceeded once."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+from exudyn.itemInterface import (
+    LoadCoordinate,
+    MarkerNodeCoordinate,
+)
+from models import centered_disc
+from run_scenes import scene, solve
+
+from exudyn_rotor import (
+    AssumptionWarning,
+    PrescribedMotion,
+    add_rotor,
+    check_run,
+    craig_bampton_modes,
+    keep_modes,
+    propose,
+)
+from exudyn_rotor.advice.run_measures import Measures
+
+
+@pytest.fixture(scope="module")
+def solid():
+    return centered_disc().add_point_mass([0.15, 0, 0.215], 0.005)
+
+
+@pytest.fixture(scope="module")
+def reduced(solid):
+    return solid.reduce(6).without_shapes()
+
+
+@pytest.fixture(scope="module")
+def run(solid):
+    """A quiet run: unbalance and weight at constant speed."""
+    reduced = solid.reduce(craig_bampton_modes(solid, 6)).without_shapes()
+    return _finished(reduced, "none", spin=200.0, gravity=[0, -9.81, 0])
+
+
+def _finished(reduced, translation, load=None, steps=400, end_time=0.04, watch=True, **options):
+    mbs, body = scene(reduced, translation, **options)
+    if load is not None:
+        load(mbs, body)
+    if watch:
+        body.start_recording()
+    mbs.Assemble()
+    solve(mbs, steps, end_time)
+    return body
+
+
+def _at_rest(reduced, **options):
+    """Return a body with initial values and no run: checks look at the state."""
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, reduced, **options)
+    mbs.Assemble()
+    return body
+
+
+def _modal(body_or_labels, **values):
+    return [values.get(name.split(" (")[0].replace(" ", "_"), 0.0) for name in body_or_labels]
+
+
+def _labels(reduced, **options):
+    return _at_rest(reduced, **options).selection.labels
+
+
+def test_quiet_run_passes_and_says_so(run, recwarn):
+    check = check_run(run)
+    assert check.ok
+    assert check.complete
+    assert check.failed == ()
+    assert "FAILS" not in str(check)
+    assert not recwarn.list
+    assert check["unresisted load"].value < 1e-5
+    assert check["locked"].value < 1e-9
+
+
+def test_run_of_few_instants_is_told(reduced):
+    mbs, body = scene(reduced, "none", spin=200.0)
+    body.start_recording()
+    mbs.Assemble()
+    check_run(body)  # before a run there is nothing to miss
+    solve(mbs, 400, 0.04, period=0.01)
+    with pytest.warns(AssumptionWarning, match=r"only 5 instants are known: lower solution"):
+        check = check_run(body, limits={"residual": 1.0})
+    assert check.instants == 5
+    assert not check.complete
+    assert check.ok
+
+
+@pytest.mark.parametrize("translation", ["free", "in-plane", "none"])
+@pytest.mark.parametrize("locking", ["mass", "constraints"])
+@pytest.mark.parametrize("markers", ["rigid", "position"])
+def test_every_formulation_keeps_all_loads(reduced, translation, locking, markers):
+    """Weight, unbalance and bearings reach the equations; the axis lies askew to gravity."""
+    turn = [[0, 0, 1], [1, 0, 0], [0, 1, 0]]
+    mbs = exu.SystemContainer().AddSystem()
+    options = {"rotation": turn, "gravity": [1, -9, 4], "initial_speed": 150.0}
+    body = add_rotor(
+        mbs, reduced, translation=translation, locking=locking, markers=markers, **options
+    )
+    ground = mbs.CreateGround()
+    for name, place in (("left", [0, 0, 0]), ("right", [0.5, 0, 0])):
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[ground, body.marker(name)], localPosition0=place, stiffness=[1e6] * 3
+        )
+    kind = exu.OutputVariableType.Displacement
+    journals = [body.add_interface_sensor(name, kind) for name in ("left", "right")]
+    body.start_recording()
+    mbs.Assemble()
+    solve(mbs, 200, 0.02)
+    check = check_run(body, warn=False)
+    u = np.array([mbs.GetSensorStoredData(journal)[:, 1:] for journal in journals])
+    # axial forces k u_x have the lateral displacements as levers, which no equation resists
+    lost = (abs(u[:, :, 0]) * np.linalg.norm(u[:, :, 1:], axis=2)).sum(axis=0).max()
+    size = Measures(body, body.recorded()).size
+    assert check["unresisted load"].value < lost / (
+        size * np.linalg.norm(u.sum(axis=0), axis=1).max()
+    )
+    assert check["locked"].value < 1e-9
+
+
+def test_deflection_and_top_modes(reduced):
+    mass = reduced.invariants.mass
+    size = np.sqrt(np.trace(reduced.invariants.J) / mass)
+    labels = _labels(reduced, spin=0.0)
+    values = _modal(labels, mode_1=0.1 * size * np.sqrt(mass), mode_6=0.05)
+    check = check_run(_at_rest(reduced, spin=0.0, modal_coordinates=values), warn=False)
+    moved = np.linalg.norm(values[-6:]) / np.sqrt(mass)
+    assert check["deflection"].value == pytest.approx(moved / size, rel=1e-2)
+    energy = (reduced.frequencies[-6:] * np.array(values[-6:])) ** 2
+    assert check["top modes"].value == pytest.approx(energy[-1] / energy.sum(), rel=1e-6)
+    assert {row.name for row in check.failed} == {"deflection", "top modes"}
+
+
+def test_truncated_bending_shows_in_the_highest_modes(reduced):
+    """With the lowest pair alone half of its energy is in the highest fifth."""
+    few = _finished(keep_modes(reduced, [0, 1]), "none", spin=200.0, gravity=[0, -9.81, 0])
+    many = _finished(reduced, "none", spin=200.0, gravity=[0, -9.81, 0])
+    few, many = (check_run(body, warn=False)["top modes"] for body in (few, many))
+    assert many.ok
+    assert few.value > 3 * many.value
+
+
+@pytest.mark.parametrize(("locking", "ok"), [("mass", False), ("constraints", True)])
+def test_servo_that_lags_leaves_its_place(reduced, locking, ok):
+    options = {"spin": PrescribedMotion.run_up(0.0, 300.0, 0.02), "locking": locking}
+    body = _finished(reduced, "none", steps=100, end_time=0.02, **options)
+    assert check_run(body, warn=False)["locked"].ok == ok
+
+
+def test_steps_too_long_are_found(reduced):
+    body = _finished(reduced, "none", spin=200.0, steps=40, end_time=0.08, gravity=[0, -9.81, 0])
+    with pytest.warns(AssumptionWarning) as caught:
+        check = check_run(body)
+    assert len(caught) == len(check.failed)
+    assert check["spin step"].value == pytest.approx(0.4, rel=1e-9)
+    assert not check["step"].ok
+
+
+def test_failed_solution_is_said_to_have_failed(reduced):
+    mbs, body = scene(reduced, "none", spin=200.0)
+    mbs.Assemble()
+    state = np.array(mbs.systemData.GetODE2Coordinates())
+    state[-1] = np.nan
+    mbs.systemData.SetODE2Coordinates(state)
+    with pytest.warns(AssumptionWarning, match="the solution failed"):
+        check = check_run(body)
+    assert not check.ok
+
+
+def _on_coordinate(index, size):
+    def load(mbs, body):
+        node = body.nodes["rigid"]
+        marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=index))
+        mbs.AddLoad(LoadCoordinate(markerNumber=marker, load=size))
+
+    return load
+
+
+@pytest.mark.filterwarnings("ignore::exudyn_rotor.ConnectionWarning")
+@pytest.mark.parametrize("locking", ["mass", "constraints"])
+@pytest.mark.parametrize(
+    ("translation", "index", "size", "lost"),
+    [
+        ("in-plane", 2, 100.0, True),
+        ("in-plane", 0, 100.0, False),
+        ("none", 0, 100.0, True),
+        ("free", 2, 100.0, False),
+        ("free", 3, 20.0, True),
+        ("free", 5, 2.0, False),
+    ],
+)
+def test_loads_that_the_frame_does_not_take_are_found(
+    reduced, locking, translation, index, size, lost
+):
+    """A load on a coordinate of the frame's node counts where the formulation has that."""
+    load = _on_coordinate(index, size)
+    options = {"initial_speed": 50.0, "locking": locking}
+    body = _finished(reduced, translation, load, steps=100, end_time=0.01, **options)
+    check = check_run(body, warn=False)
+    assert check["unresisted load"].ok != lost
+    assert (check["unresisted load"].value > 0.3) == lost
+
+
+def test_speed_beyond_the_proposal_is_found(reduced, run):
+    fast, slow = (propose(reduced, speeds=s, accuracy=0.2) for s in (200.0, 150.0))
+    assert check_run(run, proposal=fast, warn=False)["speed"].ok
+    row = check_run(run, proposal=slow, warn=False)["speed"]
+    assert row.value == pytest.approx(200.0 / 150.0)
+    assert not row.ok
+
+
+def test_yielding_is_found(solid):
+    """Von Mises √(3/2 s:s) of the deviator s."""
+    reduced = solid.reduce(2, prestress=solid.prestress(yield_stress=1e6))
+    check = check_run(_at_rest(reduced, spin=500.0), reduced=reduced, warn=False)
+    stress = reduced.static_stress(500.0)
+    stress[:, :3] -= stress[:, :3].mean(axis=1, keepdims=True)
+    squares = stress**2 @ np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
+    expected = np.sqrt(1.5 * squares.max()) / 1e6
+    assert check["yield"].value == pytest.approx(expected, rel=1e-12)
+    assert not check["yield"].ok

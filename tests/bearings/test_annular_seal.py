@@ -1,0 +1,94 @@
+"""Annular seal: coefficients against the perturbed bulk flow, and in a scene."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+from apart import distance
+from test_supports_in_scenes import HELD, SPEED, rings
+
+from exudyn_rotor import AnnularSeal, add_rotor, add_supports, linear_model
+
+WATER = {"pressure_drop": 1.2e6, "density": 1000.0, "viscosity": 1e-3}
+SIZE = {"radius": 0.1, "length": 0.05, "clearance": 3e-4}
+
+
+def seal(**changes):
+    return AnnularSeal(interface="left", **(SIZE | WATER | changes))
+
+
+def mean_pressure(s, sigma, xi):
+    """Return the mean pressure by a gap that narrows by ε e^{st}, per ε, over ρV²; L/V = 1.
+
+    Continuity: w_1 = a + s z. Momentum: −p' = s w_1 + w_1' + σ(2 w_1 + 1); at the inlet
+    p = −(1 + ξ) a, at the exit zero; integrated over z by hand.
+    """
+    a = -(0.5 * s**2 + s + sigma * (s + 1.0)) / (1.0 + xi + s + 2.0 * sigma)
+    drop = 0.5 * s * a + s**2 / 6.0 + 0.5 * s + sigma * (a + s / 3.0 + 0.5)
+    return -(1.0 + xi) * a - drop
+
+
+@pytest.mark.parametrize("xi", [0.0, 0.1, 0.5])
+@pytest.mark.parametrize("length", [0.02, 0.08])
+def test_coefficients_are_those_of_the_perturbed_bulk_flow(xi, length):
+    """Taylor's coefficients by Cauchy's integral, in axes that turn at half of the speed."""
+    one = seal(inlet_loss=xi, length=length)
+    velocity = one.axial_velocity(SPEED)
+    reynolds = np.array([2.0 * velocity, one.radius * SPEED]) * one.clearance * 1e6
+    friction = 0.079 / reynolds[0] ** 0.25
+    friction *= (1.0 + (7.0 * reynolds[1] / (8.0 * reynolds[0])) ** 2) ** 0.375
+    sigma = friction * length / one.clearance
+    drop = 0.5 * 1000.0 * velocity**2 * (1.0 + xi + 2.0 * sigma)
+    assert drop == pytest.approx(1.2e6, rel=1e-12)
+    circle = 0.05 * np.exp(2j * np.pi * np.arange(64) / 64)
+    taylor = np.fft.fft(mean_pressure(circle, sigma, xi))[:3].real / 64 / 0.05 ** np.arange(3)
+    size = np.pi * one.radius * length / one.clearance * 1000.0 * velocity**2
+    k, d, m = size * taylor * (length / velocity) ** np.arange(3)
+    K, D = one.coefficients(SPEED)
+    assert one.added_mass(SPEED) == pytest.approx(m, rel=1e-9)
+    # (d/dt − iΩ/2) z: of a whirl that turns with the leakage only k is left
+    whirl = np.array([1.0, -1.0j])
+    force = (K + 0.5j * SPEED * D - 0.25 * SPEED**2 * m * np.eye(2)) @ whirl
+    np.testing.assert_allclose(force, k * whirl, rtol=1e-9)
+    np.testing.assert_allclose(np.diag(K), k - 0.25 * SPEED**2 * m, rtol=1e-9)
+    np.testing.assert_allclose(np.diag(D), d, rtol=1e-9)
+    np.testing.assert_allclose(K[0, 1], 0.5 * SPEED * d, rtol=1e-9)
+
+
+def test_slow_leakage_of_a_long_and_narrow_gap():
+    """Friction by the journal's turn alone: λ = 0.079 (7/16 RΩ)^{3/4} (2 ρc/η)^{−1/4}/V."""
+    with pytest.warns(UserWarning, match="may be laminar"):
+        one = seal(length=0.5, clearance=1e-6, viscosity=1e-3)
+    friction = 0.079 * (7.0 / 16.0 * one.radius * SPEED) ** 0.75 * (2e6 * 1e-6) ** -0.25
+    velocity = 1.2e6 / (1000.0 * friction * 0.5 / 1e-6)  # Δp = ρ V² σ
+    assert one.axial_velocity(SPEED) == pytest.approx(velocity, rel=1e-3)
+
+
+def test_without_friction_nothing_centres_and_a_seal_carries_no_load():
+    smooth = seal(viscosity=1e-12)
+    assert smooth.coefficients(0.0)[0][0, 0] < 0.1 * seal().coefficients(0.0)[0][0, 0]
+    assert smooth.axial_velocity(0.0) == pytest.approx(np.sqrt(2.0 * 1200.0 / 1.1), rel=0.01)
+    np.testing.assert_array_equal(seal().equilibrium(10.0, [0.0, -100.0]), [0.0, 0.0])
+
+
+def test_scene_and_list_have_the_same_exponents():
+    reduced, supports = rings(heavy=0.0), [seal(), HELD]
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, reduced, spin=SPEED)
+    add_supports(body, supports)
+    mbs.Assemble()
+    found = linear_model(mbs, body=body, about="given")
+    assert distance(found, linear_model(reduced, supports=supports), SPEED) < 1e-7
+
+
+@pytest.mark.parametrize(
+    ("changes", "match"),
+    [
+        ({"clearance": -1e-4}, "clearance: needs"),
+        ({"clearance": 0.1}, "clearance: needs the radial clearance, far below"),
+        ({"pressure_drop": 0.0}, "pressure_drop: needs"),
+        ({"inlet_loss": -0.1}, "inlet_loss: needs"),
+    ],
+)
+def test_refused_input(changes, match):
+    with pytest.raises(ValueError, match=match):
+        seal(**changes)

@@ -1,0 +1,208 @@
+"""Oil films of finite length: closed forms, balances, derivatives."""
+
+import re
+
+import numpy as np
+import pytest
+
+from exudyn_rotor import OilFilm, Pad, grooved_pads, plot_pressure
+
+RADIUS, CLEARANCE, VISCOSITY, SPEED = 0.05, 1e-4, 0.02, 300.0
+STILL = (0.0, 0.0)
+SIDES = [np.pi / 2, 3 * np.pi / 2]  # grooves on the horizontal line, n1 up
+
+
+def film(length=0.05, grooves=SIDES, width=20.0, preload=0.0, **options):
+    pads = grooved_pads(CLEARANCE, grooves, np.radians(width) if grooves else 0.0, preload)
+    return OilFilm(RADIUS, length, VISCOSITY, pads, **{"axial_nodes": 0, **options})
+
+
+def carried(bearing, sommerfeld):
+    """Return the equilibrium under a load in −n1 of 1 kN at this Sommerfeld number."""
+    area = 2.0 * RADIUS * bearing.length
+    turns = sommerfeld * 1e3 / (VISCOSITY * area) * (CLEARANCE / RADIUS) ** 2
+    return bearing.equilibrium(2.0 * np.pi * turns, [-1e3, 0.0])
+
+
+def extrapolated(value):
+    """Return the limit for a fine grid of what has an error of second order, and its change."""
+    coarse, fine = value(60), value(120)
+    return fine + (fine - coarse) / 3.0, np.abs(fine - coarse)
+
+
+# ------------------------------------------------------------------ closed forms
+
+
+@pytest.mark.parametrize("ratio", [0.2, 0.6])
+def test_long_full_film_is_sommerfelds(ratio):
+    """W = 12 π μ Ω L R (R/c)² ε/((2 + ε²) √(1 − ε²)), across the eccentricity (Sommerfeld 1904)."""
+    length = 2e4 * RADIUS
+
+    def force(nodes):
+        full = film(length, grooves=(), cavitation="none", nodes=nodes)
+        return full.force([ratio * CLEARANCE, 0.0], STILL, SPEED)
+
+    found, change = extrapolated(force)
+    shape = ratio / ((2.0 + ratio**2) * np.sqrt(1.0 - ratio**2))
+    exact = 12 * np.pi * VISCOSITY * SPEED * length * RADIUS**3 / CLEARANCE**2 * shape
+    # the ends take 2R/L; the next term of the error is that of fourth order, below a tenth
+    assert abs(found[1] / exact - 1.0) < 2e-4 + 0.1 * change[1] / exact
+    assert abs(found[0]) < 1e-9 * exact
+
+
+@pytest.mark.parametrize("ratio", [0.2, 0.6])
+def test_short_cut_film_is_ocvirks(ratio):
+    """F_r, F_t of a short film between ε = 0 and π (Ocvirk 1952), and its damping across."""
+    length = 0.01 * RADIUS
+
+    def values(nodes):
+        short = film(length, grooves=(), cavitation="half-sommerfeld", nodes=nodes)
+        state = short.state([ratio * CLEARANCE, 0.0], STILL, SPEED)
+        return np.append(state.force, state.coefficients()[1][1, 1])
+
+    found, change = extrapolated(values)
+    unit = VISCOSITY * RADIUS * length**3 / CLEARANCE**2
+    left = 1.0 - ratio**2
+    radial, across = ratio**2 / left**2, np.pi * ratio / (4.0 * left**1.5)
+    exact = unit * np.array([-SPEED * radial, SPEED * across, 2 * across / (ratio * CLEARANCE)])
+    # in the short film's edge layers, R/L below one node, nothing is resolved
+    assert np.all(np.abs(found - exact) < 0.1 * change + 1e-3 * np.abs(exact))
+
+
+def test_surface_carries_the_same_oil_through_a_void():
+    """Long film: (1 − θ) h keeps its value from where the film broke, where p and p' vanish."""
+    long = {"length": 1e4 * RADIUS, "grooves": [np.pi / 2], "width": 10.0}
+    # the film is thickest in the groove, so that both films begin there
+    angle = np.radians(274.0)
+    place = 0.6 * CLEARANCE * np.array([np.cos(angle), np.sin(angle)])
+    conserving = film(**long, cavitation="mass-conserving").state(place, STILL, SPEED)
+    void = conserving.solution.fraction[:, 0]
+    broken = np.flatnonzero(void > 0.0)
+    start = broken[0]
+    assert np.array_equal(broken, np.arange(start, broken[-1] + 1))
+    # the void that a face lets through is that of the cell before it
+    carried = (1.0 - void[broken]) * conserving.solution.equation.heights[2, broken]
+    assert carried == pytest.approx(carried[0], rel=1e-12)
+    between = conserving.heights[start - 1 : start + 1]
+    assert between.min() < carried[0] < between.max()
+    reynolds = film(**long).state(place, STILL, SPEED)
+    assert conserving.force == pytest.approx(reynolds.force, rel=2e-3)
+
+
+# ------------------------------------------------------------------ balances
+
+
+def test_power_that_goes_in_is_dissipated():
+    """Ω T − F · q̇ = ∫∫ (h³ |∇p|²/12μ + μ R² Ω²/h) of a film that bears tension."""
+    count = 6
+    full = film(preload=0.3, cavitation="none", nodes=60, axial_nodes=count)
+    place, velocity = np.array([2e-5, 3e-5]), np.array([2e-3, -4e-3])
+    state = full.state(place, velocity, SPEED)
+    grid, (height, left, right) = full.grid, state.solution.equation.heights
+    p, step = state.solution.pressure, 0.5 * full.length / RADIUS / count
+    width = step * np.array([1.0, *[2.0] * (count - 1)])
+    after = np.where(grid.at_right[:, None], p[grid.right], 0.0) - p
+    first = ~grid.at_left
+    flow = np.sum((after**2 @ width) * right**3 / grid.step)
+    flow += np.sum((p[first] ** 2 @ width) * left[first] ** 3 / grid.step[first])
+    along = np.diff(np.hstack([p, np.zeros((len(p), 1))]), axis=1) ** 2
+    flow += 2.0 / step * np.sum(along.sum(axis=1) * height**3 * grid.step)
+    shear = 0.0
+    for pad in full.pads:
+        angles = np.linspace(pad.start, pad.start + pad.arc, 2001)
+        u = np.stack([np.cos(angles), np.sin(angles)])
+        shear += np.trapezoid(1.0 / (CLEARANCE - (place - pad.center) @ u), angles)
+    shear *= VISCOSITY * RADIUS**3 * SPEED**2 * full.length
+    dissipated = flow / (12.0 * VISCOSITY) + shear
+    # the first part is the grid's own to round-off; (Δφ)²/12 of the second
+    assert state.power_loss - state.force @ velocity == pytest.approx(dissipated, rel=1e-3)
+    slow = full.state(place, velocity, 0.0)
+    shares = full.state(place, 0.5 * velocity, 0.0)
+    assert slow.force == pytest.approx(2.0 * shares.force, rel=1e-12)
+
+
+@pytest.mark.parametrize("speed", [SPEED, -SPEED])
+def test_oil_is_balanced_and_nowhere_pulled(speed):
+    """p ≥ 0, 0 ≤ θ ≤ 1, p θ = 0 and no cell gains oil, with voids that the surface carries."""
+    conserving = film(width=10.0, cavitation="mass-conserving", supply_pressure=1e5, axial_nodes=4)
+    state = conserving.state([-5e-5, 4e-5], STILL, speed)
+    solution = state.solution
+    pressure, void = solution.pressure, solution.void
+    assert 0.02 < np.mean(void > 0.0) < 0.9
+    assert min(pressure.min(), void.min()) >= 0.0
+    assert void.max() <= 1.0
+    assert not np.any(pressure * void)
+    equation = solution.equation
+    kept = equation.residual(pressure, void, equation.heights**3, equation.heights, equation.rates)
+    carried = equation.source * equation.speed * CLEARANCE * conserving.grid.axial.weights
+    assert np.all(np.abs(kept) < 1e-11 * np.abs(carried))
+
+
+# ------------------------------------------------------------------ derivatives, symmetries
+
+
+@pytest.mark.parametrize("speed", [SPEED, -SPEED])
+@pytest.mark.parametrize("cavitation", ["none", "half-sommerfeld", "reynolds", "mass-conserving"])
+def test_coefficients_are_derivatives_of_the_force(cavitation, speed):
+    pads = [Pad(0.2, 1.9, 1e-4, [1e-5, 0.0]), Pad(2.3, 3.4, 1.2e-4, [0.0, 2e-5])]
+    skew = OilFilm(RADIUS, 0.06, VISCOSITY, pads, cavitation, 5e4, nodes=60, axial_nodes=3)
+    state = skew.state([3e-5, -4e-5], STILL, speed)
+    stiffness, damping = state.coefficients()
+    moved = 1e-6 * CLEARANCE * np.array([np.eye(2), -np.eye(2)])
+    ahead, behind = ([skew.force(state.position + e, STILL, speed) for e in side] for side in moved)
+    differences = -(np.array(ahead) - behind).T / (2e-6 * CLEARANCE)
+    # round-off 1e-16/1e-6, and the square of the step; a node that changes sides adds its own
+    assert stiffness == pytest.approx(differences, abs=1e-5 * np.abs(stiffness).max())
+    if cavitation == "mass-conserving":
+        with pytest.raises(ValueError, match="velocity: a film"):
+            skew.force(state.position, [1e-3, 0.0], speed)
+        return
+    moved = 1e-7 * CLEARANCE * SPEED * np.eye(2)
+    ahead = [skew.force(state.position, e, speed) - state.force for e in moved]
+    differences = -np.array(ahead).T / (1e-7 * CLEARANCE * SPEED)
+    assert damping == pytest.approx(differences, abs=1e-5 * np.abs(damping).max())
+
+
+def test_rigid_mass_is_at_the_limit_of_whirl():
+    state = carried(film(), 0.9)
+    stiffness, damping = state.coefficients()
+    mass = state.critical_mass()
+    system = np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness / mass, -damping / mass]])
+    growth = np.linalg.eigvals(system).real
+    assert np.max(growth) == pytest.approx(0.0, abs=1e-9 * np.max(np.abs(growth)))
+    assert film(preload=0.6).equilibrium(30.0, [-3e4, 0.0]).critical_mass() == np.inf
+
+
+# ------------------------------------------------------------------ what is refused, picture
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: grooved_pads(-1e-4), "clearance: needs a finite number [m] > 0"),
+        (lambda: grooved_pads(1e-4, preload=0.5), "preload: needs grooves"),
+        (lambda: grooved_pads(1e-4, [0.0, 0.1], 0.2), "grooves: need ascending"),
+        (lambda: grooved_pads(1e-4, [0.0]), "groove_width: a single groove without width"),
+        (lambda: film(preload=1.0), "preload: needs a finite number ≥ 0 and < 1"),
+        (lambda: OilFilm(RADIUS, 0.05, 0.02, []), "pads: needs one at least"),
+        (lambda: OilFilm(RADIUS, 0.05, 0.02, [Pad(0, 4, 1e-4), Pad(3, 1, 1e-4)]), "pads: overlap"),
+        (lambda: OilFilm(RADIUS, 0.05, 0.02, [Pad(0, 4, 1e-4, [1e-3, 0])]), "pads: their centers"),
+        (lambda: film(grooves=(), supply_pressure=1e5), "supply_pressure: needs pads"),
+        (lambda: film(grooves=(), cavitation="mass-conserving"), "cavitation: 'mass-conserving'"),
+        (lambda: film(axial_nodes=1), "axial_nodes: needs 0"),
+        (lambda: OilFilm(RADIUS, 0.05, 0.02, grooved_pads(RADIUS)), "pads: need clearances far"),
+        (lambda: film().force([1.1e-4, 0.0], STILL, 1.0), "displacement: [0.00011, 0.0"),
+        (lambda: film().equilibrium(1.0, [0.0, 0.0]), "load: needs a force other than 0"),
+        (lambda: film().equilibrium(0.0, [1e3, 0.0]), "speed: needs a number other than 0"),
+        (lambda: film().equilibrium(10.0, [1e9, 0.0]), "load: 1e+09 N at 10 rad/s presses"),
+    ],
+)
+def test_bad_input_is_refused(call, words):
+    with pytest.raises(ValueError, match=re.escape(words)):
+        call()
+
+
+def test_picture_shows_the_whole_film():
+    ax = plot_pressure(carried(film(), 0.5))
+    assert ax.get_xlim()[1] - ax.get_xlim()[0] == pytest.approx(340.0, abs=0.1)
+    assert ax.get_ylim() == pytest.approx((-25.0, 25.0))

@@ -1,0 +1,226 @@
+"""Journal bearings: film, equilibrium, coefficients, in scenes and in linear analyses."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+from point_rotors import ring_rotor
+from scipy.integrate import quad
+
+from exudyn_rotor import (
+    JournalBearing,
+    OilFilm,
+    ShortJournalBearing,
+    add_rotor,
+    add_supports,
+    bearing_loads,
+    grooved_pads,
+    linear_model,
+    recommended_settings,
+    stability,
+    stability_threshold,
+    steady_state,
+)
+from exudyn_rotor.bearings.support import NoCoefficientsError
+
+SIZE = {"radius": 0.05, "length": 0.03, "clearance": 1e-4, "viscosity": 0.1}
+SPEED = 1500.0 * np.pi / 30.0
+
+
+def bearing(load=(0.0, -525.0), interface="left", **changes):
+    return ShortJournalBearing(interface=interface, load=load, **(SIZE | changes))
+
+
+@pytest.mark.parametrize("speed", [SPEED, -SPEED])
+def test_power_that_goes_into_a_short_film_is_dissipated(speed):
+    """Shear μ (RΩ)²/h all around, and flow h³ (∂p/∂z)²/12 μ where the film carries."""
+    place, velocity = np.array([5e-5, -6e-5]), np.array([5e-3, 4e-3])
+    radius, length, c, mu = (SIZE[n] for n in ("radius", "length", "clearance", "viscosity"))
+    (x, y), (vx, vy) = place, velocity
+
+    def dissipated(angle):
+        h = c - x * np.cos(angle) - y * np.sin(angle)
+        slope = x * np.sin(angle) - y * np.cos(angle)
+        fed = 0.5 * speed * slope - vx * np.cos(angle) - vy * np.sin(angle)
+        flow = mu * length**3 / h**3 * min(fed, 0.0) ** 2  # ∂p/∂z = 12 μ fed z/h³
+        return radius * (mu * length * (radius * speed) ** 2 / h + flow)
+
+    start = np.arctan2(vy - 0.5 * speed * x, vx + 0.5 * speed * y) - np.pi / 2.0
+    halves = (start, start + np.pi), (start + np.pi, start + 2.0 * np.pi)
+    expected = sum(quad(dissipated, *each, epsrel=1e-11)[0] for each in halves)
+    *force, torque = bearing().law_with_torque(*place, *velocity, 0.0, speed)
+    assert -np.dot(force, velocity) - torque * speed == pytest.approx(expected, rel=1e-9)
+
+
+def test_equilibrium_and_coefficients_of_a_published_bearing():
+    """Friswell, Penny, Garvey, Lees: Dynamics of Rotating Machines (2010), Example 5.5.1."""
+    K, D = bearing().coefficients(SPEED)
+    assert bearing().eccentricity_ratio(SPEED) == pytest.approx(0.2663, abs=5e-5)
+    np.testing.assert_allclose(K / 1e6, [[12.81, 16.39], [-25.06, 8.815]], atol=6e-3)
+    np.testing.assert_allclose(D / 1e3, [[232.9, -81.92], [-81.92, 294.9]], atol=6e-2)
+
+
+@pytest.mark.parametrize("speed", [SPEED, -SPEED])
+@pytest.mark.parametrize("load", [(0.0, -525.0), (3e4, 1e4), (1.0, 0.0)])
+def test_coefficients_are_the_derivatives_of_the_force(speed, load):
+    one = bearing(load)
+    rest = one.equilibrium(speed)
+    still = np.zeros(2)
+    np.testing.assert_allclose(one.force(rest, still, speed), np.negative(load), rtol=0.0,
+                               atol=1e-9 * np.hypot(*load))  # fmt: skip
+    K, D = one.coefficients(speed)
+    step = 1e-5 * (SIZE["clearance"] - np.hypot(*rest))
+    for matrix, move in ((K, (step, 0.0)), (D, (0.0, step * abs(speed)))):
+        columns = [
+            [one.force(rest + sign * move[0] * n, sign * move[1] * n, speed) for sign in (1, -1)]
+            for n in np.eye(2)
+        ]
+        found = -np.array([a - b for a, b in columns]).T / (2.0 * max(move))
+        np.testing.assert_allclose(found, matrix, atol=1e-6 * np.abs(matrix).max())
+
+
+@pytest.mark.parametrize("load", [(0.0, 0.0), (3e-16, -4e-16)], ids=["none", "rounding"])
+def test_a_centred_journal_without_load(load):
+    """Cross stiffness half the damping times the speed: whirl at half the speed at the limit."""
+    K, D = bearing(load).coefficients(SPEED)
+    size = SIZE["viscosity"] * SIZE["radius"] * (SIZE["length"] / SIZE["clearance"]) ** 3
+    np.testing.assert_allclose(D, 0.5 * np.pi * size * np.eye(2), rtol=1e-12)
+    np.testing.assert_allclose(K, 0.5 * SPEED * D[0, 0] * np.array([[0, 1], [-1, 0]]), atol=1e-6)
+
+
+def test_power_loss_of_a_light_load_is_petroffs():
+    """2π μ Ω² R³ L/c for a centred journal; H. Petroff 1883."""
+    petroff = 2.0 * np.pi * 0.1 * SPEED**2 * 0.05**3 * 0.03 / 1e-4
+    assert bearing((0.0, 0.0)).power_loss(SPEED) == pytest.approx(petroff, rel=1e-12)
+    assert bearing().power_loss(SPEED) > 1.02 * petroff
+
+
+GRAVITY = [0.0, -9.81, 0.0]
+
+
+def rigid_rotor(mass=107.0):
+    """Return a rigid rotor with journals at z = ±0.15 m."""
+    rotor = ring_rotor(0.1, 0.15, mass)
+    return rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
+
+
+def journals(rotor, **changes):
+    loads = bearing_loads(rotor, ["left", "right"], GRAVITY)
+    return [
+        bearing(load, name, **changes) for name, load in zip(("left", "right"), loads, strict=True)
+    ]
+
+
+def limit_of_a_rigid_rotor(ratio):
+    """Return c Ω² m/W at the limit of stability of a mass on one short bearing.
+
+    By the Routh criterion (J. W. Lund 1966) with the dimensionless coefficients a, b of Friswell
+    et al., Eqs. (5.85): ``κ = (a_xx b_yy + a_yy b_xx − a_xy b_yx − a_yx b_xy)/(b_xx + b_yy)``,
+    whirl ratio ``ν² = ((a_xx − κ)(a_yy − κ) − a_xy a_yx)/(b_xx b_yy − b_xy b_yx)``, ``κ/ν²``.
+    """
+    e2, p2 = ratio**2, np.pi**2
+    root = np.sqrt(1.0 - e2)
+    size = (p2 * (1.0 - e2) + 16.0 * e2) ** -1.5
+    a = size * np.array([
+        [4 * (p2 * (2 - e2) + 16 * e2), np.pi * (p2 * (1 - e2) ** 2 - 16 * e2**2) / (ratio * root)],
+        [-np.pi * (p2 * (1 - e2) * (1 + 2 * e2) + 32 * e2 * (1 + e2)) / (ratio * root),
+         4 * (p2 * (1 + 2 * e2) + 32 * e2 * (1 + e2) / (1 - e2))],
+    ])  # fmt: skip
+    cross = -8 * (p2 * (1 + 2 * e2) - 16 * e2)
+    b = size * np.array([
+        [2 * np.pi * root * (p2 * (1 + 2 * e2) - 16 * e2) / ratio, cross],
+        [cross, 2 * np.pi * (p2 * (1 - e2) ** 2 + 48 * e2) / (ratio * root)],
+    ])  # fmt: skip
+    k = (a[0, 0] * b[1, 1] + a[1, 1] * b[0, 0] - a[0, 1] * b[1, 0] - a[1, 0] * b[0, 1]) / np.trace(
+        b
+    )
+    return k * np.linalg.det(b) / np.linalg.det(a - k * np.eye(2))
+
+
+def test_stability_limit_of_a_rigid_rotor_is_the_published_one():
+    rotor = rigid_rotor()
+    supports = journals(rotor)
+    found = stability_threshold(rotor, 50.0, 1500.0, supports=supports)
+    limit = found.values[0]
+    ratio = supports[0].eccentricity_ratio(limit)
+    expected = np.sqrt(limit_of_a_rigid_rotor(ratio) * 9.81 / SIZE["clearance"])
+    assert limit == pytest.approx(expected, rel=1e-5)
+    # stable at any speed above an eccentricity of 0.756 (A. G. Holmes 1960)
+    assert limit_of_a_rigid_rotor(0.7555) > 0.0 > limit_of_a_rigid_rotor(0.7565)
+
+
+def scene(rotor, bearings, **options):
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, **({"gravity": GRAVITY} | options))
+    added = add_supports(body, bearings)
+    mbs.Assemble()
+    return mbs, body, added
+
+
+def test_scene_and_linear_rotor_agree():
+    rotor = rigid_rotor()
+    bearings = journals(rotor)
+    mbs, body, _ = scene(rotor, bearings, spin=SPEED)
+    growths = [
+        stability(target, [SPEED, 2.0 * SPEED]).growth
+        for target in (linear_model(mbs, body=body), linear_model(rotor, supports=bearings))
+    ]
+    np.testing.assert_allclose(*growths, rtol=1e-6)
+
+
+def test_a_run_begins_in_the_equilibrium_and_stays_there():
+    rotor = rigid_rotor()
+    bearings = journals(rotor)
+    mbs, body, added = scene(rotor, bearings, spin=SPEED)
+    body.start_from(steady_state(body).state())
+    settings = recommended_settings(end_time=0.05, step=1e-4)
+    settings.solution.file.write = False
+    mbs.SolveDynamic(settings)
+    for bearing, connector in zip(bearings, added, strict=True):
+        place, _, force = connector.values()
+        apart = np.abs(place[:2] - bearing.equilibrium(SPEED)).max()
+        assert apart < 1e-5 * SIZE["clearance"]
+        np.testing.assert_allclose(-force[:2], bearing.load, atol=1e-3 * 525.0)
+
+
+def test_refused_input():
+    for changes, match in (
+        ({"clearance": -1e-4}, "clearance: needs a finite number"),
+        ({"clearance": 0.06}, "clearance: needs the radial clearance, far below the radius"),
+        ({"viscosity": 0.0}, "viscosity: needs a finite number"),
+        ({"load": (1.0, 2.0, 3.0)}, "load: needs"),
+    ):
+        with pytest.raises(ValueError, match=match):
+            bearing(**changes)
+    with pytest.raises(ValueError, match="the journal would touch"):
+        bearing().force([1e-4, 0.0], [0.0, 0.0], SPEED)
+    with pytest.raises(ValueError, match="without rotation the film does not carry"):
+        bearing().coefficients(0.0)
+    with pytest.raises(ValueError, match="leaves no film"):
+        bearing([1e22, 0.0]).coefficients(SPEED)
+    rotor = rigid_rotor()
+    with pytest.raises(ValueError, match="'left': linear analyses need its static load"):
+        stability(rotor, [SPEED], supports=[bearing(load=None)])
+    nothing = r"bearing at 'left': at 0 rad/s its film carries nothing; .* carries from 1 rad/s on"
+    with pytest.raises(NoCoefficientsError, match=nothing):
+        journals(rotor)[0].linearised().parts(0.0)
+    with pytest.raises(ValueError, match=nothing):
+        stability(rotor, [0.0], supports=journals(rotor))
+
+
+def film_bearing(interface="left", load=(0.0, -525.0), **changes):
+    pads = grooved_pads(SIZE["clearance"], [], 0.0)
+    options = {"cavitation": "half-sommerfeld", "nodes": 240, "axial_nodes": 0}
+    sizes = {name: SIZE[name] for name in ("radius", "length", "viscosity")}
+    return JournalBearing(
+        interface=interface, load=load, film=OilFilm(pads=pads, **(sizes | options | changes))
+    )
+
+
+def test_a_narrow_film_of_finite_length_is_the_short_bearing():
+    """L/D = 0.05; what the short bearing leaves out falls with (L/D)²."""
+    long, short = film_bearing(length=0.005, load=(0.0, -1.0)), bearing((0.0, -1.0), length=0.005)
+    np.testing.assert_allclose(
+        long.equilibrium(SPEED), short.equilibrium(SPEED), atol=5e-3 * SIZE["clearance"]
+    )
+    for found, expected in zip(long.coefficients(SPEED), short.coefficients(SPEED), strict=True):
+        np.testing.assert_allclose(found, expected, atol=0.02 * np.abs(expected).max())

@@ -1,0 +1,129 @@
+"""Films that conserve mass: their voids remember the motion, in coefficients and in scenes."""
+
+import numpy as np
+import pytest
+from void_films import (
+    CLEARANCE,
+    SPEED,
+    bearings,
+    exponent,
+    kick,
+    oil,
+    oscillations,
+    rotor,
+    scene,
+    solve,
+)
+
+from exudyn_rotor import (
+    steady_state,
+)
+from exudyn_rotor.bearings.journal_bearing import RememberingLaw
+
+
+def circle(place, radius, whirl):
+    """Return a motion (x, y, ẋ, ẏ) by time about a place, on a circle."""
+
+    def motion(t):
+        c, s = radius * np.cos(whirl * t), radius * np.sin(whirl * t)
+        return place[0] + c, place[1] + s, -whirl * s, whirl * c
+
+    return motion
+
+
+def followed(film, motion, step, count, speed=SPEED):
+    """Return the forces (count, 2) on a journal that moves as given, and the law at the end."""
+    law, forces = RememberingLaw(film, torque=False), []
+    for i in range(count):
+        law.begin(i * step, *motion(i * step), speed, (i + 1) * step)
+        forces.append(law(*motion((i + 1) * step), 0.0, speed))
+    return np.array(forces), law
+
+
+# ------------------------------------------------------------------ the film alone
+
+
+@pytest.mark.parametrize("ratio", [0.5, -1.0])
+def test_coefficients_are_those_of_small_whirl_in_time(ratio):
+    """Steps of implicit Euler, first order in the step, extrapolated to its second."""
+    film = oil()
+    state = film.equilibrium(SPEED, [0.0, -525.0])
+    whirl, radius = ratio * SPEED, 1e-7 * CLEARANCE
+
+    def amplitude(count):
+        step, turns = 2.0 * np.pi / abs(whirl) / count, 4
+        motion = circle(state.position, radius, whirl)
+        force = followed(film, motion, step, turns * count)[0][-count:] - state.force
+        angle = whirl * step * (np.arange(count) + 1.0)
+        return np.exp(-1j * angle) @ force * 2.0 / count / radius
+
+    coarse, fine = amplitude(60), amplitude(120)
+    stiffness, damping = state.coefficients(abs(ratio))
+    # x = r e^{iνt}, y = −i x, as the real part of a motion exp(i|ν|t) for either direction
+    turn = np.array([1.0, -1j])
+    expected = -(stiffness + 1j * whirl * damping) @ turn
+    size = np.abs(expected).max()
+    assert np.abs(2.0 * fine - coarse - expected).max() < 2e-3 * size
+    other = state.coefficients(0.25 * abs(ratio))
+    assert np.abs(other[1] - damping).max() > 0.1 * np.abs(damping).max()
+
+
+def test_oil_is_balanced_over_a_cycle_of_large_motion():
+    """What flows in at the groove and out at the ends and edges, against the oil between."""
+    film = oil(axial_nodes=3, nodes=48, supply_pressure=2e4)
+    count, whirl = 50, 0.5 * SPEED
+    step = 2.0 * np.pi / whirl / count
+    motion = circle((0.0, -3e-5), 5e-5, whirl)
+    _, law = followed(film, motion, step, count)
+    grid, axial = film.grid, film.grid.axial
+    unit = 12.0 * film.viscosity * film.radius**2
+
+    def content(t, voids):
+        h = film._heights(np.array(motion(t)[:2]))[0]
+        return unit * grid.step @ (h[:, None] - voids) @ axial.weights
+
+    before = content(count * step, law.voids), 0.0
+    out, largest = 0.0, 0.0
+    for i in range(count, 2 * count):
+        x, y, vx, vy = motion((i + 1) * step)
+        law.begin(i * step, *motion(i * step), SPEED, (i + 1) * step)
+        if i == count:
+            before = content(i * step, law.voids)
+        state = law._state(np.array([x, y]), np.array([vx, vy]), SPEED)
+        p, void = state.solution.pressure, state.solution.fraction
+        _, left, right = state.solution.equation.heights
+        first, last = 0, -1
+        flow = 0.5 * SPEED * unit * axial.weights
+        edge = film.supply_pressure * axial.weights
+        through = right[last] * flow @ (1.0 - void[last]) - left[first] * flow.sum()
+        through += right[last] ** 3 * (axial.mass @ p[last] - edge.sum()) / grid.step[last]
+        through += left[first] ** 3 * (axial.mass @ p[first] - edge.sum()) / grid.step[first]
+        ends = (grid.step * state.heights**3) @ p @ axial.stiffness.sum(axis=1)
+        out += step * (through + ends)
+        largest = max(largest, np.abs(step * ends))
+    law.begin(2 * count * step, *motion(2 * count * step), SPEED, 2 * count * step)
+    change = content(2 * count * step, law.voids) - before
+    assert 0.1 < np.mean(law.voids > 0.0) < 0.9
+    assert abs(change + out) < 1e-11 * count * largest
+
+
+# ------------------------------------------------------------------ scenes
+
+
+def test_small_motion_in_a_scene_decays_as_the_linear_film_says():
+    """Exponent of the film's Z(s) with voids by steps; the integrator slows by (sh)²/12."""
+    reduced = rotor()
+    supports = bearings(reduced)
+    mbs, body, sensor = scene(reduced, supports, spin=SPEED)
+    body.start_from(steady_state(body).state())
+    state = supports[0]._state(SPEED, None)
+
+    kick(body, [0.1, 0.0, 0.0])
+    step = 2e-4
+    solve(mbs, 0.07, step)
+    record = mbs.GetSensorStoredData(sensor)
+    found = max(oscillations(record[record[:, 0] > 0.02][::5, 1:3], 5 * step), key=np.real)
+    s = exponent(state, 53.5, 0.5j * SPEED, step)
+    expected = s * (1.0 - (abs(s) * step) ** 2 / 12.0)
+    assert found.real == pytest.approx(expected.real, rel=1e-2)
+    assert found.imag == pytest.approx(expected.imag, rel=1e-4)

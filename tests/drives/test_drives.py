@@ -1,0 +1,190 @@
+"""Motors and drag in scenes: start-up and coast-down in closed form, energy, axes, refusals."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+from exudyn.rigidBodyUtilities import InertiaCuboid
+from rings import J, Z, rings, run, speed_of
+
+from exudyn_rotor import (
+    DirectCurrentMotor,
+    Drag,
+    InductionMotor,
+    LimitedPower,
+    Support,
+    TorqueCurve,
+    add_drive,
+    add_rotor,
+    add_supports,
+    energy_balance,
+    linear_model,
+    stability,
+)
+
+MOTOR = DirectCurrentMotor(stall_torque=5.0, no_load_speed=100.0)
+
+
+def from_slip(slip, motor):
+    """Return the time until a slip: dΩ/dt = T/J integrated, with T by Kloss."""
+    most, size = motor.breakdown_slip, J * motor.synchronous_speed / motor.breakdown_torque
+    return 0.5 * size * ((1.0 - slip**2) / (2.0 * most) - most * np.log(slip))
+
+
+INDUCTION = InductionMotor(breakdown_torque=8.0, breakdown_slip=0.25, synchronous_speed=100.0)
+LIMITED = LimitedPower(power=100.0, stall_torque=4.0)
+CLOSED = {  # drive, speed at the start, time, speed then
+    "direct current": (MOTOR, 0.0, 1.0, 100.0 * (1.0 - np.exp(-1.0))),
+    "induction": (INDUCTION, 0.0, from_slip(0.15, INDUCTION), 85.0),
+    "limited power": (LIMITED, 0.0, 1.0, np.sqrt(25.0**2 + 2.0 * 100.0 / J * (1.0 - J * 25 / 4))),
+    "table": (TorqueCurve(([0.0, 100.0], [5.0, 0.0])), 0.0, 1.0, 100.0 * (1.0 - np.exp(-1.0))),
+    "function of time": (TorqueCurve(lambda speed, time: 4.0 * time), 0.0, 1.0, 2.0 / J),
+    "dry": (Drag(constant=2.0, smooth_speed=1e-3), 60.0, 1.0, 60.0 - 2.0 / J),
+    "linear": (Drag(linear=0.05), 60.0, 1.0, 60.0 * np.exp(-1.0)),
+    "quadratic": (Drag(quadratic=1e-3), 60.0, 1.0, 1.0 / (1.0 / 60.0 + 1e-3 / J)),
+}
+
+
+@pytest.mark.parametrize("at", [None, "left"])
+@pytest.mark.parametrize("name", CLOSED)
+def test_start_and_coast_down_in_closed_form(name, at):
+    """J dΩ/dt = T(Ω, t); the rule is of second order, its error some (h/τ)²/12."""
+    drive, start, time, expected = CLOSED[name]
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rings().reduce(0), translation="none", initial_speed=start)
+    add_drive(body, drive, at)
+    run(mbs, time, 150)
+    assert speed_of(body) == pytest.approx(expected, rel=2e-5)
+
+
+def eccentric(axis=Z, rotation=None, at=None, steps=60, modes=0):
+    """Start an eccentric rotor on springs, a full one without `modes`; return scene and sensors."""
+    mbs = exu.SystemContainer().AddSystem()
+    rotor = rings(axis, heavy=0.05)
+    rotor = rotor if modes is None else rotor.reduce(modes)
+    body = add_rotor(mbs, rotor, rotation=rotation, initial_speed=20.0)
+    add_supports(body, [Support(name, 1e5 * np.eye(3)) for name in ("left", "right")])
+    motor = add_drive(body, MOTOR, at)
+    drag = add_drive(body, Drag(quadratic=2e-4, linear=0.01), "right" if at is None else None)
+    sensors = [motor.add_sensor(), drag.add_sensor()]
+    if modes is not None:
+        body.start_recording()
+    run(mbs, 0.2, steps, body)
+    return mbs, body, sensors
+
+
+@pytest.mark.parametrize("at", [None, "left"])
+def test_energy_is_what_the_drives_give(at):
+    """Of the rotor: the work of drives and springs; the integrals are of second order."""
+    errors = []
+    for steps in (60, 120):
+        mbs, body, sensors = eccentric(at=at, steps=steps)
+        work = 0.0
+        for sensor in sensors:
+            time, _, power = mbs.GetSensorStoredData(sensor)[1:].T
+            work += np.trapezoid(power, time)
+        springs = 0.0
+        for support in body.supports:
+            u = mbs.GetObjectOutput(support.objects[0], exu.OutputVariableType.Displacement)
+            springs += 0.5e5 * u @ u
+        balance = energy_balance(body)
+        errors.append((balance.loads[-1] + springs - work) / work)
+        assert balance.error[-1] == pytest.approx(0.0, abs=2e-4 * work)
+    assert abs(errors[0]) < 2e-3
+    assert abs(errors[1]) < 0.35 * abs(errors[0])
+
+
+def test_the_stator_takes_the_reaction():
+    """Rotor and a free housing: no angular momentum together."""
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rings().reduce(0), translation="none", position=[0.0, 0.0, 0.15])
+    inertia = InertiaCuboid(density=2500.0, sideLengths=[0.3, 0.2, 0.1])
+    housing = mbs.CreateRigidBody(inertia=inertia, nodeType=exu.NodeType.RotationRxyz)
+    add_drive(body, MOTOR, "left", base=housing)
+    run(mbs, 0.5, 50)
+    omega = mbs.GetObjectOutputBody(housing, exu.OutputVariableType.AngularVelocity, [0, 0, 0])
+    back = inertia.GetInertia6D()[2]
+    assert back * omega[2] == pytest.approx(-J * speed_of(body), rel=1e-9)
+    both = J * back / (J + back)
+    relative = 100.0 * (1.0 - np.exp(-0.5 * 0.05 / both))
+    assert speed_of(body) - omega[2] == pytest.approx(relative, rel=1e-4)
+
+
+def test_refused_calls_leave_the_scene_as_it_was():
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rings().with_interface("point", [0]).reduce(0))
+    driven = add_rotor(mbs, rings().reduce(0), name="driven", spin=10.0)
+    bare = add_rotor(mbs, rings().reduce(0), name="bare", marker_body=False)
+    ground = mbs.CreateGround()
+
+    def counts():
+        data = mbs.systemData
+        return data.NumberOfObjects(), data.NumberOfMarkers(), data.NumberOfNodes()
+
+    before = counts()
+    for error, match, arguments in (
+        (TypeError, "body: needs RotorBody", (mbs, MOTOR)),
+        (TypeError, "drive: needs Drive", (body, 5.0)),
+        (ValueError, "body: rotor 'driven' has a prescribed spin", (driven, MOTOR)),
+        (ValueError, "body: rotor 'bare' was added with marker_body=False", (bare, MOTOR)),
+        (ValueError, "at: 'top' is unknown", (body, MOTOR, "top")),
+        (ValueError, "at: 'point' is a single node", (body, MOTOR, "point")),
+        (ValueError, "base: a drive on the whole rotor", (body, MOTOR, None, ground)),
+        (TypeError, "takes 1 positional argument", (body, TorqueCurve(lambda speed: 5.0))),
+        (TypeError, "curve: its torque: needs", (body, TorqueCurve(lambda speed, time: None))),
+        (ValueError, "curve: its torque: needs", (body, TorqueCurve(lambda speed, t: np.nan))),
+        (ValueError, "its table holds 1 to 2 rad/s, not 0", (body, TorqueCurve(([1, 2], [3, 4])))),
+    ):
+        with pytest.raises(error, match=match):
+            add_drive(*arguments)
+        assert counts() == before
+        assert body.drives == []
+
+
+def test_a_run_beyond_a_table_stops():
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rings().reduce(0), translation="none")
+    add_drive(body, TorqueCurve(([0.0, 5.0], [5.0, 5.0])))
+    with pytest.raises(Exception, match="curve: its table holds 0 to 5 rad/s"):
+        run(mbs, 0.2, 20)
+    assert TorqueCurve(([0.0, 5.0], [5.0, 4.0]), extrapolate=True).torque(9.0) == 4.0
+
+
+@pytest.mark.parametrize(
+    ("make", "match"),
+    [
+        (lambda: Drag(), "drag: needs constant, linear or quadratic"),
+        (lambda: Drag(linear=-1.0), "linear: needs a finite number"),
+        (lambda: LimitedPower(power=1.0, stall_torque=0.0), "stall_torque: needs a number"),
+        (
+            lambda: InductionMotor(breakdown_torque=1, breakdown_slip=1.2, synchronous_speed=9),
+            "breakdown_slip: needs",
+        ),
+        (lambda: TorqueCurve(([1.0, 0.0], [1.0, 2.0])), "curve: its speeds: needs"),
+        (lambda: TorqueCurve(([0.0, 1.0], [1.0])), "curve: its torques: needs"),
+    ],
+)
+def test_bad_numbers_are_refused(make, match):
+    with pytest.raises(ValueError, match=match):
+        make()
+
+
+@pytest.mark.parametrize("at", ["left", None])
+def test_linear_analyses_of_a_scene_with_a_motor(at):
+    """At an interface −dT/dΩ damps the twist there; on the whole spin it moves nothing else.
+
+    At the speed without load, as a torque itself acts on shafts that bend.
+    """
+    rotor, slope = rings().reduce(24), MOTOR.stall_torque / MOTOR.no_load_speed
+    held = [Support(name, 2e6 * np.eye(3), 50.0 * np.eye(3)) for name in ("left", "right")]
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, spin="free", initial_speed=MOTOR.no_load_speed)
+    add_supports(body, held)
+    add_drive(body, MOTOR, at)
+    mbs.Assemble()
+    damper = [Support(at, tilt_damping=np.diag([0.0, 0.0, slope]))] if at else []
+    models = linear_model(mbs, body=body), linear_model(rotor, supports=[*held, *damper])
+    found, expected = (
+        stability(one, [MOTOR.no_load_speed], accuracy=None).exponents[0] for one in models
+    )
+    distances = np.abs(found[:, None] - expected).min(axis=1)
+    assert (distances / np.abs(found)).max() < 1e-6

@@ -1,0 +1,65 @@
+"""Gears and couplings between spins that are both prescribed."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+from rings import rings, run
+from scipy.spatial.transform import Rotation
+
+from exudyn_rotor import (
+    CardanJoint,
+    ConstantSpeed,
+    FlexibleCoupling,
+    GearMesh,
+    add_rotor,
+    connect_rotors,
+)
+
+FIRST = 40.0  # rad/s
+FLIP = Rotation.from_euler("x", np.pi).as_matrix()  # e becomes −e
+CONNECTIONS = {  # what the second needs about the axis of the first
+    "gears": (GearMesh(radii=[0.03, 0.06], stiffness=1e6), -20.0),
+    "coupling": (FlexibleCoupling(torsion=1e3), 40.0),
+    "cardan": (CardanJoint(joint_angle=0.0, stiffness=1e3), 40.0),
+}
+
+
+def scene(connection, spin, turn=None, first=FIRST):
+    """Return the scene and two rotors whose ends are where the connection needs them."""
+    mbs, rotor = exu.SystemContainer().AddSystem(), rings().reduce(0)
+    gears = isinstance(connection, GearMesh)
+    place = [connection.center_distance, 0.0, 0.3] if gears else [0.0, 0.0, 0.3]
+    end = "right" if turn is not None else "left"  # the same place, turned over
+    one = add_rotor(mbs, rotor, name="one", spin=first, translation="none")
+    two = add_rotor(
+        mbs, rotor, name="two", spin=spin, translation="none", position=place, rotation=turn
+    )
+    return mbs, (connection, one, "right", two, end)
+
+
+@pytest.mark.parametrize(
+    ("name", "turn"),
+    [*((name, None) for name in CONNECTIONS), ("gears", FLIP), ("coupling", FLIP)],
+    ids=[*CONNECTIONS, "gears, turned over", "coupling, turned over"],
+)
+def test_speeds_that_would_wind_up_are_refused(name, turn):
+    connection, needed = CONNECTIONS[name]
+    needed = needed if turn is None else -needed
+    for speed in (-needed, 0.0, 1.001 * needed):
+        mbs, arguments = scene(connection, speed, turn)
+        before = mbs.systemData.NumberOfObjects()
+        with pytest.raises(ValueError, match=f"prescribe {needed!r} rad/s, or leave one spin free"):
+            connect_rotors(*arguments)
+        assert (mbs.systemData.NumberOfObjects(), arguments[1].drives) == (before, [])
+    mbs, arguments = scene(connection, needed, turn)
+    sensor = connect_rotors(*arguments).add_sensor()
+    run(mbs, 0.1, 10)
+    np.testing.assert_allclose(mbs.GetSensorStoredData(sensor)[:, 2], 0.0, atol=1e-12)  # energy [J]
+
+
+def test_shafts_of_another_speed_are_refused():
+    coupling = CONNECTIONS["coupling"][0]
+    _, (_, one, *_) = scene(coupling, 0.0)
+    with pytest.raises(ValueError, match=r"prescribe 40\.0 rad/s"):
+        connect_rotors(coupling, one, "right", ConstantSpeed(41.0))
+    connect_rotors(coupling, one, "right", ConstantSpeed(40.0))

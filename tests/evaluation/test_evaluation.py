@@ -1,0 +1,309 @@
+"""Evaluation by API RP 684: against closed forms of the Jeffcott rotor and the printed rules."""
+
+import numpy as np
+import pytest
+from matplotlib import pyplot
+from models import disc_with_craig_bampton_modes
+from point_rotors import ring_rotor
+
+from exudyn_rotor import (
+    BaseAcceleration,
+    SeparationMargins,
+    SolidRotor,
+    StabilityLevelOne,
+    Support,
+    Unbalance,
+    UnbalanceResponse,
+    anticipated_cross_coupling,
+    bearing_loads,
+    bearing_masses,
+    campbell,
+    critical_speed_map,
+    harmonic_response,
+    separation_margins,
+    stability,
+    stability_level_one,
+    standard_unbalances,
+    unbalance_response,
+)
+from exudyn_rotor.evaluation.level_one import largest_speed_ratio
+from exudyn_rotor.evaluation.separation import required_margin
+
+RPM = np.pi / 30.0
+OMEGA = 100.0  # of the point on its support [rad/s]
+
+
+def point(axis="z"):
+    """A point of 1 kg."""
+    return SolidRotor.from_matrices(
+        np.eye(3), np.zeros((3, 3)), [[0, 0, 0]], axis=axis, interfaces={"disc": [0]}
+    )
+
+
+def jeffcott(ratio):
+    """The response of a Jeffcott rotor: ω = 100 rad/s, damping ratio ζ."""
+    support = Support("disc", OMEGA**2, damping=2.0 * ratio * OMEGA)
+    speeds, load = np.linspace(0.0, 400.0, 41), [Unbalance("disc", 1e-4)]
+    return unbalance_response(point(), speeds, load, supports=[support], refine=True)
+
+
+def sized(speeds, size):
+    """A circular response of given size."""
+    motion = np.array([1.0, -1j, 0, 0, 0, 0]) * np.asarray(size)[:, None]
+    return UnbalanceResponse(("a",), [1], motion[:, None, None], "inertial", speeds)
+
+
+# ------------------------------------------------------------------ amplification and margins
+
+
+@pytest.mark.parametrize("ratio", [0.005, 0.05, 0.15])
+def test_amplification_of_a_jeffcott_rotor(ratio):
+    """|u| = e s/√((1 − s)² + 4ζ²s), s = (Ω/ω)²: peak 1/(2ζ√(1 − ζ²)) at s = 1/(1 − 2ζ²).
+
+    The half-power points solve (P − 2)s² + P(4ζ² − 2)s + P = 0 with the square P of the peak. The
+    parabola through three points leaves 1 % at refined resonances.
+    """
+    found = separation_margins(jeffcott(ratio), (200.0, 300.0))
+    square = 1.0 / (4.0 * ratio**2 * (1.0 - ratio**2))
+    sides = np.sqrt(np.sort(np.roots([square - 2.0, square * (4.0 * ratio**2 - 2.0), square]).real))
+    peak = 1.0 / np.sqrt(1.0 - 2.0 * ratio**2)
+    exact = peak / (sides[1] - sides[0])
+    assert found.amplification == pytest.approx(exact, rel=0.01)
+    assert found.peaks == pytest.approx(OMEGA * peak, rel=0.02 * ratio)
+    np.testing.assert_allclose(found.half_power[0], OMEGA * sides, atol=0.02 * ratio * OMEGA)
+    if ratio < 0.01:
+        assert found.amplification == pytest.approx(0.5 / ratio, rel=0.01)
+
+
+def test_margins_of_the_standard():
+    """By hand: AF 10 gives 17 (1 − 1/8.5) = 15 % below and 25 % above; 16 % and 26 % are most."""
+    factors = [2.49, 2.5, 3.5, 10.0, 100.0]
+    np.testing.assert_allclose(required_margin(factors, False), [0, 0, 0.085, 0.15, 0.16])
+    np.testing.assert_allclose(required_margin(factors, True), [0, 0.1, 0.185, 0.25, 0.26])
+
+
+def test_margins_count_from_the_nearest_end_of_the_range():
+    """A Jeffcott rotor with AF 10 at 100 rad/s: 15.0 % below and 25.0 % above are asked for."""
+    response = jeffcott(0.05)
+    for limits, actual, accepted in (
+        ((120.0, 150.0), 0.167, True),
+        ((115.0, 150.0), 0.128, False),
+        ((60.0, 78.0), 0.285, True),
+        ((60.0, 85.0), 0.179, False),
+        ((90.0, 110.0), 0.0, False),
+    ):
+        found = separation_margins(response, limits)
+        assert found.actual == pytest.approx(actual, abs=0.005)
+        assert found.accepted.tolist() == [accepted]
+    assert separation_margins(jeffcott(0.25), (90.0, 110.0)).accepted.tolist() == [True]
+
+
+def test_one_side_of_a_peak_is_doubled_and_none_is_unknown():
+    """1/size² = 1 + ((Ω − 100)/5)² has its half-power points at 95 and 105 rad/s."""
+    speeds = np.linspace(98.0, 120.0, 111)
+    beside, limits = sized(speeds, 1 / np.sqrt(1 + ((speeds - 100) / 5) ** 2)), (150, 200)
+    with pytest.warns(UserWarning, match="from 126 to 252 rad/s count"):
+        cut = separation_margins(beside, limits)
+    assert np.isnan(cut.half_power[0, 0])
+    assert cut.half_power[0, 1] == pytest.approx(105.0, rel=1e-9)
+    assert cut.amplification == pytest.approx(10.0, rel=1e-9)
+    with pytest.warns(UserWarning, match="known from 98 to 120 rad/s only"):
+        bump = separation_margins(sized(speeds, 1 - 0.1 * ((speeds - 105) / 20) ** 2), limits)
+    assert np.isnan(bump.amplification).tolist() == [True]
+    assert bump.accepted.tolist() == [False]
+    assert "nan" in bump.table()
+
+
+def test_two_peaks_a_valley_and_no_peak():
+    """The valley between two peaks stays above 0.707 of the second, which has one side only."""
+    speeds = np.linspace(50.0, 210.0, 1601)
+    size = 1 / np.hypot(1, (speeds - 100) / 5) + 0.6 / np.hypot(1, (speeds - 125) / 12)
+    found = separation_margins(sized(speeds, size), (140.0, 160.0))
+    assert len(found.peaks) == 2
+    assert np.isnan(found.half_power).tolist() == [[False, False], [True, False]]
+    none = separation_margins(sized(speeds, speeds), (60.0, 100.0))
+    assert none.places == ()
+    assert "no peak" in none.table()
+    ax = none.plot()
+    assert len(ax.lines) == 1
+    pyplot.close(ax.figure)
+
+
+# ------------------------------------------------------------------ unbalance
+
+
+def test_amount_is_twice_four_times_weight_over_speed():
+    """4 W/N oz in, W in lb, N in rpm: 1 oz = 28.349523 g, 1 in = 25.4 mm, 1 lb = 0.45359237 kg."""
+    pounds, rpm = 1000.0, 8000.0
+    [one] = standard_unbalances("translatory", ["disc"], 0.45359237 * pounds, rpm * RPM)
+    assert one.amount == pytest.approx(2 * 4 * pounds / rpm * 28.349523e-3 * 25.4e-3, rel=1e-5)
+    fast = [standard_unbalances("overhung", "end", 5.0, n * RPM)[0].amount for n in (25e3, 50e3)]
+    assert fast[0] == fast[1] == pytest.approx(2 * 5.0 * 0.254e-6)
+
+
+def test_placement_by_mode():
+    [one] = standard_unbalances("first bending", "mid", [60.0, 40.0], 1000.0)
+    pair = standard_unbalances("conical", ["left", "right"], [60.0, 40.0], 1000.0, angle=0.5)
+    assert [two.at for two in pair] == ["left", "right"]
+    assert pair[0].amount + pair[1].amount == pytest.approx(one.amount)
+    assert pair[0].amount / pair[1].amount == pytest.approx(1.5)
+    assert np.cos(pair[1].angle - pair[0].angle) == pytest.approx(-1.0)
+    half = standard_unbalances("second bending", ["a", "b"], [60.0, 40.0], 1000.0, multiple=1.0)
+    assert 2.0 * half[0].amount == pytest.approx(pair[0].amount)
+
+
+@pytest.mark.parametrize("axis", ["x", "y", "z"])
+def test_bearings_share_the_mass_by_their_levers(axis):
+    nodes = np.zeros((2, 3))
+    nodes[:, "xyz".index(axis)] = 0.1, 0.5
+    rotor = SolidRotor.from_matrices(np.diag([1.0] * 3 + [4.0] * 3), np.zeros((6, 6)), nodes, axis,
+                                     allow_parts=True)  # fmt: skip
+    rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    np.testing.assert_allclose(bearing_masses(rotor, ["left", "right"]), [1.0, 4.0])
+    np.testing.assert_allclose(bearing_masses(rotor, ["right", "left"]), [4.0, 1.0])
+    with pytest.raises(ValueError, match="bearings: needs two interfaces"):
+        bearing_masses(rotor, ["left"])
+
+
+# ------------------------------------------------------------------ stability of level I
+
+
+def test_the_ground_that_rises_by_g_loads_bearings_as_their_weight():
+    """The journals go down, by the load of each bearing over its stiffness."""
+    rotor = disc_with_craig_bampton_modes()
+    stiffness = {"left": 1e6, "right": 2e6}
+    supports = [Support(name, k, damping=10.0) for name, k in stiffness.items()]
+    weight = BaseAcceleration([0.0, 9.81])
+    response = harmonic_response(rotor, [0.0], weight, supports=supports, speed=50.0)
+    loads = bearing_loads(rotor, list(stiffness), -9.81 * rotor.axis.plane[:, 1])
+    for (name, k), load in zip(stiffness.items(), loads, strict=True):
+        moved = [response.phasor(name, n)[0].real for n in ("n1", "n2")]
+        np.testing.assert_allclose(moved, load / k, atol=1e-8 * abs(load[1]) / k)
+
+
+def test_anticipated_cross_coupling_of_the_printed_formula():
+    """q = P·3·9.55·(ρd/ρs)/(D H N) in kN/mm with W, mm and rpm; the constant is 30/π."""
+    power, diameter, width, rpm, ratio = 2e6, 400.0, 15.0, 9000.0, 1.3
+    printed = power * 3.0 * (30.0 / np.pi) * ratio / (diameter * width * rpm) * 1e3 / 1e-3 * 1e-3
+    found = anticipated_cross_coupling(power, rpm * RPM, 0.4, 0.015, density_ratio=ratio)
+    assert found == pytest.approx(printed * 1e3, rel=1e-12)
+    blades = anticipated_cross_coupling(power, rpm * RPM, 0.4, 0.015, machine="axial")
+    assert blades == pytest.approx(found / (2.0 * ratio), rel=1e-12)
+    with pytest.raises(ValueError, match="density_ratio: axial stages have none"):
+        anticipated_cross_coupling(1e6, 100.0, 0.4, 0.01, density_ratio=1.1, machine="axial")
+
+
+def level_one(coupling, damping, axis="z", **given):
+    support = Support("disc", OMEGA**2, damping=damping)
+    rotor = point(axis).reduce(0)
+    return stability_level_one(rotor, 300.0, coupling, "disc", supports=support, **given)
+
+
+@pytest.mark.parametrize(
+    ("coupling", "damping", "axis"),
+    [(500.0, 20.0, "x"), (1500.0, 20.0, "z"), (150.0, 5.0, [1.0, 2.0, -0.5])],
+)
+def test_threshold_of_a_jeffcott_rotor(coupling, damping, axis):
+    """λ² + cλ + ω² − iQ = 0: the forward mode has δ = 0 at Q = c ω, and δ = 2πζ/√(1 − ζ²) at 0."""
+    found = level_one(coupling, damping, axis)
+    assert found.threshold == pytest.approx(damping * OMEGA, rel=1e-9)
+    roots = [np.roots([1.0, damping, OMEGA**2 - 1j * q]) for q in found.applied]
+    forward = np.array([pair[pair.imag.argmax()] for pair in roots])
+    np.testing.assert_allclose(
+        found.log_decrement, -2 * np.pi * forward.real / forward.imag, atol=1e-9
+    )
+    np.testing.assert_allclose(found.frequencies, forward.imag, rtol=1e-9)
+    ratio = damping / (2.0 * OMEGA)
+    assert found.log_decrement[0] == pytest.approx(2 * np.pi * ratio / np.sqrt(1 - ratio**2))
+
+
+def test_the_forward_mode_is_followed_and_unstable_beyond_the_threshold():
+    """Gyroscopic moments part forward and backward whirl; `stability` knows nothing of modes."""
+    rotor = ring_rotor(0.3, 0.2, 10.0).with_interface("left", range(5))
+    rotor = rotor.with_interface("right", range(5, 10)).reduce(0)
+    held = [Support("left", 1e5, damping=40.0), Support("right", 4e5, damping=40.0)]
+    found = stability_level_one(rotor, 300.0, 4e3, "left", supports=held)
+    modes = campbell(rotor, 300.0, supports=held)
+    forward = modes.frequencies_inertial[modes.whirl == "forward"].min()
+    backward = modes.frequencies_inertial[modes.whirl == "backward"].min()
+    assert backward < 0.9 * forward
+    assert found.frequencies[0] == pytest.approx(forward, rel=1e-9)
+    for share, stable in ((0.999, True), (1.001, False)):
+        q = share * found.threshold
+        coupled = [*held, Support("left", [[0.0, q], [-q, 0.0]])]
+        assert stability(rotor, 300.0, supports=coupled).stable.tolist() == [stable]
+    # at the other end the second forward mode, 389 rad/s, loses its damping first
+    with pytest.warns(UserWarning, match=r"another mode, at 61\.\d+ Hz, is unstable from Q"):
+        stability_level_one(rotor, 300.0, 4e3, "right", supports=held)
+
+
+def test_when_level_two_is_required():
+    """SP6.8.5.10, each rule on both sides of its limit."""
+
+    def reasons(**changes):
+        given = {
+            "applied": [0.0, 1.0, 2.0], "log_decrement": [0.4, 0.3, 0.2],
+            "frequencies": [1.0] * 3, "anticipated": 1.0, "speed": 1.0,
+            "machine": "centrifugal", "threshold": 5.0, "critical_speed_ratio": 2.0,
+            "gas_density": 40.0,
+        }  # fmt: skip
+        return " ".join(StabilityLevelOne(**(given | changes)).reasons)
+
+    assert reasons() == ""
+    assert "log decrement at QA is below 0.1" in reasons(log_decrement=[0.2, 0.09, 0.0])
+    assert reasons(log_decrement=[0.2, 0.11, 0.0]) == ""
+    assert reasons(threshold=1.9) == "Q0/QA is below 2"
+    assert reasons(threshold=None, critical_speed_ratio=None) == ""
+    assert reasons(critical_speed_ratio=2.24) != "" == reasons(critical_speed_ratio=2.22)
+    assert "not given" in reasons(gas_density=None)
+    assert reasons(machine="axial", threshold=1.5) == ""
+    assert [largest_speed_ratio(rho) for rho in (5.0, 60.1)] == [2.5, 0.0]
+    assert largest_speed_ratio(60.0) == pytest.approx(2.0)
+
+
+def test_several_stages_share_the_coupling_and_beyond_ten_times_there_is_no_threshold():
+    rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    rotor = SolidRotor.from_matrices(np.eye(6), rod, [[0, 0, -0.1], [0, 0, 0.1]], "z")
+    rotor = rotor.with_interface("left", [0]).with_interface("right", [1]).reduce(0)
+    held = [Support("left", 1e4, damping=20.0), Support("right", 1.2e4, damping=30.0)]
+    given = {"at": ["left", "right"], "supports": held}
+    found = stability_level_one(rotor, 300.0, [500.0, 1.0], **given)
+    assert found.anticipated == 501.0
+    assert found.threshold == pytest.approx(2000.0 * 501.0 / 500.0, rel=1e-6)
+    none = stability_level_one(rotor, 300.0, [10.0, 10.0], **given)
+    assert none.threshold is None
+    assert "Q0 above 10 QA" in none.table()
+    assert not none.needs_level_two
+
+
+def test_wrong_input_is_refused():
+    rotor, bearing = point().reduce(0), Support("disc", 1e4)
+    for given, message in (
+        ({"cross_coupling": [1.0, 2.0]}, "cross_coupling: needs a positive number"),
+        ({"cross_coupling": -1.0}, "cross_coupling: needs a positive number"),
+        ({"at": "nowhere"}, "at: 'nowhere' is unknown"),
+        ({"machine": "steam"}, "machine: 'steam' is unknown"),
+        ({"supports": Support("x", 1.0)}, "support at 'x': no such interface"),
+    ):
+        values = {"speed": 9.0, "cross_coupling": 1.0, "at": "disc", "supports": bearing} | given
+        with pytest.raises(ValueError, match=message):
+            stability_level_one(rotor, **values)
+    with pytest.raises(TypeError, match=r"target: .* SolidRotor\.reduce makes one"):
+        stability_level_one(point(), 9.0, 1.0, "disc", supports=bearing)
+    with pytest.raises(ValueError, match=r"at: the mode 'conical' takes 2 place\(s\)"):
+        standard_unbalances("conical", ["a"], [1.0, 2.0], 100.0)
+    with pytest.raises(ValueError, match="masses: needs two positive masses"):
+        standard_unbalances("conical", ["a", "b"], 3.0, 100.0)
+    with pytest.raises(ValueError, match="at: the mode 'conical' takes two places, got 'a' twice"):
+        standard_unbalances("conical", ["a", "a"], [1.0, 2.0], 100.0)
+    with pytest.raises(ValueError, match="at: 'disc' is given twice"):
+        stability_level_one(rotor, 9.0, [1.0, 2.0], ["disc", "disc"], supports=bearing)
+    with pytest.raises(ValueError, match="interfaces: 'disc' is given twice"):
+        critical_speed_map(rotor, ["disc", "disc"], [1e4])
+    with pytest.raises(ValueError, match="places: 'a' is given twice"):
+        separation_margins(sized([1.0, 2.0], [1.0, 2.0]), (1.0, 2.0), places=["a", "a"])
+    with pytest.raises(TypeError, match="response: needs UnbalanceResponse"):
+        separation_margins(3.0, (1.0, 2.0))
+    with pytest.raises(TypeError, match=r"operating_range: .* got None"):
+        separation_margins(sized([1.0, 2.0], [1.0, 2.0]), None)
+    assert SeparationMargins.__doc__

@@ -1,0 +1,232 @@
+"""Ground that shakes: closed forms of one mass, scenes, and a base that really moves."""
+
+from dataclasses import replace
+from functools import cache
+
+import exudyn as exu
+import numpy as np
+import pytest
+from exudyn.itemInterface import LoadMassProportional, MarkerBodyMass, SensorBody
+from point_rotors import ring_rotor
+from scipy.interpolate import CubicSpline
+from test_foundations import BLOCK, HELD
+from test_supports_in_scenes import KINDS, SKEW
+
+from exudyn_rotor import (
+    BaseRecord,
+    Support,
+    add_base_motion,
+    add_foundation,
+    add_rotor,
+    add_supports,
+    base_response,
+    linear_model,
+    recommended_settings,
+)
+from exudyn_rotor.multibody.spatial_body import add_spatial_rotor
+from exudyn_rotor.theory.rotating_axes import axes_of
+
+ENDS = ("left", "right")
+
+
+@cache
+def rigid():
+    rotor = ring_rotor(0.1, 0.15, 5.0)
+    return rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
+
+
+def springs(omega, ratio=0.0):
+    """Return supports on which the rotor's 5 kg have a natural frequency [rad/s]."""
+    k = 2.5 * omega**2 * np.eye(3)
+    return [Support(name, k, 5.0 * ratio * omega * np.eye(3)) for name in ENDS]
+
+
+def record(function, end, step, direction=(1.0, 0.0, 0.0)):
+    t = np.linspace(0.0, end, round(end / step) + 1)
+    return BaseRecord(t, np.outer(function(t), direction))
+
+
+# ------------------------------------------------------------------ scenes
+
+SHAKEN = BaseRecord(
+    np.linspace(0.0, 0.05, 51),
+    3.0 * np.column_stack([np.sin(40.0 * (t := np.linspace(0.0, 0.05, 51))),
+                           np.cos(70.0 * t), np.sin(90.0 * t)]),
+)  # fmt: skip
+SUPPORTS = [replace(KINDS["2 x 2"], tilt_stiffness=2e3), KINDS["3 x 3"], HELD]
+
+
+def run(step, turn=None, rotation=None, moved=False, block=BLOCK, end_time=0.04):
+    """Return time and displacement of a journal against the ground, global axes."""
+    rotor = rigid()
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, rotation=rotation, spin=200.0)
+    if moved:
+        heavy = exu.utilities.RigidBodyInertia(mass=1e6, inertiaTensor=1e6 * np.eye(3))
+        base = mbs.CreateRigidBody(inertia=heavy, nodeType=exu.NodeType.RotationRxyz)
+        pull = LoadMassProportional(
+            markerNumber=mbs.AddMarker(MarkerBodyMass(bodyNumber=base)),
+            loadVectorUserFunction=lambda mbs, t, load: SHAKEN.at(t).tolist(),
+        )
+        mbs.AddLoad(pull)
+        under = mbs.AddSensor(
+            SensorBody(
+                bodyNumber=base, outputVariableType=exu.OutputVariableType.Displacement,
+                storeInternal=True,
+            )
+        )  # fmt: skip
+    elif block is None:
+        base = None
+        add_base_motion(mbs, SHAKEN, body, rotation=rotation)
+    else:
+        base = add_foundation(mbs, block, rotation=rotation)
+        add_base_motion(mbs, SHAKEN, [body, base], rotation=rotation)
+    add_supports(body, SUPPORTS, base)
+    sensor = body.add_interface_sensor("left", exu.OutputVariableType.Displacement)
+    mbs.Assemble()
+    settings = recommended_settings(end_time=end_time, step=step)
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = 1e-3
+    if moved:  # the base's inertia must not hide the rotor's
+        settings.timeIntegration.newton.relativeTolerance = 1e-12
+        settings.timeIntegration.newton.absoluteTolerance = 1e-12
+    mbs.SolveDynamic(settings)
+    data = mbs.GetSensorStoredData(sensor)
+    ground = mbs.GetSensorStoredData(under)[:, 1:4] if moved else 0.0
+    return data[:, 0], data[:, 1:4] - ground
+
+
+@pytest.mark.parametrize("rotation", [None, SKEW], ids=["upright", "skew"])
+@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
+def test_scene_and_linear_response_agree(rotation):
+    """By the integrator's second order: two steps, and what they lead to."""
+    model = linear_model(rigid(), supports=SUPPORTS, foundation=BLOCK)
+    found = base_response(model, SHAKEN, speed=200.0, end_time=0.05, tolerance=1e-7, at="left")
+    to_scene = np.eye(3) if rotation is None else rotation
+    exact = CubicSpline(found.time, found.displacement("left") @ axes_of(rigid().axis).T)
+    (time, coarse), (_, fine) = (run(step, rotation=rotation) for step in (2e-4, 1e-4))
+    expected = exact(time) @ to_scene.T
+    errors = [
+        np.abs(x - expected).max() / np.abs(expected).max()
+        for x in (coarse, fine, (4.0 * fine - coarse) / 3.0)
+    ]
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
+    assert errors[2] < 1e-4
+
+
+def test_loads_are_a_base_that_moves():
+    """A base of a thousand tons that is driven by the record, seen from it."""
+    _, by_loads = run(1e-4, block=None)
+    _, by_motion = run(1e-4, moved=True)
+    # the rotor's reaction moves the base: their masses are as 5e-6 to 1
+    assert np.abs(by_loads - by_motion).max() < 1e-4 * np.abs(by_loads).max()
+
+
+def whole():
+    """Return the rotor of :func:`rigid`, with a heavy spot, unreduced and in a complete basis."""
+    rotor = ring_rotor(0.1, 0.15, 5.0).add_point_mass([0.1, 0.0, 0.15], 1e-3)
+    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10))
+    return rotor, rotor.reduce(24)
+
+
+def shaken(rotor, record=SHAKEN, **options):
+    """Return the displacements of the journals and the spin after 6 ms, and what was added."""
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, **options)
+    (added,) = add_base_motion(mbs, record, body, rotation=options.get("rotation"))
+    add_supports(body, SUPPORTS)
+    mbs.Assemble()
+    settings = recommended_settings(end_time=6e-3, step=2e-4, accuracy=1e-8, body=body)
+    settings.solution.file.write = False
+    mbs.SolveDynamic(settings)
+    kind, at = exu.OutputVariableType.Displacement, body.formulation.translation_count
+    places = [mbs.GetMarkerOutput(body.marker(name), kind) for name in ENDS]
+    return np.array(places), body.coordinates()[0][at] * body.formulation.has_spin, added
+
+
+def test_a_constant_acceleration_is_gravity():
+    """Which turns an eccentric rotor whose spin is free, here by 5e-7 rad."""
+    still, falls = (BaseRecord([0.0, 1.0], [[0.0, a, 0.0]] * 2) for a in (0.0, 9.81))
+    options = {"initial_speed": 20.0, "translation": "none", "initial_angle": 0.4}
+    for rotor in whole():
+        found = shaken(rotor, falls, **options)
+        expected = shaken(rotor, still, gravity=[0.0, -9.81, 0.0], **options)
+        np.testing.assert_allclose(found[0], expected[0], rtol=0.0, atol=1e-12)
+        turned = expected[1] - 0.4 - 20.0 * 6e-3
+        assert abs(turned) > 1e-7
+        assert found[1] == pytest.approx(expected[1], abs=1e-4 * abs(turned))
+
+
+# ------------------------------------------------------------------ records
+
+
+def test_a_record_from_a_file(tmp_path):
+    lines = "# made by hand\ntime;x;y;z\n0,0.1,0,0\n0.5, 0.2, 0, -1\n\n1.0 ,0,0,0  # end\n"
+    (tmp_path / "record.csv").write_text(lines, encoding="utf-8")
+    found = BaseRecord.from_csv(tmp_path / "record.csv", "g")
+    np.testing.assert_allclose(found.accelerations[1], [0.2 * 9.80665, 0.0, -9.80665])
+    np.testing.assert_allclose(found.at([0.25, 2.0])[:, 0], [0.15 * 9.80665, 0.0])
+    (tmp_path / "spaces.txt").write_text("0 1 2 3\n1 1 2 3\n", encoding="utf-8")
+    assert BaseRecord.from_csv(tmp_path / "spaces.txt", "gal").peak == pytest.approx(0.14**0.5 / 10)
+    (tmp_path / "excel.csv").write_text("0;1;2;3\n1;4;5;6\n2;7;8;9\n", encoding="utf-8-sig")
+    assert BaseRecord.from_csv(tmp_path / "excel.csv", "m/s²").at([0.0])[0, 0] == 1.0
+    text = "Zeit;längs;quer;hoch\n0,0;1,5;2;3e-1\n0,5;-1,25;0;0,1\n"  # decimals by commas
+    (tmp_path / "comma.csv").write_bytes(text.encode("latin-1"))
+    found = BaseRecord.from_csv(tmp_path / "comma.csv", "m/s²")
+    np.testing.assert_array_equal(found.times, [0.0, 0.5])
+    np.testing.assert_array_equal(found.accelerations, [[1.5, 2.0, 0.3], [-1.25, 0.0, 0.1]])
+    for text, match in (
+        ("0,1,a,3\n1,1,2,3\n2,1,2,3\n", "line 1: could not"),
+        ("0,1,2\n1,1,2\n", "line 1: needs time and three"),
+        ("0,1,2,3\n1,a,2,3\n", "line 2: could not"),
+        ("t,x,y,z\n", "times: needs two or more"),
+    ):
+        (tmp_path / "bad.csv").write_text(text, encoding="utf-8")
+        with pytest.raises(ValueError, match=match):
+            BaseRecord.from_csv(tmp_path / "bad.csv", "g")
+
+
+def test_baseline_and_integrals():
+    """Of a record by polynomials: velocity and displacement exactly, and a ground that stops."""
+    t = np.linspace(1.0, 3.0, 5)
+    line = BaseRecord(t, np.outer(t - 1.0, [2.0, 0.0, 1.0]))
+    velocity, place = line.integrals(np.array([0.0, 2.3, 4.0]))
+    np.testing.assert_allclose(velocity[:, 0], [0.0, 1.3**2, 4.0], atol=1e-14)
+    np.testing.assert_allclose(place[:, 0], [0.0, 1.3**3 / 3.0, 8.0 / 3.0 + 4.0], atol=1e-14)
+    stops = line.with_baseline()
+    np.testing.assert_allclose(stops.end_velocity, 0.0, atol=1e-14)
+    assert stops.peak < 1e-12
+    np.testing.assert_allclose(line.turned(SKEW).end_velocity, SKEW @ line.end_velocity)
+
+
+def test_bad_records_and_calls_are_refused():
+    still = np.zeros((3, 3))
+    for times, match in (
+        ([0.0, 2.0, 1.0], "needs ascending times .*, got 2 and then 1"),
+        ([0.0, 1.0, 3.0], "needs even steps .*, got 1 to 2"),
+        ([0.0], "needs two or more"),
+    ):
+        with pytest.raises(ValueError, match=match):
+            BaseRecord(times, still[: len(times)])
+    with pytest.raises(ValueError, match="accelerations: needs finite numbers"):
+        BaseRecord([0.0, 1.0, 2.0], still.T[:2])
+    mbs = exu.SystemContainer().AddSystem()
+    body, base = add_rotor(mbs, rigid()), add_foundation(mbs, BLOCK)
+    spatial = add_spatial_rotor(mbs, whole()[0], name="spatial")
+    blind = add_foundation(mbs, replace(BLOCK, participation=None))
+    loads = mbs.systemData.NumberOfLoads()
+    for bodies, match in (
+        ([body, base, body], "given twice"),
+        ([blind], "needs its participation"),
+        ([spatial.body], "is an ObjectFFRF, whose loads by its mass"),
+        ([exu.ObjectIndex(99)], "this system has no"),
+    ):
+        with pytest.raises(ValueError, match=match):
+            add_base_motion(mbs, SHAKEN, bodies)
+        assert mbs.systemData.NumberOfLoads() == loads
+    model = linear_model(rigid(), supports=SUPPORTS, foundation=blind.foundation)
+    with pytest.raises(ValueError, match="with its participation"):
+        base_response(model, SHAKEN)
+    unstable = [*springs(100.0), Support("left", [[0.0, 1e5], [-1e5, 0.0]])]
+    with pytest.raises(ValueError, match="is the rotor unstable"):
+        base_response(rigid(), SHAKEN, supports=unstable, end_time=60.0)

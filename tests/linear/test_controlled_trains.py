@@ -1,0 +1,116 @@
+"""Trains of rotors on magnetic bearings and on pads that tilt: against the rotors by themselves."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from point_rotors import SKEW_AXIS, free_stiffness, ring_rotor
+from test_magnetic_bearing import DELAYED, bearing, pair, rigid
+from test_tilting_pad import SPEED, on_pads
+
+from exudyn_rotor import (
+    BaseAcceleration,
+    HarmonicForce,
+    Link,
+    RotorTrain,
+    SolidRotor,
+    Support,
+    Unbalance,
+    harmonic_response,
+    sensitivity,
+    stability,
+    unbalance_response,
+)
+
+GIVEN = {"accuracy": None}
+MAGNETIC = rigid(), [*pair(angle=0.3)]  # a controller with filter and delay
+ON_SPRINGS = rigid(5.0), [Support(name, 2e5, 9.0) for name in ("left", "right")]
+PADS = on_pads(SKEW_AXIS)[:2]
+
+
+def apart(found, expected):
+    """Return how far the expected numbers are from the found ones, over their size."""
+    gap = np.abs(found - np.asarray(expected)[:, None]).min(axis=1)
+    return np.max(gap / np.maximum(np.abs(expected), 10.0))
+
+
+def test_responses_without_links_are_those_alone():
+    train = RotorTrain(
+        {"A": PADS[0], "B": MAGNETIC[0]},
+        {"A": 0.8, "B": 1.0},
+        {"A": PADS[1], "B": MAGNETIC[1]},
+    )
+    for name, (rotor, supports), rate in (("A", PADS, 0.8), ("B", MAGNETIC, 1.0)):
+        over, alone = train.relative_to(name), {"supports": supports, **GIVEN}
+        responses = [
+            unbalance_response(target, [rate * SPEED], Unbalance(place, 1e-4), own=False, **given)
+            for target, place, given in ((over, f"{name}:left", GIVEN), (rotor, "left", alone))
+        ]
+        orbits = [
+            one.motion[0, one.places.index(place), one.orders.tolist().index(1)]
+            for one, place in zip(responses, (f"{name}:right", "right"), strict=True)
+        ]
+        np.testing.assert_allclose(*orbits, rtol=0.0, atol=1e-9 * np.abs(orbits[1]).max())
+        for load in (
+            lambda at: HarmonicForce(at, [1.0, 0.5j]),
+            lambda at: BaseAcceleration([1.0, 0.5]),
+        ):
+            shaken = [
+                harmonic_response(target, [150.0], load(at + "left"), speed=rate * SPEED, **given)
+                .phasor(at + "right")
+                for target, at, given in ((over, f"{name}:", GIVEN), (rotor, "", alone))
+            ]  # fmt: skip
+            np.testing.assert_allclose(*shaken, rtol=1e-9)
+
+
+def rings(places, masses):
+    """Return a rigid rotor of rings of five masses with an interface at each."""
+    circle = ring_rotor(0.1, 0.1, 1.0).nodes[:5] * [1.0, 1.0, 0.0]
+    nodes = np.vstack([circle + np.array([0.0, 0.0, z]) for z in places])
+    mass = np.repeat(np.repeat(masses, 5), 3) / 5.0
+    K = free_stiffness(nodes, 1e8 * np.eye(3 * len(nodes)))
+    made = SolidRotor.from_matrices(np.diag(mass), K, nodes, "z")
+    for number, name in enumerate(("left", "middle", "right")[: len(places)]):
+        made = made.with_interface(name, range(5 * number, 5 * number + 5))
+    return made
+
+
+def test_halves_of_a_cut_rotor_are_the_rotor():
+    """On one magnetic bearing, in the half that is linked: the error falls as 1/k of the link."""
+    whole = rings([-0.2, 0.0, 0.2], [4.0, 6.0, 5.0]).reduce(0)
+    left = rings([-0.2, 0.0], [4.0, 2.5]).reduce(0)
+    right = rings([0.0, 0.2], [3.5, 5.0]).reduce(0)  # cut at its interface 'left'
+    magnet, spring = bearing(), Support("right", np.diag([3e5, 3e5, 2e5]), 30.0)
+    exact = stability(whole, [SPEED], supports=[magnet, spring], **GIVEN).exponents[0]
+    errors = []
+    for k in (1e11, 1e12):
+        stiff = Support("middle", k * np.eye(3), 0.0, 0.1 * k * np.eye(3))
+        train = RotorTrain(
+            {"A": left, "B": right}, {"A": 1.0, "B": 1.0},
+            {"A": [magnet], "B": [replace(spring, interface="middle")]},
+            [Link("A:middle", "B:left", stiff)],
+        )  # fmt: skip
+        errors.append(apart(stability(train, [SPEED], **GIVEN).exponents[0], exact))
+    assert errors[1] < 2e-5
+    assert errors[0] / errors[1] == pytest.approx(10.0, rel=0.05)
+
+
+def test_loops_of_a_train_have_their_sensitivity():
+    frequencies = np.array([50.0, 400.0, 2e3])
+    rotors, ratios = {"A": rigid(5.0), "B": MAGNETIC[0]}, {"A": 1.0, "B": 1.6}
+    supports = {"A": ON_SPRINGS[1], "B": MAGNETIC[1]}
+    train = RotorTrain(rotors, ratios, supports)
+    found = sensitivity(train, frequencies, speed=100.0)
+    alone = sensitivity(MAGNETIC[0], frequencies, supports=MAGNETIC[1], speed=160.0)
+    assert found.axes[:2] == ("B:left, 1", "B:left, 2")
+    columns = np.searchsorted(found.frequencies, frequencies)
+    expected = alone.values[:, np.searchsorted(alone.frequencies, frequencies)]
+    np.testing.assert_allclose(found.values[:, columns], expected, rtol=1e-8)
+    slow = replace(DELAYED, derivative=0.0)
+    loose = RotorTrain(
+        rotors, ratios, {"A": [bearing("left"), bearing("right")], "B": pair(controller=slow)}
+    )
+    with pytest.raises(ValueError, match=r"most moves the controller of 'B:\w+', grows"):
+        sensitivity(loose, frequencies)
+    with pytest.raises(ValueError, match="a RotorTrain has its own"):
+        sensitivity(train, frequencies, supports=MAGNETIC[1])

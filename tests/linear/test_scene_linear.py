@@ -1,0 +1,275 @@
+"""Scenes linearised over a revolution, against linear rotors and against their own simulation."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+from apart import distance
+from asymmetric import LENGTH, asymmetric_shaft
+from exudyn.itemInterface import SensorNode
+from exudyn.rigidBodyUtilities import InertiaCuboid
+from models import centered_disc
+from point_rotors import ring_rotor
+
+from exudyn_rotor import PrescribedMotion, add_rotor, linear_model
+from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.linear.over import motions_over
+from exudyn_rotor.linear.solve.forced import forced_motions
+
+BEARING = np.array([2.0e6, 1.2e6, 3e6]), np.array([300.0, 200.0, 100.0])
+SPEED = 200.0
+
+
+def rings(modes=2):
+    """Return a slightly eccentric rotor with two flexible modes, z from −0.15 to 0.15 m.
+
+    These are half of a pair each; without them the rotor is round but for its eccentric mass.
+    """
+    rotor = ring_rotor(0.1, 0.15, 5.0).add_point_mass([0.1, 0.0, 0.15], 1e-3)
+    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10))
+    return rotor.reduce(modes)
+
+
+def on_springs(markers="position", rotation=None, law=None, modes=2, **options):
+    """Return an mbs with the rings on two springs to the ground, and the body."""
+    reduced = rings(modes)
+    mbs = exu.SystemContainer().AddSystem()
+    kinds = dict.fromkeys(reduced.interfaces, markers)
+    body = add_rotor(mbs, reduced, markers=kinds, rotation=rotation, **options)
+    turn = np.eye(3) if rotation is None else rotation
+    ground = mbs.CreateGround()
+    for name in reduced.interfaces:
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[ground, body.marker(name)],
+            localPosition0=list(turn @ reduced.interfaces[name].reference),
+            stiffness=list(BEARING[0]),
+            damping=list(BEARING[1]),
+            springForceUserFunction=law or 0,
+        )
+    mbs.Assemble()
+    return mbs, body
+
+
+def in_a_list(turn=None, modes=2):
+    """Return the rings on the same springs; `turn` takes mesh axes to inertial axes."""
+    turn = np.eye(3) if turn is None else turn
+    K, D = (turn.T @ np.diag(values) @ turn for values in BEARING)
+    supports = [Support(name, K, D) for name in ("left", "right")]
+    return linear_model(rings(modes), supports=supports)
+
+
+@pytest.mark.parametrize(
+    ("markers", "options"),
+    [
+        ("position", {"spin": "free", "initial_speed": 31.0}),
+        ("rigid", {"spin": 31.0, "translation": "none"}),
+        ("rigid", {"translation": "in-plane", "initial_angle": 0.4}),
+        ("position", {"spin": SPEED, "locking": "constraints"}),
+        ("position", {"spin": "free", "translation": "none", "gravity": [0.0, -9.81, 0.0]}),
+        ("position", {"spin": PrescribedMotion.run_up(0.0, 9.0, 1.0)}),
+    ],
+)
+@pytest.mark.parametrize(("modes", "axes"), [(0, "inertial"), (2, "rotor")])
+def test_springs_are_supports(markers, options, modes, axes):
+    mbs, body = on_springs(markers, modes=modes, **options)
+    model, expected = linear_model(mbs, body=body), in_a_list(modes=modes)
+    assert model.axes == expected.axes == axes
+    assert distance(model, expected, SPEED) < 1e-7
+    assert distance(model, expected, 0.0) < 1e-7
+
+
+@pytest.mark.parametrize("modes", [0, 2])
+def test_interface_motion_and_unbalance_agree_with_the_list(modes):
+    mbs, body = on_springs("rigid", spin=SPEED, translation="none", drive="elastic", modes=modes)
+    model, expected = linear_model(mbs, body=body), in_a_list(modes=modes)
+    for name in ("left", "right"):
+        found, seen = model.seen(name), expected.seen(name)
+        assert all(np.allclose(found[n], seen[n], rtol=0.0, atol=1e-12) for n in seen)
+    found, load = model.unbalance(), expected.unbalance()
+    assert all(np.allclose(found[n], load[n], rtol=0.0, atol=1e-15) for n in load)
+    assert max(np.abs(each).max() for each in load.values()) > 1e-6
+
+
+def test_unbalance_response_with_a_moving_frame():
+    mbs, body = on_springs("rigid", spin=SPEED, law=isotropic)
+    supports = [Support(name, 2e6 * np.eye(3)) for name in ("left", "right")]
+    motions = []
+    for model in (linear_model(mbs, body=body), linear_model(rings(), supports=supports)):
+        model = model.for_responses
+        load = {n: SPEED**2 * each for n, each in model.unbalance().items()}
+        [x] = forced_motions([model.at(SPEED)], [load], [0.0], held=model.held_basis)
+        motions.append(model.seen("right")[1] @ x[0])
+    np.testing.assert_allclose(motions[0], motions[1], atol=1e-7 * np.abs(motions[1]).max())
+
+
+def isotropic(mbs, t, item, displacement, velocity, stiffness, damping, offset):
+    return [2e6 * x for x in displacement]
+
+
+def foundation_scene(speed, node=exu.NodeType.RotationRxyz):
+    """Return an asymmetric shaft on anisotropic bearings on a sprung block, and the body.
+
+    The block is a rigid body with rotation parameters `node`.
+    """
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(
+        mbs, asymmetric_shaft(), spin=speed, translation="none", markers=POSITION_MARKERS
+    )
+    block = InertiaCuboid(density=2500.0, sideLengths=[0.3, 0.1, 0.5])
+    base = mbs.CreateRigidBody(inertia=block, referencePosition=[0, -0.2, 0], nodeType=node)
+    ground = mbs.CreateGround()
+    for x, z in ((-0.15, -0.25), (-0.15, 0.25), (0.15, -0.25), (0.15, 0.25)):
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[ground, base],
+            localPosition0=[x, -0.25, z],
+            localPosition1=[x, -0.05, z],
+            stiffness=[4e5, 6e5, 5e5],
+            damping=[100.0] * 3,
+        )
+    for name, z in (("left", -LENGTH / 2), ("right", LENGTH / 2)):
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[base, body.marker(name)],
+            localPosition0=[0, 0.2, z],
+            stiffness=[3e5, 5e5, 1e6],
+            damping=[20.0, 30.0, 20.0],
+        )
+    mbs.AddSensor(
+        SensorNode(
+            nodeNumber=body.nodes["modes"],
+            outputVariableType=exu.OutputVariableType.Coordinates,
+            storeInternal=True,
+            writeToFile=False,
+        )
+    )
+    mbs.Assemble()
+    return mbs, body
+
+
+POSITION_MARKERS = {"left": "position", "right": "position"}
+
+
+def measured_growth(mbs, body, speed, steps, size=1e-5, revolutions=20):
+    """Return growth [1/s] of the least stable motion in the transient simulation.
+
+    It starts with its Floquet vector; once per revolution the state lies in the plane of the
+    vector's real and imaginary part, and its coefficient there grows as ``exp(λt)``.
+    """
+    model = linear_model(mbs, body=body, axes="rotor")
+    [found] = motions_over(model, [speed], method="floquet")
+    most = np.argmax(found.values.real)
+    value, X = found.values[most], found.vectors[:, :, most]
+    unknowns = model.unknowns(dict(zip(found.orders.tolist(), X, strict=True)), speed)
+    scene = model.scene
+    y = sum(unknowns.values())
+    y_t = sum((value + 1j * n * speed) * each for n, each in unknowns.items())
+    y, y_t = (size * each / np.abs(y).max() for each in (y, y_t))
+    T, T1, _ = scene.turn(0.0)
+    q, q_t = scene.rest.copy(), np.array(mbs.systemData.GetODE2Coordinates_t())
+    q[scene.free] += (T @ y).real
+    q_t[scene.free] = (T @ y_t + speed * T1 @ y).real
+    mbs.systemData.SetODE2Coordinates(q, exu.ConfigurationType.Initial)
+    mbs.systemData.SetODE2Coordinates_t(q_t, exu.ConfigurationType.Initial)
+    period = 2.0 * np.pi / speed
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.numberOfSteps = revolutions * steps
+    settings.timeIntegration.endTime = revolutions * period
+    settings.timeIntegration.newton.useModifiedNewton = True
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = period
+    mbs.SolveDynamic(settings, solverType=exu.DynamicSolverType.TrapezoidalIndex2)
+    data = mbs.GetSensorStoredData(0)
+    shape = (T @ y)[: data.shape[1] - 1]
+    plane = np.column_stack([shape.real, -shape.imag])
+    parts = np.linalg.lstsq(plane, data[:, 1:].T, rcond=1e-9)[0]
+    return np.polyfit(data[:, 0], np.log(np.hypot(*parts)), 1)[0]
+
+
+@pytest.mark.parametrize(("speed", "stable"), [(150.0, True), (160.0, False)])
+def test_growth_is_that_of_the_transient_simulation(speed, stable):
+    measured = []
+    for steps in (400, 800):
+        mbs, body = foundation_scene(speed)
+        measured.append(measured_growth(mbs, body, speed, steps))
+    [found] = motions_over(linear_model(mbs, body=body), [speed], method="floquet")
+    growth = found.values.real.max()
+    assert (growth < 0.0) == stable
+    # the trapezoidal rule's error falls with the square of the step
+    limit = (4.0 * measured[1] - measured[0]) / 3.0
+    assert abs(measured[1] / limit - 1.0) > 1e-5
+    assert limit == pytest.approx(growth, rel=1e-4)
+
+
+HARDENING, WEIGHT = 1e13, 9.81  # [N/m³], [m/s²]
+
+
+def hardening(mbs, t, item, displacement, velocity, stiffness, damping, offset):
+    x, y, z = displacement
+    return [2e4 * x, 2e4 * y + HARDENING * y**3, 2e4 * z]
+
+
+def test_nonlinear_bearings_are_linearised_at_the_sag():
+    # the sag y of m g / 2 = k y + k₃ y³; tangent k + 3 k₃ y²
+    rotor = ring_rotor(0.1, 0.15, 5.0).with_interface("left", range(5))
+    reduced = rotor.with_interface("right", range(5, 10)).reduce(0)
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, reduced, gravity=[0.0, -WEIGHT, 0.0], markers=POSITION_MARKERS)
+    ground = mbs.CreateGround()
+    for name, z in (("left", -0.15), ("right", 0.15)):
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[ground, body.marker(name)],
+            localPosition0=[0, 0, z],
+            springForceUserFunction=hardening,
+        )
+    mbs.Assemble()
+    sag = np.roots([HARDENING, 0.0, 2e4, -2.5 * WEIGHT])
+    sag = sag[np.abs(sag.imag) < 1e-12].real[0]
+    tangent = np.diag([2e4, 2e4 + 3.0 * HARDENING * sag**2, 2e4])
+    assert tangent[1, 1] > 2.0 * 2e4
+    supports = [Support(name, tangent) for name in ("left", "right")]
+    expected = linear_model(reduced, supports=supports)
+    assert distance(linear_model(mbs, body=body), expected, SPEED) < 1e-5
+    given = linear_model(mbs, body=body, about="given")
+    assert distance(given, expected, SPEED) > 1e-2
+
+
+def test_refused_scenes():
+    mbs, body = on_springs()
+    other, _ = on_springs()
+    with pytest.raises(TypeError, match="RotorBody"):
+        linear_model(mbs, body=None)
+    with pytest.raises(TypeError, match="target: needs"):
+        linear_model(body)
+    with pytest.raises(ValueError, match="another mbs"):
+        linear_model(other, body=body)
+    with pytest.raises(ValueError, match="about: 'rest' is unknown"):
+        linear_model(mbs, body=body, about="rest")
+    with pytest.raises(ValueError, match="finite"):
+        linear_model(mbs, body=body).at(np.nan)
+    add_rotor(mbs, rings(), name="second")
+    with pytest.raises(ValueError, match="not assembled"):
+        linear_model(mbs, body=body)
+    mbs.Assemble()
+    with pytest.raises(ValueError, match="second rotor"):
+        linear_model(mbs, body=body)
+
+
+@pytest.mark.parametrize("translation", ["free", "none"])
+def test_free_axial_motion_without_a_load_stays_at_rest(translation):
+    """Bearings without axial stiffness: the axial motion is free, and nothing pushes it."""
+    rotor = centered_disc()
+    reduced = rotor.add_point_mass([0.1, 0.0, 0.25], 0.005).reduce(2)
+    SC = exu.SystemContainer()
+    mbs = SC.AddSystem()
+    body = add_rotor(mbs, reduced, translation=translation, spin=100.0)
+    ground = mbs.CreateGround()
+    for name, interface in reduced.interfaces.items():
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[ground, body.marker(name)],
+            localPosition0=list(interface.reference),
+            stiffness=[1e6, 2e6, 0.0],
+            damping=[100.0, 100.0, 0.0],
+        )
+    mbs.Assemble()
+    for speed in (50.0, 100.0, 150.0):
+        scene = linear_model(mbs, body=body).at(speed)
+        assert all(np.all(np.isfinite(term)) for term in scene.K.values())

@@ -1,0 +1,331 @@
+"""The steady motion of a scene: closed forms, runs that start from it, and static solutions."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+from exudyn.itemInterface import LoadForceVector, LoadTorqueVector
+from point_rotors import ring_rotor
+from scipy.optimize import brentq
+
+from exudyn_rotor import (
+    SqueezeFilmDamper,
+    StartState,
+    Support,
+    add_rotor,
+    add_supports,
+    recommended_settings,
+    steady_state,
+)
+from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.linear.model.scene import steady_motion as search
+from exudyn_rotor.linear.model.scene.probe import linearised
+
+RADIUS, LENGTH, MASS, ADDED = 0.1, 0.2, 8.0, 0.01
+TOTAL = MASS + 2 * ADDED  # kg
+UNBALANCE = 2 * ADDED * RADIUS  # kg m
+STIFFNESS, DAMPING = 2e4, 40.0  # N/m, N s/m, of each of the two bearings
+GRAVITY = 9.81
+CRITICAL = np.sqrt(2 * STIFFNESS / TOTAL)  # rad/s
+DISPLACEMENT = exu.OutputVariableType.Displacement
+ENDS = {"left": -LENGTH, "right": LENGTH}
+
+
+@pytest.fixture(scope="module")
+def reduced():
+    """Return two rings, each with the same excess mass, so that the rotor whirls without tilt.
+
+    The elastic modes do not move the mean of a ring but by differences of the two rings.
+    """
+    rotor = ring_rotor(RADIUS, LENGTH, MASS)
+    for name, z in ENDS.items():
+        rotor = rotor.add_point_mass([RADIUS, 0.0, z], ADDED)
+        rotor = rotor.with_interface(name, np.flatnonzero(np.isclose(rotor.nodes[:, 2], z)))
+    return rotor.reduce(2)
+
+
+def build(reduced, spin, translation="none", stiffness=(STIFFNESS,) * 3, **options):
+    """Return the rotor on two bearings, not assembled."""
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(
+        mbs, reduced, spin=spin, translation=translation, markers="position", **options
+    )
+    for name, z in ENDS.items():
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[mbs.CreateGround(), body.marker(name)],
+            localPosition0=[0.0, 0.0, z],
+            stiffness=list(stiffness),
+            damping=[DAMPING] * 3,
+        )
+    return mbs, body
+
+
+def simulated(mbs, end, step):
+    settings = recommended_settings(end, step, accuracy=1e-7)
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    mbs.SolveDynamic(settings)
+
+
+# ------------------------------------------------------------------ closed forms
+
+
+@pytest.mark.parametrize("translation", ["none", "free", "in-plane"])
+@pytest.mark.parametrize("ratio", [0.5, 0.9, 1.5])
+def test_whirl_of_a_jeffcott_rotor(reduced, translation, ratio):
+    """The whirl is ``m e Ω²/(k − mΩ² + icΩ)``, and lags by its phase.
+
+    The mean of a ring is the shaft's centre but for the elastic modes, which supports move by
+    their stiffness over that of the rings, 1e8 N/m: 2e-4.
+    """
+    speed = ratio * CRITICAL
+    mbs, body = build(reduced, speed, translation)
+    mbs.Assemble()
+    steady = steady_state(body)
+    phasor = UNBALANCE * speed**2 / (2 * STIFFNESS - TOTAL * speed**2 + 2j * DAMPING * speed)
+    for angle in (0.0, 1.0):
+        motion = steady.interface_motion("left", angle)
+        expected = phasor * np.exp(1j * angle)
+        assert motion[0] + 1j * motion[1] == pytest.approx(expected, rel=1e-3)
+
+
+@pytest.mark.parametrize("translation", ["none", "free"])
+@pytest.mark.parametrize("spin", [0.0, 30.0, "free"])
+def test_sag_under_gravity(reduced, translation, spin):
+    """``m g/k`` whatever the speed, in the mean of a revolution, and m g/k along the axis, too."""
+    mbs, body = build(reduced, spin, translation, gravity=[0.0, -GRAVITY, 0.5 * GRAVITY])
+    mbs.Assemble()
+    motion = steady_state(body, 45.0 if spin == "free" else None).interface_motion("left")
+    sag = TOTAL * GRAVITY / (2 * STIFFNESS)
+    assert motion[:3] == pytest.approx([0.0, -sag, 0.5 * sag], rel=1e-3, abs=1e-3 * sag)
+
+
+# ------------------------------------------------------------------ runs from there
+
+
+@pytest.mark.parametrize("translation", ["none", "free"])
+def test_run_from_the_steady_state_stays_on_it(reduced, translation):
+    """Gravity, unbalance, supports that differ: the error is that of the step, of second order."""
+    speed, turns = 0.7 * CRITICAL, 0.75
+
+    def distance(steps):
+        mbs, body = build(
+            reduced,
+            speed,
+            translation,
+            (STIFFNESS, 1.3 * STIFFNESS, STIFFNESS),
+            gravity=[0.0, -GRAVITY, 0.0],
+        )
+        mbs.Assemble()
+        steady = steady_state(body)
+        body.start_from(steady.state())
+        mbs.Assemble()  # the nodes keep it
+        end = turns * 2 * np.pi / speed
+        simulated(mbs, end, end / steps)
+        found = mbs.GetMarkerOutput(body.marker("right"), DISPLACEMENT)
+        expected = steady.interface_motion("right", speed * end)
+        return np.abs(found - expected[:3]).max() / np.abs(expected[:3]).max()
+
+    coarse, fine = distance(50), distance(100)
+    # (Ωh)²/12 of the phase per radian, over 4.7 rad, in the oscillating part
+    assert coarse < 4.7 * (4.7 / 50) ** 2 / 12
+    assert fine == pytest.approx(coarse / 4.0, rel=0.2)
+
+
+def test_other_bodies_start_from_the_steady_state_too(reduced):
+    """A foundation of 20 kg on springs carries the bearings."""
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(
+        mbs, reduced, spin=40.0, translation="none", markers="position", gravity=[0, -GRAVITY, 0]
+    )
+    base = mbs.CreateMassPoint(mass=20.0, gravity=[0.0, -GRAVITY, 0.0])
+    mbs.CreateCartesianSpringDamper(
+        itemNumbers=[mbs.CreateGround(), base], stiffness=[1e6] * 3, damping=[100.0] * 3
+    )
+    for name, z in ENDS.items():
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[base, body.marker(name)],
+            offset=[0.0, 0.0, z],
+            stiffness=[STIFFNESS] * 3,
+            damping=[DAMPING] * 3,
+        )
+    mbs.Assemble()
+    body.start_from(steady_state(body).state())
+    node = mbs.GetObject(base)["nodeNumber"]
+    start = mbs.GetNodeOutput(node, DISPLACEMENT)
+    # k/(k − 20 Ω²) bounds how much its own whirl may differ from a rigid base: below 4 % of 25 µm
+    assert start[1] == pytest.approx(-(TOTAL + 20.0) * GRAVITY / 1e6, abs=1e-5)
+    simulated(mbs, 2 * np.pi / 40.0, 2 * np.pi / 40.0 / 400)
+    assert mbs.GetNodeOutput(node, DISPLACEMENT) == pytest.approx(start, abs=1e-3 * abs(start[1]))
+
+
+# ------------------------------------------------------------------ refusals
+
+
+def test_load_that_varies_by_itself_is_refused(reduced):
+    mbs, body = build(reduced, 40.0)
+    mbs.AddLoad(
+        LoadForceVector(
+            markerNumber=body.marker("left"),
+            loadVectorUserFunction=lambda mbs, t, load: [np.sin(55.0 * t), 0.0, 0.0],
+        )
+    )
+    mbs.Assemble()
+    with pytest.raises(UnconvergedError, match="does not repeat with every revolution"):
+        steady_state(body)
+
+
+@pytest.mark.parametrize("held", [[], ["left"]])
+def test_load_that_nothing_holds_is_refused(reduced, held, monkeypatch):
+    """Without smaller and smaller shares of it: at 12 angles, three times, and at 48, twice."""
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, reduced, spin=40.0, translation="none", gravity=[0.0, -GRAVITY, 0.0])
+    add_supports(body, [Support(name, STIFFNESS, DAMPING) for name in held])
+    mbs.Assemble()
+    angles = []
+    monkeypatch.setattr(search, "linearised", lambda *at: angles.append(at[1]) or linearised(*at))
+    with pytest.raises(UnconvergedError, match="nothing holds"):
+        steady_state(body)
+    assert len(angles) <= 3 * 12 + 2 * 48
+
+
+def test_states_that_do_not_belong_are_refused(reduced):
+    mbs, body = build(reduced, 40.0)
+    mbs.Assemble()
+    steady = steady_state(body)
+    with pytest.raises(ValueError, match="spin starts at 0 rad and 40 rad/s"):
+        body.start_from(steady.state(0.3))
+    with pytest.raises(ValueError, match="spin starts at 0 rad and 40 rad/s"):
+        body.start_from(steady_state(body, 41.0).state())
+    with pytest.raises(ValueError, match="has 2 coordinates"):
+        body.start_from(StartState([0.0, 0.0], [0.0, 0.0], 0.0, 40.0))
+    with pytest.raises(TypeError, match="state: needs"):
+        body.start_from(steady)
+    with pytest.raises(ValueError, match="one velocity for each"):
+        StartState([0.0, 0.0], [0.0], 0.0, 40.0)
+
+
+# ------------------------------------------------------------------ static solutions
+
+
+def static(mbs):
+    settings = exu.SimulationSettings()
+    settings.staticSolver.verboseMode = 0
+    settings.solution.file.write = False
+    return mbs.SolveStatic(settings)
+
+
+@pytest.mark.parametrize("translation", ["none", "free", "in-plane"])
+def test_static_solution_under_gravity_across_the_axis_is_refused(reduced, translation):
+    mbs, _ = build(reduced, 40.0, translation, gravity=[0.0, -GRAVITY, 0.0])
+    mbs.Assemble()
+    before = np.array(mbs.systemData.GetODE2Coordinates())
+    with pytest.raises(ValueError, match=r"steady_state\(body\) finds the motion"):
+        static(mbs)
+    assert np.array_equal(mbs.systemData.GetODE2Coordinates(), before)
+
+
+def test_static_solution_that_holds_at_every_angle_stays(reduced):
+    """Gravity along the axis: m g/k there, and the whirl of a Jeffcott rotor across it."""
+    mbs, body = build(reduced, 40.0, gravity=[0.0, 0.0, -GRAVITY])
+    mbs.Assemble()
+    assert static(mbs)
+    whirl = UNBALANCE * 40.0**2 / (2 * STIFFNESS - TOTAL * 40.0**2 + 80.0j * DAMPING)
+    # the weight of the masses at the rim tilts the rotor: their mean is the middle
+    found = np.mean([mbs.GetMarkerOutput(body.marker(name), DISPLACEMENT) for name in ENDS], axis=0)
+    assert np.hypot(*found[:2]) == pytest.approx(abs(whirl), rel=1e-3)
+    assert found[2] == pytest.approx(-TOTAL * GRAVITY / (2 * STIFFNESS), rel=1e-3)
+
+
+# -------------------------------------------------- the own spin of a rotor with an elastic drive
+
+
+def with_own_spin(heavy, torsion=0.0, torque=0.0, damping=0.0):
+    """Return a rotor on two supports, of which the left one holds its own spin by `torsion`.
+
+    With a torque [N m] there, and a mass `heavy` [kg] at the rim that puts the bearings off the
+    axis through the centre of mass.
+    """
+    rotor = ring_rotor(RADIUS, LENGTH, MASS)
+    for name, z in ENDS.items():
+        rotor = rotor.add_point_mass([RADIUS, 0.0, z], heavy) if heavy else rotor
+        rotor = rotor.with_interface(name, np.flatnonzero(np.isclose(rotor.nodes[:, 2], z)))
+    mbs = exu.SystemContainer().AddSystem()
+    markers = dict.fromkeys(ENDS, "rigid")
+    body = add_rotor(
+        mbs, rotor.reduce(2), spin=40.0, translation="none", drive="elastic", markers=markers
+    )
+    twisting = {"left": np.diag([0.0, 0.0, torsion]), "right": 0.0}
+    add_supports(body, [Support(name, STIFFNESS, damping, twisting[name]) for name in ENDS])
+    mbs.AddLoad(LoadTorqueVector(markerNumber=body.marker("left"), loadVector=[0.0, 0.0, torque]))
+    mbs.Assemble()
+    return body
+
+
+@pytest.mark.parametrize("torsion", [1e-3, 1.0, 1e3, 1e8])
+def test_own_spin_on_a_torsional_spring_twists_by_the_torque_over_its_stiffness(torsion):
+    torque = 1e-4 * min(torsion, 1e3)
+    found = steady_state(with_own_spin(0.0, torsion, torque)).interface_motion("left")[5]
+    free = steady_state(with_own_spin(0.0, torsion)).interface_motion("left")[5]
+    assert found - free == pytest.approx(torque / torsion, rel=1e-5)
+
+
+# ------------------------------------------------------------------ where the search begins
+
+
+def in_dampers(speed):
+    """Return a balanced rotor with 5 g at its rim, in squeeze film dampers on centring springs."""
+    rotor = ring_rotor(RADIUS, LENGTH, MASS)
+    for name, z in ENDS.items():
+        rotor = rotor.add_point_mass([RADIUS, 0.0, z], 0.0025)
+        rotor = rotor.with_interface(name, np.flatnonzero(np.isclose(rotor.nodes[:, 2], z)))
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor.reduce(0), spin=speed, translation="none", markers="position")
+    film = {"radius": 0.06, "length": 0.02, "clearance": 1.5e-4, "viscosity": 0.002}
+    dampers = [SqueezeFilmDamper(interface=name, centring_stiffness=1e6, **film) for name in ENDS]
+    add_supports(body, [*dampers, Support("right", np.diag([0.0, 0.0, 1e6]), 10.0)])
+    mbs.Assemble()
+    return body
+
+
+def test_a_second_branch_is_found_from_a_motion_on_it():
+    """Circles in short films of 180°: L. San Andrés, Modern Lubrication Theory, Notes 13."""
+    c, mass, stiffness, unbalance = 1.5e-4, MASS + 0.005, 2e6, 5e-4
+    critical = np.sqrt(stiffness / mass)
+    speed = 2.5 * critical
+    size = 2.0 * 0.002 * 0.06 * 0.02**3 / c**2 * speed
+
+    def left(e):
+        radial = (stiffness - mass * speed**2) * e * c + 2.0 * size * e**2 / (1.0 - e**2) ** 2
+        return np.hypot(radial, 0.5 * np.pi * size * e / (1.0 - e**2) ** 1.5) - unbalance * speed**2
+
+    grid = np.linspace(0.01, 0.95, 2000)
+    ends = np.flatnonzero(np.diff(np.sign([left(e) for e in grid])))
+    small, _, large = (brentq(left, grid[i], grid[i + 1]) for i in ends)
+    near = steady_state(in_dampers(1.5 * critical))
+    for ratio in (2.0, 2.3):
+        near = steady_state(in_dampers(ratio * critical), start=near)
+    body = in_dampers(speed)
+    for start, expected in ((None, small), (near, large), (near.state(), large)):
+        motion = steady_state(body, start=start).interface_motion("left", 0.0)
+        assert np.hypot(*motion[:2]) / c == pytest.approx(expected, rel=1e-3)
+
+
+def test_a_start_of_another_scene_is_refused(reduced):
+    mbs, body = build(reduced, 50.0)
+    mbs.Assemble()
+    other, another = build(reduced, 50.0, "free")
+    other.Assemble()
+    start = steady_state(another)
+    with pytest.raises(ValueError, match=r"start: has .* it is of another scene"):
+        steady_state(body, start=start)
+    with pytest.raises(TypeError, match="start: needs"):
+        steady_state(body, start=1.0)
+
+
+def test_a_frozen_spin_has_the_steady_motion_of_a_free_one(reduced):
+    found = []
+    for coupling in ("full", "frozen"):
+        mbs, body = build(reduced, "free", initial_speed=50.0, spin_coupling=coupling)
+        mbs.Assemble()
+        found.append(steady_state(body).interface_motion("left", 0.3))
+    np.testing.assert_allclose(*found, rtol=1e-9, atol=1e-15)

@@ -1,0 +1,195 @@
+"""Structural damping in the frequency domain: one mass, materials, files, scenes."""
+
+import warnings
+
+import exudyn
+import ngsolve as ngs
+import numpy as np
+import pytest
+from models import ALUMINIUM, STEEL, two_material_cylinder
+from point_rotors import random_rotor, ring_rotor
+
+from exudyn_rotor import (
+    HarmonicForce,
+    ReducedRotor,
+    SolidRotor,
+    Support,
+    add_rotor,
+    campbell,
+    critical_speeds,
+    harmonic_response,
+    keep_modes,
+    linear_model,
+    select_modes,
+    stability,
+    stability_threshold,
+    unstable_ranges,
+)
+from exudyn_rotor.theory.formulation import Formulation
+
+MASS, K, ETA = 3.0, 1.2e5, 0.04  # critical speed √(K/MASS) = 200 rad/s
+OMEGA = np.sqrt(K / MASS)
+FREQUENCIES = np.array([20.0, 150.0, OMEGA, 300.0, 700.0])
+# rounding of one mass times the condition 1/η of the equations at resonance, times 1e4
+EXACT = 1e-10
+KINDS = ("full", "reduced")
+
+
+def one_mass(kind: str = "reduced", **factors: float):
+    """Return a mass on an isotropic shaft, Genta's Jeffcott rotor, as each kind of linear model."""
+    rotor = SolidRotor.from_matrices(
+        MASS * np.eye(3), K * np.eye(3), [[0, 0, 0]], "z", interfaces={"disc": [0]}
+    )
+    rotor = rotor.with_damping(**factors)
+    return rotor.reduce(3) if kind == "reduced" else rotor
+
+
+def model_of(kind: str, supports: tuple[Support, ...] = (), **factors: float):
+    return linear_model(one_mass(kind, **factors), supports=supports)
+
+
+def close(found, expected, tolerance=EXACT):
+    return np.all(np.abs(found - expected) <= tolerance * np.abs(expected))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_one_mass_at_rest(kind):
+    """``F/(K √((1 − r²)² + η²))``; Genta, "Dynamics of Rotating Systems" (2005), section 1.5."""
+    force = HarmonicForce("disc", (6.0, 0.0))
+    response = harmonic_response(model_of(kind, loss=ETA), FREQUENCIES, force)
+    r = FREQUENCIES / OMEGA
+    size = 6.0 / (K * np.hypot(1.0 - r**2, ETA))
+    assert close(np.abs(response.phasor()), size)
+    assert close(response.phasor(), 6.0 / (K * (1.0 - r**2 + 1j * ETA)))  # it lags behind the force
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("speed", [120.0, -120.0, 500.0])
+def test_whirl_of_a_turning_rotor(kind, speed):
+    """``m z'' + k (1 ± iη) z = F``, Genta (2005), section 4.5: the sign is that of ω − Ω.
+
+    A force along n1 is half a forward and half a backward one. Forward of lower frequency than the
+    spin the rotor sees ν < 0, and its damping drives the whirl.
+    """
+    frequencies = np.sort(np.append(FREQUENCIES, abs(speed)))
+    force = HarmonicForce("disc", (2.0, 0.0))
+    response = harmonic_response(model_of(kind, loss=ETA), frequencies, force, speed=speed)
+    for whirl, omega in zip(response.whirl(), (frequencies, -frequencies), strict=True):
+        stiffness = K * (1.0 + 1j * ETA * np.sign(omega - speed))
+        assert close(whirl, 1.0 / (stiffness - MASS * omega**2))
+
+
+# ------------------------------------------------------------------ materials
+
+
+@pytest.fixture(scope="module")
+def cylinder():
+    materials = {"steel": STEEL, "aluminium": ALUMINIUM}
+    return SolidRotor.from_ngsolve(two_material_cylinder(0.15, safety=2.0), materials, "z", order=1)
+
+
+@pytest.fixture(scope="module")
+def damped(cylinder):
+    return cylinder.with_damping(materials={"steel": {"loss": 0.01}, "aluminium": {"loss": 0.05}})
+
+
+def test_materials_have_loss_factors_of_their_own(cylinder, damped):
+    """A uniform strain ε_zz takes in η (λ + 2μ) ε² V of each material.
+
+    NGSolve sums the same integrals: 1e-16 · 100 of the largest entry.
+    """
+    alike = cylinder.with_damping(loss=0.02).structural_damping
+    assert abs(alike - 0.02 * cylinder.stiffness).max() == 0.0
+    same = {name: {"loss": 0.02} for name in ("steel", "aluminium")}
+    same = cylinder.with_damping(materials=same).structural_damping
+    assert abs(same - alike).max() < 1e-14 * abs(alike).max()
+    H, stretch = damped.structural_damping, np.zeros((cylinder.node_count, 3))
+    stretch[:, 2] = cylinder.nodes[:, 2]
+    mesh, expected = cylinder.elements.mesh, 0.0
+    for name, material, eta in (("steel", STEEL, 0.01), ("aluminium", ALUMINIUM, 0.05)):
+        E, nu = material["youngsModulus"], material["poissonsRatio"]
+        volume = ngs.Integrate(1.0, mesh.Materials(name))
+        expected += eta * E * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) * volume
+    # 1e-16 of terms that cancel, some 100 times their sum
+    assert stretch.ravel() @ (H @ stretch.ravel()) == pytest.approx(expected, rel=1e-12)
+    values = np.linalg.eigvalsh(H.toarray())
+    assert values[0] > -1e-14 * values[-1]
+    assert damped.damping is None
+    assert damped.mass_damping is None
+
+
+# ------------------------------------------------------------------ reduced rotors
+
+
+def test_other_bases_and_files_keep_it(tmp_path):
+    rotor = random_rotor(6).with_damping(loss=0.1).reduce(4)
+    H = rotor.invariants.H
+    np.testing.assert_array_equal(
+        keep_modes(rotor, [1, 3]).invariants.H, H[np.ix_([*range(6), 7, 9], [*range(6), 7, 9])]
+    )
+    selection = select_modes(rotor, Formulation("free", 10.0))
+    T = selection.T
+    # sums of 12 products
+    np.testing.assert_allclose(selection.invariants.H, T.T @ H @ T, rtol=0.0, atol=1e-14)
+    rotor.save(tmp_path / "rotor.npz")
+    loaded = ReducedRotor.load(tmp_path / "rotor.npz")
+    np.testing.assert_array_equal(loaded.invariants.H, H)
+    np.testing.assert_array_equal(
+        loaded.with_attachments.invariants.H, rotor.with_attachments.invariants.H
+    )
+
+
+# ------------------------------------------------------------------ scenes and analyses in time
+
+
+@pytest.mark.filterwarnings("ignore:structural damping")
+@pytest.mark.parametrize("translation", ["none", "free"])
+def test_a_scene_has_it_in_the_frequency_domain(translation):
+    """Springs between the ground and markers of a scene are the supports of a linear rotor."""
+    rotor, spring = ring_rotor(0.1, 0.15, 5.0), (2e7, 1.2e7, 3e7)
+    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(9)
+    answers = []
+    for made in (rotor.with_damping(loss=0.2), rotor):
+        mbs = exudyn.SystemContainer().AddSystem()
+        kinds = {"left": "position", "right": "position"}
+        body = add_rotor(mbs, made, spin=200.0, translation=translation, markers=kinds)
+        ground = mbs.CreateGround()
+        for name in kinds:
+            mbs.CreateCartesianSpringDamper(
+                itemNumbers=[ground, body.marker(name)],
+                localPosition0=list(made.interfaces[name].reference),
+                stiffness=list(spring),
+                damping=[300.0] * 3,
+            )
+        mbs.Assemble()
+        supports = [Support(name, np.diag(spring), 300.0) for name in kinds]
+        force = HarmonicForce("right", (1.0, 0.3j))
+        for target, more in ((mbs, {"body": body}), (made, {"supports": supports})):
+            response = harmonic_response(target, [900.0, 3000.0], force, speed=200.0, **more)
+            answers.append(response.phasor("right", "n1", 0))
+    in_scene, on_supports, in_scene_without, on_supports_without = answers
+    # what a scene's locks and differences of forces make differ is there without the damping, too
+    error = np.abs(in_scene_without - on_supports_without)
+    assert np.all(np.abs(in_scene - on_supports) <= 2.0 * error)
+    assert np.all(np.abs(on_supports - on_supports_without) > 100.0 * error)
+
+
+def test_analyses_in_time_say_that_they_leave_it_out():
+    rotor = one_mass(loss=ETA)
+    with pytest.warns(UserWarning, match=r"campbell finds modes without it; .*stiffness=η/ν"):
+        found = campbell(rotor, [0.0, 50.0])
+    np.testing.assert_array_equal(found.growth, campbell(one_mass(), [0.0, 50.0]).growth)
+    with pytest.warns(UserWarning, match="stability finds exponents without it"):
+        stability(rotor, [50.0])
+    without = pytest.warns(UserWarning, match="stability finds exponents without it")
+    with without:
+        assert not stability_threshold(rotor, 10.0, 20.0).values.size
+    with pytest.warns(UserWarning, match="stability finds exponents without it"):
+        unstable = unstable_ranges(rotor, [10.0, 20.0])
+    assert unstable.shape == (0, 2)
+    with pytest.warns(UserWarning, match="A scene runs without it"):
+        add_rotor(exudyn.SystemContainer().AddSystem(), rotor, spin=40.0, translation="none")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        critical_speeds(rotor)  # undamped by definition
+        campbell(one_mass(), [0.0, 50.0])

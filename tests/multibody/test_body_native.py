@@ -1,0 +1,139 @@
+"""Exudyn's own features on the rotor's marker body: sensors, loads, pictures, solution files."""
+
+import exudyn as exu
+import matplotlib
+
+matplotlib.use("Agg")
+import numpy as np
+import pytest
+from exudyn.itemInterface import (
+    LoadCoordinate,
+    MarkerNodeCoordinate,
+    MarkerSuperElementPosition,
+    SensorSuperElement,
+)
+from matplotlib.image import imread
+from models import STEEL, block_beam
+
+from exudyn_rotor import SolidRotor, add_rotor
+from exudyn_rotor.multibody.drawing import draw_scene
+
+KINDS = exu.OutputVariableType
+
+
+@pytest.fixture(scope="module")
+def solid():
+    return SolidRotor.from_ngsolve(block_beam(), STEEL, "z", order=2)
+
+
+@pytest.fixture(scope="module")
+def reduced(solid):
+    # without the static stress, which Exudyn's sensors would not show
+    return solid.reduce(4, stress=True, prestress=False)
+
+
+def settings(steps=20, end_time=1e-3):
+    result = exu.SimulationSettings()
+    result.timeIntegration.numberOfSteps = steps
+    result.timeIntegration.endTime = end_time
+    result.timeIntegration.verboseMode = result.staticSolver.verboseMode = 0
+    result.solution.file.write = False
+    result.solution.sensors.writePeriod = end_time / steps
+    return result
+
+
+def one_rotor(reduced, **options):
+    SC = exu.SystemContainer()
+    mbs = SC.AddSystem()
+    return SC, mbs, add_rotor(mbs, reduced, **options)
+
+
+def test_position_and_rigid_markers_agree_and_take_loads(reduced):
+    """A force at an offset marker is a force and a moment at the interface."""
+    lever, force = np.array([0.02, 0.0, 0.05]), np.array([0.0, 30.0, 20.0])
+    results = []
+    for kind, offset, moment in (
+        ("rigid", lever, None),
+        ("position", lever, None),
+        ("rigid", np.zeros(3), np.cross(lever, force)),
+    ):
+        _, mbs, body = one_rotor(reduced, markers={"right": kind}, marker_offsets={"right": offset})
+        mbs.CreateForce(itemNumber=body.marker("right"), loadVector=force.tolist())
+        if moment is not None:
+            mbs.CreateTorque(itemNumber=body.marker("right"), loadVector=moment.tolist())
+        mbs.Assemble()
+        mbs.SolveDynamic(settings())
+        results.append(body.coordinates()[0])
+    scale = abs(results[0]).max()
+    assert abs(results[1] - results[0]).max() < 1e-6 * scale
+    assert abs(results[2] - results[0]).max() < 1e-3 * scale
+
+
+def test_loads_on_coordinates(reduced):
+    """A modal force f moves its mode of unit mass by f (1 − cos ωt) / ω², a torque the spin."""
+    _, mbs, body = one_rotor(reduced)
+    mode = len(body.selection.labels) - 1
+    frequency = np.sqrt(body.motion.invariants.K[mode, mode])
+    for node, index, load in ((body.nodes["modes"], mode, 50.0), (body.nodes["rigid"], 5, 0.2)):
+        marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=index))
+        mbs.AddLoad(LoadCoordinate(markerNumber=marker, load=load))
+    spin = body.add_spin_sensor()
+    mbs.Assemble()
+    mbs.SolveDynamic(settings(400), solverType=exu.DynamicSolverType.RK44)
+    q = body.coordinates()[0]
+    assert q[4 + mode] == pytest.approx(
+        50.0 * (1 - np.cos(frequency * 1e-3)) / frequency**2, rel=1e-3
+    )
+    inertia = body.motion.invariants.Theta
+    assert mbs.GetSensorValues(spin) == pytest.approx(
+        [0.5e-6 * 0.2 / inertia, 1e-3 * 0.2 / inertia], rel=1e-3
+    )
+
+
+def test_native_markers_and_sensors_without_helpers(solid, reduced):
+    """What a script does on Exudyn's own flexible body works by mesh node number."""
+    _, mbs, body = one_rotor(reduced, initial_speed=100.0)
+    marker_body, nodes = body.objects["marker_body"], solid.interfaces["right"].nodes.tolist()
+    marker = mbs.AddMarker(
+        MarkerSuperElementPosition(
+            bodyNumber=marker_body,
+            meshNodeNumbers=nodes,
+            weightingFactors=solid.interfaces["right"].weights,
+        )
+    )
+    sensor = mbs.AddSensor(
+        SensorSuperElement(
+            bodyNumber=marker_body,
+            meshNodeNumber=nodes[0],
+            outputVariableType=KINDS.DisplacementLocal,
+        )
+    )
+    mbs.Assemble()
+    mbs.SolveDynamic(settings())
+    own = mbs.GetMarkerOutput(body.marker("right"), KINDS.Position)
+    assert abs(mbs.GetMarkerOutput(marker, KINDS.Position) - own).max() < 1e-12
+    assert np.all(np.isfinite(mbs.GetSensorValues(sensor)))
+
+
+def test_pictures_show_the_rotor_its_deformation_and_its_stress(solid, reduced, tmp_path):
+    assert solid.triangles.shape[1] == 6
+    SC, mbs, body = one_rotor(reduced, show_markers=False)
+    mbs.Assemble()
+    pixels = {}
+    bent = np.zeros(len(body.selection.labels))
+    bent[2] = 0.02 / abs(body.selection.T[:, 2] @ reduced.shapes.matrix.T).max()
+    for name, modes, contour in (
+        ("straight", 0.0 * bent, None),
+        ("bent", bent, None),
+        ("stress", bent, KINDS.StressLocal),
+    ):
+        state = np.concatenate([np.zeros(6), modes])
+        mbs.systemData.SetODE2Coordinates(state, exu.ConfigurationType.Current)
+        path = tmp_path / f"{name}.png"
+        draw_scene(SC, path, contour=contour, size=(300, 200))
+        pixels[name] = imread(path)[:, :, :3]
+    background = pixels["straight"][-3, -3]
+    share = (abs(pixels["straight"] - background).max(axis=2) > 0.05).mean()
+    assert share > 0.02
+    for first, second in (("straight", "bent"), ("bent", "stress")):
+        assert (abs(pixels[first] - pixels[second]).max(axis=2) > 0.1).mean() > 0.005

@@ -1,0 +1,217 @@
+"""The rotor in Exudyn's solvers: they agree, hold what is prescribed, and balance its power."""
+
+from dataclasses import replace
+
+import exudyn as exu
+import numpy as np
+import pytest
+from exudyn.itemInterface import SensorUserFunction
+from models import centered_disc
+from scipy.integrate import simpson
+
+from exudyn_rotor import (
+    ConstantSpeed,
+    Motion,
+    PrescribedMotion,
+    SpinAxis,
+    add_rotor,
+)
+from exudyn_rotor.theory.stiffening import stiffening
+
+SOLVERS = exu.DynamicSolverType
+IMPLICIT = (SOLVERS.GeneralizedAlpha, SOLVERS.TrapezoidalIndex2)
+RUN_UP = PrescribedMotion.run_up(100.0, 400.0, 8e-3)
+SHAKE = PrescribedMotion(
+    lambda t: np.array([1e-5 * (1 - np.cos(600.0 * t)), 0.0, 2e-5 * np.sin(300.0 * t)]),
+    lambda t: np.array([6e-3 * np.sin(600.0 * t), 0.0, 6e-3 * np.cos(300.0 * t)]),
+    lambda t: np.array([3.6 * np.cos(600.0 * t), 0.0, -1.8 * np.sin(300.0 * t)]),
+)
+STIFFNESS, DAMPING = np.array([4e6, 3e6, 2e6]), np.array([800.0, 500.0, 300.0])
+GRAVITY = np.array([0.0, -9.81, 3.0])
+TORQUE = 7.0
+
+
+@pytest.fixture(scope="module")
+def reduced():
+    rotor = centered_disc(order=1)
+    return rotor.add_point_mass([0.15, 0.0, 0.2], 0.1).reduce(2)
+
+
+def settings(steps, end_time):
+    result = exu.SimulationSettings()
+    result.timeIntegration.numberOfSteps = steps
+    result.timeIntegration.endTime = end_time
+    result.timeIntegration.generalizedAlpha.spectralRadius = 1.0
+    result.timeIntegration.newton.relativeTolerance = 1e-10
+    result.timeIntegration.verboseMode = result.staticSolver.verboseMode = 0
+    result.solution.file.write = False
+    result.solution.sensors.writePeriod = end_time / steps
+    return result
+
+
+def scene(reduced, **options):
+    """Return a rotor on two bearings in gravity, with a torque at its right end."""
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, reduced, **({"gravity": GRAVITY} | options))
+    ground = mbs.CreateGround()
+    for name, interface in reduced.interfaces.items():
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[ground, body.marker(name)],
+            localPosition0=interface.reference.tolist(),
+            stiffness=STIFFNESS.tolist(),
+            damping=DAMPING.tolist(),
+        )
+    mbs.CreateTorque(itemNumber=body.marker("right"), loadVector=[0.0, 0.0, TORQUE])
+    return mbs, body
+
+
+def final_state(reduced, solver, options, steps=400, end_time=4e-3):
+    """Return unknowns, the right end's place and the disc's angle at the end of a short run."""
+    mbs, body = scene(reduced, **options)
+    mbs.Assemble()
+    run = settings(steps, end_time)
+    run.timeIntegration.automaticStepSize = False  # of DOPRI5
+    mbs.SolveDynamic(run, solverType=solver)
+    place = mbs.GetMarkerOutput(body.marker("right"), exu.OutputVariableType.Position)
+    turn = mbs.GetMarkerOutput(body.marker("right"), exu.OutputVariableType.RotationMatrix)
+    return body.coordinates()[0], np.append(place, turn)
+
+
+CASES = {
+    "free spin": {"initial_speed": 300.0},
+    "free spin, in-plane": {"translation": "in-plane", "initial_speed": 300.0},
+    "constant speed": {"spin": 300.0},
+    "constant speed, no translation": {"spin": 300.0, "translation": "none"},
+    "run-up": {"spin": RUN_UP, "locking": "mass"},
+    "shaken": {"spin": 300.0, "translation": SHAKE, "locking": "mass"},
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_solvers_agree(reduced, case):
+    reference = final_state(reduced, SOLVERS.RK44, CASES[case])
+    for solver in (*IMPLICIT, SOLVERS.DOPRI5):
+        unknowns, place = final_state(reduced, solver, CASES[case])
+        limit = 1e-8 if solver == SOLVERS.DOPRI5 else 2e-3
+        scale = abs(reference[0]).max()
+        assert abs(unknowns - reference[0]).max() < limit * scale
+        assert abs(place - reference[1]).max() < limit
+
+
+# ------------------------------------------------------------------ static solutions
+
+
+@pytest.mark.parametrize("locking", ["mass", "constraints"])
+@pytest.mark.parametrize(("speed", "start"), [(0.0, 0.3), (200.0, 0.0), (200.0, -0.2)])
+def test_static_solution_is_the_steady_state_in_the_rotating_frame(reduced, locking, speed, start):
+    """Without translations, on springs equal in all directions, a run from there stays there."""
+    mbs = exu.SystemContainer().AddSystem()
+    spin = ConstantSpeed(speed, start)
+    body = add_rotor(mbs, reduced, spin=spin, translation="none", locking=locking)
+    ground = mbs.CreateGround()
+    for name, interface in reduced.interfaces.items():
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[ground, body.marker(name)],
+            localPosition0=interface.reference.tolist(),
+            stiffness=[4e6] * 3,
+        )
+    mbs.CreateTorque(itemNumber=body.marker("right"), loadVector=[0.0, 0.0, TORQUE])
+    drive = body.add_drive_torque_sensor()
+    kinds = exu.OutputVariableType
+    mbs.Assemble()
+    run = settings(100, 2e-3)
+    run.staticSolver.newton.relativeTolerance = 1e-10  # rounding leaves 1e-12 of the torque
+    mbs.SolveStatic(run, updateInitialValues=True)
+    # θ is that of the load time, 1 s, but for the compliance of the hold
+    angle = mbs.GetNodeOutput(body.nodes["rigid"], kinds.Coordinates)[5]
+    assert angle == pytest.approx(start + speed, abs=1e-4)
+    assert mbs.GetSensorValues(drive) == pytest.approx(-TORQUE, rel=1e-6)
+    modes = mbs.GetNodeOutput(body.nodes["modes"], kinds.Coordinates)
+    sag = mbs.GetMarkerOutput(body.marker("left"), kinds.Displacement)
+    run.timeIntegration.startTime = 1.0
+    run.timeIntegration.endTime = 1.002
+    mbs.SolveDynamic(run)
+    after = mbs.GetNodeOutput(body.nodes["modes"], kinds.Coordinates)
+    assert abs(after - modes).max() < 1e-6 * abs(modes).max() + 1e-12
+    # the unbalance of 0.1 kg at 0.15 m bends the shaft outwards
+    assert (np.hypot(*sag[:2]) > 1e-5) == (speed > 0.0)
+
+
+# ------------------------------------------------------------------ power of the drive
+
+
+def power_scene(reduced, options):
+    """Return a scene with a sensor of [energy, power taken out by dampers and torque, ω]."""
+    mbs, body = scene(reduced, **options)
+    spin, invariants = body.formulation.spin, body.motion.invariants
+    count = body.motion.formulation.translation_count
+    whole = Motion(
+        invariants,
+        replace(body.motion.formulation, spin="free"),
+        stiffening(invariants, body.stiffening),
+        orientation=body.motion.orientation,
+    )
+    axis = SpinAxis(invariants.direction)
+    ends = [(body.marker(name), i.reference) for name, i in reduced.interfaces.items()]
+    kinds = exu.OutputVariableType
+
+    def balance(mbs, t, sensors, factors, configuration):
+        q, q_t, _ = body.coordinates(configuration)
+        zeta = q[count:]
+        q = np.concatenate([q[:count], [spin.value(t)], zeta])
+        q_t = np.concatenate([q_t[:count], [spin.rate(t)], q_t[count:]])
+        mass_center = axis.rotation(spin.value(t)) @ (
+            invariants.center + invariants.S @ zeta / invariants.mass
+        )
+        mass_center = mass_center + whole.free_directions @ q[:count]
+        energy = whole.energy(t, q, q_t) - invariants.mass * GRAVITY @ mass_center
+        turning = mbs.GetMarkerOutput(ends[1][0], kinds.AngularVelocity, configuration)
+        lost = -TORQUE * turning[2]
+        for marker, rest in ends:
+            shift = mbs.GetMarkerOutput(marker, kinds.Position, configuration) - rest
+            velocity = mbs.GetMarkerOutput(marker, kinds.Velocity, configuration)
+            energy += 0.5 * shift @ (STIFFNESS * shift)
+            lost += velocity @ (DAMPING * velocity)
+        return [energy, lost, spin.rate(t)]
+
+    sensor = mbs.AddSensor(
+        SensorUserFunction(sensorUserFunction=balance, storeInternal=True, writeToFile=False)
+    )
+    return mbs, sensor, body.add_drive_torque_sensor()
+
+
+POWER = {
+    "constant speed": ({"spin": 300.0}, SOLVERS.RK44, 1e-9),
+    "constant speed, no translation": (
+        {"spin": 300.0, "translation": "none"},
+        SOLVERS.RK44,
+        1e-9,
+    ),
+    # the integrator's O(h²)
+    "constant speed, constraints": (
+        {"spin": 300.0, "locking": "constraints"},
+        SOLVERS.GeneralizedAlpha,
+        1e-6,
+    ),
+    # the markers follow the servo, which lags the prescribed angle a little
+    "run-up": ({"spin": RUN_UP, "locking": "mass"}, SOLVERS.RK44, 1e-7),
+    "run-up, no translation, constraints": (
+        {"spin": RUN_UP, "translation": "none", "locking": "constraints"},
+        SOLVERS.GeneralizedAlpha,
+        1e-8,
+    ),
+}
+
+
+@pytest.mark.parametrize("case", POWER)
+def test_work_of_the_drive_is_change_of_energy_plus_losses(reduced, case):
+    options, solver, limit = POWER[case]
+    mbs, balance, drive = power_scene(reduced, options)
+    mbs.Assemble()
+    mbs.SolveDynamic(settings(800, 4e-3), solverType=solver)
+    # explicit solvers know no accelerations at the first instant, which the torque needs
+    t, energy, lost, speed = mbs.GetSensorStoredData(balance)[1:].T
+    torque = mbs.GetSensorStoredData(drive)[1:, 1]
+    work = simpson(torque * speed, x=t)
+    scale = simpson(abs(torque * speed), x=t)
+    assert abs(work - simpson(lost, x=t) - (energy[-1] - energy[0])) < limit * scale

@@ -1,0 +1,164 @@
+"""Runs end where a journal leaves its clearance in an accepted step, not in a trial."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+from exudyn.itemInterface import LoadForceVector
+from exudyn.utilities import InertiaCuboid
+from point_rotors import ring_rotor
+
+from exudyn_rotor import (
+    AnnularSeal,
+    ClearanceStop,
+    JournalBearing,
+    MagneticBearing,
+    OilFilm,
+    PIDController,
+    SaturatingActuator,
+    ShortJournalBearing,
+    SqueezeFilmDamper,
+    Support,
+    TiltingPadBearing,
+    add_rotor,
+    add_supports,
+    grooved_pads,
+    recommended_settings,
+)
+from exudyn_rotor.multibody.calls import clearances
+
+CLEARANCE, SPEED = 1e-4, 300.0
+TO_X = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
+SHORT = {"radius": 0.05, "length": 0.03, "clearance": CLEARANCE, "viscosity": 0.02}
+
+
+def film(preload=0.0, grooves=(0.0, np.pi)):
+    pads = grooved_pads(CLEARANCE, grooves, 0.3, preload)
+    return OilFilm(0.05, 0.05, 0.02, pads, nodes=36, axial_nodes=0)
+
+
+KINDS = {
+    "short journal": ShortJournalBearing(interface="left", **SHORT),
+    "film": JournalBearing(interface="left", film=film()),
+    "lemon bore": JournalBearing(interface="left", film=film(0.5)),
+    "upright lemon bore": JournalBearing(  # half of the clearance along x, 0.87 along y
+        interface="left", film=film(0.5, (0.5 * np.pi, 1.5 * np.pi))
+    ),
+    "squeeze film": SqueezeFilmDamper(interface="left", centring_stiffness=1e6, **SHORT),
+    "seal": AnnularSeal(
+        interface="left", radius=0.1, length=0.04, clearance=CLEARANCE, pressure_drop=1e6,
+        density=1000.0, viscosity=1e-3,
+    ),
+    "tilting pads": TiltingPadBearing(
+        interface="left", film=film(0.3, np.radians([30.0, 150.0, 270.0])), pad_inertia=1e-4
+    ),
+    "magnets": MagneticBearing(
+        interface="left",
+        actuator=SaturatingActuator(
+            constant=1e-5, bias_current=2.0, gap=CLEARANCE, current_limit=3.0
+        ),
+        controller=PIDController(
+            proportional=3e5, derivative=50.0, filter_frequency=6e4, amplifier_frequency=3e4
+        ),
+    ),
+}  # fmt: skip
+
+
+def sled(mbs):
+    """Return a base that moves."""
+    block = InertiaCuboid(density=1e6, sideLengths=[1.0, 1.0, 1.0])
+    return mbs.CreateRigidBody(inertia=block, initialVelocity=[0.0, 2.0, 0.0])
+
+
+def scene(bearings, load=0.0, base=None, **options):
+    rotor = ring_rotor(0.1, 0.15, 20.0)
+    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, **(options or {"spin": SPEED}))
+    held = Support("right", 1e7, 1e3)
+    added = add_supports(body, [*bearings, held], base and base(mbs))
+    if load:
+        mbs.AddLoad(LoadForceVector(markerNumber=body.marker("left"), loadVector=[0.0, load, 0.0]))
+    mbs.Assemble()
+    return mbs, body, added
+
+
+def start(mbs, body, rate=0.0, place=0.0):
+    """Let the rotor begin with a rate [m/s] and a place [m] along y."""
+    initial, system = exu.ConfigurationType.Initial, mbs.systemData
+    second = mbs.GetNodeODE2Index(body.nodes["rigid"]) + 1
+    rates, places = (
+        np.array(read(initial)) for read in (system.GetODE2Coordinates_t, system.GetODE2Coordinates)
+    )
+    rates[second], places[second] = rate, place
+    system.SetODE2Coordinates_t(rates, initial)
+    system.SetODE2Coordinates(places, initial)
+
+
+def run(mbs, end_time=4e-3, step=1e-4, change=None, **how):
+    settings = recommended_settings(end_time=end_time, step=step)
+    settings.solution.file.write = False
+    if change is not None:
+        change(settings.timeIntegration)
+    return mbs.SolveDynamic(settings, **how)
+
+
+def adaptive_steps(integration):
+    integration.adaptiveStep, integration.numberOfSteps = True, 4
+    integration.newton.maxIterations = 5  # takes a sixteenth of the first step
+
+
+def no_force_at_first(integration):
+    integration.generalizedAlpha.computeInitialAccelerations = False
+
+
+CASES = {  # kind, options of the scene, start, and of the run
+    "slowly": ("seal", {"load": -3e4}, {}, {}),
+    "through a film": ("short journal", {"load": -3e6}, {}, {}),
+    "braked": ("film", {"load": -3e5, "initial_speed": 1.0}, {"place": -0.98 * CLEARANCE}, {}),
+    "another axis": ("seal", {"load": -3e4, "spin": SPEED, "rotation": TO_X}, {}, {}),
+    "explicit steps": (
+        "seal", {"load": -3e4}, {}, {"solverType": exu.DynamicSolverType.DOPRI5}
+    ),
+    "adaptive steps": ("short journal", {"load": -3e5}, {}, {"change": adaptive_steps}),
+    "a base that leaves": ("seal", {"base": sled}, {}, {}),
+    "across in a step": ("seal", {}, {"rate": -30.0, "place": 0.9 * CLEARANCE}, {}),
+    "magnets": ("magnets", {"load": -6e4}, {}, {}),
+    "magnets from the start": (
+        "magnets", {}, {"place": 1.1 * CLEARANCE}, {"change": no_force_at_first}
+    ),
+    "from the start": ("seal", {}, {"place": 1.1 * CLEARANCE}, {"change": no_force_at_first}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_run_ends_at_the_first_step_outside(case, monkeypatch):
+    """That is the first of a run that is not looked at, by places of markers; twice."""
+    kind, options, beginning, how = CASES[case]
+    mbs, body, added = scene([KINDS[kind]], **options)
+    start(mbs, body, **beginning)
+    distances = {}
+
+    def own(mbs, t):
+        distances[t] = np.hypot(*added[0].values()[0][:2])
+        return distances[t] < CLEARANCE
+
+    with monkeypatch.context() as patch:
+        patch.setattr(clearances, "_in_scene", lambda mbs: [])
+        mbs.SetPostStepUserFunction(own)
+        run(mbs, **how)
+    mbs.SetPostStepUserFunction(0)
+    time, distance = distances.popitem()
+    assert distance >= CLEARANCE
+    assert all(each < CLEARANCE for each in distances.values())
+    for _ in range(2):
+        with pytest.raises(ValueError, match="left its bearing") as error:
+            run(mbs, **how)
+        assert f" at t = {time:g} s: its journal is {distance:.3g} m from" in str(error.value)
+
+
+def test_a_rub_is_meant_where_there_is_a_stop():
+    stop = ClearanceStop(interface="left", radius=0.1, clearance=CLEARANCE, stiffness=1e8)
+    mbs, _, added = scene([KINDS["seal"], stop], -3e4)
+    assert run(mbs)
+    place = added[0].values()[0]
+    assert np.hypot(*place[:2]) > CLEARANCE

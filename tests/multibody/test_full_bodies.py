@@ -1,0 +1,251 @@
+"""Full bodies in scenes: all nodal displacements, against reduced rotors with all their modes."""
+
+import exudyn
+import netgen.occ as occ
+import ngsolve
+import numpy as np
+import pytest
+from exudyn.itemInterface import SensorNode
+from scipy.spatial.transform import Rotation
+
+from exudyn_rotor import (
+    PrescribedMotion,
+    SolidRotor,
+    SpinAxis,
+    add_rotor,
+    add_supports,
+    recommended_settings,
+)
+
+STEP, STEPS, NEWTON = 1e-4, 20, 1e-10
+GRAVITY = [1.0, -9.81, 3.0]
+SKEW = np.array([1.0, 2.0, 2.0]) / 3.0
+KINDS = exudyn.OutputVariableType
+RUN_UP = PrescribedMotion.run_up(100.0, 300.0, 1e-3)
+SHAKEN = PrescribedMotion(
+    lambda t: np.array([1e-3 * np.sin(200.0 * t), 0.0, 5e-4 * np.sin(300.0 * t)]),
+    lambda t: np.array([0.2 * np.cos(200.0 * t), 0.0, 0.15 * np.cos(300.0 * t)]),
+    lambda t: np.array([-40.0 * np.sin(200.0 * t), 0.0, -45.0 * np.sin(300.0 * t)]),
+)
+
+
+@pytest.fixture(scope="module")
+def bar():
+    """A soft bar of 20 nodes with an unbalance, no symmetry about its axis z."""
+    solid = occ.Box((-0.03, -0.025, 0.0), (0.03, 0.025, 0.3))
+    solid.faces.Min(occ.Z).name, solid.faces.Max(occ.Z).name = "left", "right"
+    mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.3))
+    rubber = {"youngsModulus": 2.1e9, "poissonsRatio": 0.3, "density": 7850.0}
+    rotor = SolidRotor.from_ngsolve(mesh, rubber, "z", order=1)
+    return rotor.add_point_mass([0.03, 0.025, 0.3], 0.5)
+
+
+def turned(rotor, direction, point=(0.0, 0.0, 0.0)):
+    """The same rotor with its length along `direction`, its axis through `point` of the mesh."""
+    R = Rotation.align_vectors([direction], [[0.0, 0.0, 1.0]])[0].as_matrix()
+    B = np.kron(np.eye(rotor.node_count), R)
+    sets = {name: (face.nodes, face.weights) for name, face in rotor.interfaces.items()}
+    stiffness = B @ rotor.stiffness.toarray() @ B.T
+    axis = SpinAxis(direction, R @ np.array(point))
+    return SolidRotor.from_matrices(rotor.mass, stiffness, rotor.nodes @ R.T, axis, interfaces=sets)
+
+
+def on_axis(bar, axis):
+    """The bar about its axis, turned to another direction, or moved beside it."""
+    turns = {
+        "x": ([1.0, 0.0, 0.0],),
+        "skew": (SKEW,),
+        "down": ([0.0, 0.0, -1.0],),
+        "off": (SKEW, (0.02, 0.01, 0.0)),
+    }
+    return bar if axis == "z" else turned(bar, *turns[axis])
+
+
+def run(rotor, source, supports=(), **options):
+    """Run a rotor on two springs and supports; return body and histories: ends, drive, energy."""
+    mbs = exudyn.SystemContainer().AddSystem()
+    body = add_rotor(mbs, source, gravity=GRAVITY, **options)
+    add_supports(body, supports)
+    place = options.get("rotation", np.eye(3))
+    sensors = []
+    for name in ("left", "right"):
+        ground = mbs.CreateGround(referencePosition=place @ rotor.interfaces[name].reference)
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[ground, body.marker(name)],
+            stiffness=[1e5, 2e5, 1.5e5],
+            damping=[20.0, 10.0, 5.0],
+        )
+        sensors += [
+            body.add_interface_sensor(name, kind) for kind in (KINDS.Position, KINDS.Rotation)
+        ]
+    free = options["spin"] == "free"
+    sensors += [body.add_spin_sensor() if free else body.add_drive_torque_sensor()]
+    sensors += [body.add_energy_sensor()]
+    mbs.Assemble()
+    mbs.SolveDynamic(tight_settings(body, STEP))
+    return body, [mbs.GetSensorStoredData(sensor)[:, 1:] for sensor in sensors]
+
+
+def tight_settings(body, step, steps=STEPS):
+    """Settings with a tight tolerance of Newton's method, which store sensors at every step."""
+    settings = recommended_settings(steps * step, step, body=body)
+    settings.timeIntegration.newton.relativeTolerance = NEWTON
+    settings.timeIntegration.newton.absoluteTolerance = 1e-3 * NEWTON
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = step
+    return settings
+
+
+FAMILY = {
+    "2.2": ({"translation": "free", "spin": "free", "initial_speed": 300.0}, 4),
+    "2.3": ({"translation": "in-plane", "spin": "free", "initial_speed": 300.0}, 3),
+    "2.4": ({"translation": "none", "spin": "free", "initial_speed": 300.0}, 1),
+    "2.5": ({"translation": "none", "spin": 300.0}, 1),
+    "2.5, elastic": ({"translation": "none", "spin": 300.0, "drive": "elastic"}, 0),
+    "2.5, θ(t)": ({"translation": "none", "spin": RUN_UP}, 1),
+    "2.5, τ(t)": ({"translation": SHAKEN, "spin": 300.0}, 1),
+    "frozen": (
+        {
+            "translation": "free",
+            "spin": "free",
+            "initial_speed": 300.0,
+            "spin_coupling": "frozen",
+        },
+        4,
+    ),
+}
+CASES = [(name, "z", "tilt") for name in FAMILY] + [
+    ("2.2", "x", "none"),
+    ("2.3", "skew", "tilt"),
+    ("2.4", "off", "tilt"),
+    ("2.4", "down", "tilt"),
+    ("2.5", "skew", "none"),
+    ("2.5, θ(t)", "off", "tilt"),
+    ("2.4", "z", "full"),
+    ("2.5", "z", "full"),
+]
+
+
+@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
+@pytest.mark.parametrize(("name", "axis", "level"), CASES)
+def test_full_and_reduced_with_all_modes_agree(bar, name, axis, level):
+    """The same equations in two bases: all differences are those of Newton's tolerance.
+
+    Of the motion that is 1e-10 times what a step repeats, 20 times; speeds, torques and energies
+    have lost three digits more to the differences that they are.
+    """
+    rotor = on_axis(bar, axis)
+    options, conditions = FAMILY[name]
+    options = options | {"stiffening": level}
+    if axis == "skew":
+        options["rotation"] = Rotation.from_rotvec([0.3, 0.5, -0.2]).as_matrix()
+    reduced = rotor.reduce(3 * rotor.node_count - 6)
+    _, few = run(rotor, reduced, **options)
+    body, all_ = run(rotor, rotor, **options)
+    assert body.condition_count == conditions
+    assert body.uses_python == (name not in ("2.5", "2.5, elastic"))
+    for index, (one, other) in enumerate(zip(few, all_, strict=True)):
+        size = np.abs(one - one[0]).max()
+        assert np.abs(one - other).max() < (1e-8 if index < 4 else 1e-5) * size
+
+
+def swinging(rotor, options):
+    """Displacements and rates of two bending modes that keep the conditions, 2 mm and 4 m/s."""
+    body = add_rotor(exudyn.SystemContainer().AddSystem(), rotor, **options)
+    shapes, held = rotor.reduce(2).shapes.matrix[:, -2:], body.selection.conditions.rows
+    lever = np.cross(rotor.axis.direction, rotor.nodes - body.selection.origin)
+    rigid = np.c_[np.tile(np.eye(3), (rotor.node_count, 1)), lever.ravel()]
+    shapes = shapes - rigid @ np.linalg.pinv(held @ rigid) @ (held @ shapes)
+    bent, rate = (shapes / np.abs(shapes).max(axis=0)).T
+    return {"modal_coordinates": 2e-3 * bent, "modal_velocities": 4.0 * rate}
+
+
+def energy_and_momentum(body):
+    """``½ ṗᵀMṗ + ½ cᵀKc`` and ``e · Σ p × Mṗ``, ``ṗ = Aᵀτ̇ + ċ + ω e × (x + c)``, rotor axes."""
+    q, rates, _ = body.coordinates()
+    rotor, modes = body.selection.source, body.motion.modes
+    c, c_t = (values[modes].reshape(-1, 3) for values in (q, rates))
+    count, e = modes.start - 1, body.axis.direction
+    place = rotor.nodes - body.selection.origin + c
+    turn = body.motion.orientation @ body.axis.rotation(q[count])
+    drift = turn.T @ body.motion.free_directions @ rates[:count]
+    velocity = drift + c_t + rates[count] * np.cross(e, place)
+    momentum = rotor.mass @ velocity.ravel()
+    energy = momentum @ velocity.ravel() + c.ravel() @ (rotor.stiffness @ c.ravel())
+    return 0.5 * energy, e @ np.cross(place, momentum.reshape(-1, 3)).sum(axis=0), rates[count]
+
+
+@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
+@pytest.mark.parametrize(
+    ("name", "axis", "damping"),
+    [("2.2", "z", 0.0), ("2.3", "skew", 0.0), ("2.4", "off", 0.0), ("2.2", "skew", 2e-5)],
+)
+def test_a_swinging_rotor_without_torque_keeps_energy_and_momentum(bar, name, axis, damping):
+    """The spin speed follows the moment of inertia, which changes by some per cent.
+
+    The trapezoidal rule errs by (ωh)²/12 of what is exchanged, a tenth of the whole: 4e-4 with 40
+    steps and the faster of two modes (4400 rad/s), and four times as much with half the steps. What
+    damping by β K takes, β ∫ ċᵀKċ dt, has an integral with an error of (2ωh)²/12.
+    """
+    rotor = on_axis(bar, axis)
+    options = FAMILY[name][0] | {"stiffening": "none", "stiffness_damping": damping}
+    options |= swinging(rotor, options)
+    errors = []
+    for steps in (20, 40):
+        mbs = exudyn.SystemContainer().AddSystem()
+        body = add_rotor(mbs, rotor, **options)
+        rates = mbs.AddSensor(
+            SensorNode(
+                nodeNumber=body.nodes["fields"], outputVariableType=KINDS.Coordinates_t,
+                storeInternal=True,
+            )
+        )  # fmt: skip
+        mbs.Assemble()
+        energy, momentum, speed = energy_and_momentum(body)
+        settings = tight_settings(body, 2e-3 / steps, steps)
+        settings.timeIntegration.generalizedAlpha.spectralRadius = 1.0
+        mbs.SolveDynamic(settings)
+        later = energy_and_momentum(body)
+        assert abs(later[2] / speed - 1.0) > 1e-2
+        time, c_t = np.split(mbs.GetSensorStoredData(rates)[:, : 1 + 3 * rotor.node_count], [1], 1)
+        powers = np.sum(c_t * (c_t @ rotor.stiffness), axis=1)
+        lost = damping * np.trapezoid(powers, time[:, 0]) / energy
+        errors.append([abs(later[0] / energy + lost - 1.0), abs(later[1] / momentum - 1.0)])
+    assert np.all(np.array(errors[1]) < 4e-4 + 0.016 * lost)
+    np.testing.assert_allclose(np.divide(*errors), 4.0, rtol=0.15)
+
+
+def scene(source, **options):
+    """Return an empty scene with the rotor at 10 rad/s, held in space."""
+    mbs = exudyn.SystemContainer().AddSystem()
+    return mbs, add_rotor(mbs, source, **({"spin": 10.0, "translation": "none"} | options))
+
+
+def test_markers_and_sensors_at_mesh_nodes_move_with_them(bar):
+    mbs, body = scene(bar)
+    corner = int(bar.interfaces["right"].nodes[0])
+    marker = body.add_marker([corner], kind="position")
+    sensor = body.add_node_sensor(corner, KINDS.DisplacementLocal)
+    mbs.CreateForce(itemNumber=marker, loadVector=[0.0, 0.0, 50.0])
+    mbs.Assemble()
+    mbs.SolveDynamic(recommended_settings(1e-3, 1e-4, body=body))
+    moved = body.displacement()[corner]
+    assert moved[2] > 1e-9
+    np.testing.assert_allclose(mbs.GetSensorValues(sensor), moved, rtol=1e-9)
+
+
+def test_stress_is_that_of_the_rotation(bar):
+    """A clamped bar at rest in the rotating frame has the stress of the static solution.
+
+    Beside that of the spin softening, (Ω/ω₁)² of it, below 1e-4 at 1 rad/s.
+    """
+    rotor = bar.clamped("left")
+    rotor = rotor.with_prestress(rotor.prestress())
+    mbs, body = scene(rotor, spin=1.0, stiffening="none")
+    mbs.Assemble()
+    settings = exudyn.SimulationSettings()
+    settings.staticSolver.verboseMode = 0
+    mbs.SolveStatic(settings)
+    known = rotor.carried_prestress.stress
+    assert np.abs(body.stress() - known).max() < 1e-4 * np.abs(known).max()

@@ -1,0 +1,237 @@
+"""Supports put into a scene, against the same list in linear analyses and against closed forms."""
+
+from dataclasses import replace
+
+import exudyn as exu
+import numpy as np
+import pytest
+from apart import distance
+from exudyn.itemInterface import MarkerBodyRigid, MarkerNodePosition, NodePoint
+from exudyn.rigidBodyUtilities import InertiaCuboid
+from point_rotors import ring_rotor
+from scipy.spatial.transform import Rotation
+
+from exudyn_rotor import (
+    SolidRotor,
+    Support,
+    Unbalance,
+    add_rotor,
+    add_supports,
+    campbell,
+    linear_model,
+    recommended_settings,
+    stability,
+    unbalance_response,
+)
+from exudyn_rotor.reduction.driven import without_spin
+
+SPEED = 200.0
+FULL = np.array([[2.0e6, 4e5, 1e5], [-3e5, 1.2e6, 2e5], [5e4, -1e5, 3e6]])
+DAMPING = np.array([[300.0, 40.0, 10.0], [-30.0, 200.0, 20.0], [5.0, -10.0, 100.0]])
+HELD = Support("right", np.diag([1e6, 2e6, 5e5]), 150.0)
+KINDS = {
+    "number": Support("left", 1e6, 200.0),
+    "2 x 2": Support("left", [[2e6, 0.0], [0.0, 1e6]], [[300.0, 0.0], [0.0, 100.0]]),
+    "cross-coupled": Support("left", [[2e6, 5e5], [-5e5, 2e6]], 400.0),
+    "3 x 3": Support("left", FULL, DAMPING),
+    "tilt": Support("left", 1e6, 0.0, [[4e3, 1e3], [-5e2, 2e3]]),
+    "tilt, damped": Support("left", 1e6, 0.0, [[4e3, 1e3], [-5e2, 2e3]], [[9.0, 2.0], [1.0, 5.0]]),
+    "tilts alone": Support("left", tilt_stiffness=3e3, tilt_damping=4.0),
+    "about the axis": Support("left", 1e6, 0.0, np.diag([3e3, 2e3, 4e3]), np.diag([3, 2, 1e-5])),
+    "rotor frame": Support("left", FULL, DAMPING, frame="rotor"),
+    "rotor frame, tilts": Support(
+        "left", 0.0, 0.0, np.diag([3e3, 2e3, 4e3]), np.diag([3.0, 2.0, 1.0]), frame="rotor"
+    ),
+    "table": Support(
+        "left", ([0.0, 150.0, 300.0], [FULL, 2.0 * FULL, 3.0 * FULL.T]), ([9.0, 300.0], [3e2, 5e2])
+    ),
+    "tilt table": Support(
+        "left", 1e6, 0.0, ([0.0, 300.0], [1e3, 5e3]), ([0.0, 300.0], [[[9, 2], [1, 5]]] * 2)
+    ),
+    "function": Support("left", lambda speed: 1e6 + 1e3 * speed, lambda speed: 1.5 * speed),
+}  # fmt: skip
+WITH_A_HELD_SPIN = ("about the axis", "rotor frame, tilts")
+
+
+def rings(turn=None, heavy=1e-3, modes=2):
+    """Return a rotor with flexible modes and a heavy spot [kg]; `turn` turns the mesh."""
+    Q = np.eye(3) if turn is None else turn
+    upright = ring_rotor(0.1, 0.15, 5.0)
+    whole = np.kron(np.eye(10), Q)
+    rotor = SolidRotor.from_matrices(
+        upright.mass, whole @ upright.stiffness @ whole.T, upright.nodes @ Q.T, Q[:, 2]
+    )
+    rotor = rotor.add_point_mass(Q @ [0.1, 0.0, 0.15], heavy) if heavy else rotor
+    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10))
+    return rotor.reduce(modes)
+
+
+def on_supports(reduced, supports, rotation=None, base=None, **options):
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, reduced, rotation=rotation, **options)
+    added = add_supports(body, supports, base)
+    mbs.Assemble()
+    return mbs, body, added
+
+
+def compared(kind, turn=None, rotation=None, **options):
+    """Return the distance between a scene on supports and the linear rotor on the same list."""
+    reduced, supports = rings(turn), [KINDS[kind], HELD]
+    held = {"spin": SPEED} if kind in WITH_A_HELD_SPIN else {}
+    mbs, body, _ = on_supports(reduced, supports, rotation, **(options or held))
+    in_list = linear_model(without_spin(reduced) if held else reduced, supports=supports)
+    return distance(linear_model(mbs, body=body), in_list, SPEED)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_scene_and_linear_rotor_have_the_same_exponents(kind):
+    assert compared(kind) < 1e-7
+
+
+TO_X, TO_Y = (Rotation.from_euler(a, 90.0, degrees=True).as_matrix() for a in ("y", "x"))
+SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
+
+
+MIXED = [
+    replace(KINDS["cross-coupled"], tilt_stiffness=2e3, tilt_damping=3.0),
+    KINDS["table"],
+    replace(HELD, frame="rotor", damping=0.0),
+    replace(KINDS["number"], interface="right", tilt_stiffness=([0.0, 300.0], [1e3, 5e3])),
+]
+
+
+def test_public_analyses_take_the_scene_and_the_list_alike():
+    # about the reference: centrifugal loads strain the rings, by which a scene's equations change
+    reduced, unbalance = rings(heavy=0.0), [Unbalance("left", 1e-4)]
+    held = Support("right", np.diag([1e6, 1e6, 5e5]), 150.0, np.diag([0.0, 0.0, 4e3]))
+    isotropic = [MIXED[0], held]
+    mbs, body, _ = on_supports(reduced, isotropic, spin=0.0, drive="elastic")
+    targets = (
+        linear_model(mbs, body=body, about="given"),
+        linear_model(reduced, supports=isotropic),
+    )
+    speeds = [60.0, SPEED]
+    responses = [unbalance_response(each, speeds, unbalance, accuracy=None) for each in targets]
+    orbits = [each.motion[:, :, each.orders.tolist().index(1), :3] for each in responses]
+    np.testing.assert_allclose(*orbits, rtol=0.0, atol=1e-10 * np.abs(orbits[1]).max())
+    frequencies = [np.sort(campbell(each, speeds).frequencies_rotor) for each in targets]
+    np.testing.assert_allclose(*frequencies, rtol=1e-9)
+    every = [*MIXED, held]
+    mbs, body, _ = on_supports(reduced, every, spin=0.0, drive="elastic")
+    targets = (
+        linear_model(mbs, body=body, about="given"),
+        linear_model(reduced, supports=every),
+    )
+    growth = [stability(each, [SPEED]).growth for each in targets]
+    np.testing.assert_allclose(*growth, rtol=1e-8, atol=1e-8)
+
+
+FROM_BASE = [KINDS["3 x 3"], KINDS["tilt, damped"], replace(HELD, tilt_stiffness=2e3)]
+
+
+def block(mbs, turn):
+    """Return a sprung rigid block below the rotor."""
+    base = mbs.CreateRigidBody(
+        inertia=InertiaCuboid(density=2500.0, sideLengths=[0.3, 0.1, 0.5]),
+        referencePosition=[0.0, -0.2, 0.0],
+        referenceRotationMatrix=turn,
+        nodeType=exu.NodeType.RotationRxyz,
+    )
+    ground = mbs.CreateGround()
+    for place in np.array([[-1, 0, -1], [-1, 0, 1], [1, 0, -1], [1, 1, 1]]) * 0.1:
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[ground, base],
+            localPosition0=list(turn @ place + [0.0, -0.2, 0.0]),
+            localPosition1=list(place),
+            stiffness=[4e5, 6e5, 5e5],
+            damping=[100.0] * 3,
+        )
+    return base
+
+
+def test_a_foundation_feels_the_forces():
+    """On a skew block, by its number or by markers."""
+    found, turn = [], SKEW
+    for by_markers in (False, True):
+        mbs = exu.SystemContainer().AddSystem()
+        body, base = add_rotor(mbs, rings(), spin=SPEED), block(mbs, turn)
+        if by_markers:
+            base = {
+                name: mbs.AddMarker(MarkerBodyRigid(bodyNumber=base, localPosition=turn.T @ place))
+                for name, place in SEATS.items()
+            }
+        add_supports(body, FROM_BASE, base)
+        mbs.Assemble()
+        found.append(linear_model(mbs, body=body, about="given"))
+    assert distance(*found, SPEED) < 1e-9
+
+
+SEATS = {"left": np.array([0.0, 0.2, -0.15]), "right": np.array([0.0, 0.2, 0.15])}  # in the block
+
+
+RISING = ([0.0, 100.0], [[[2e5, 3e4], [0.0, 1e5]], [[8e5, 0.0], [-6e4, 3e5]]])
+
+
+def run_up(supports, torque=200.0, end_time=0.02):
+    """Run the rotor up from rest by a torque: 80 rad/s at the end where nothing brakes it."""
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rings(), translation="free", gravity=[0.0, -9.81, 0.0], markers="rigid")
+    added = add_supports(body, supports)
+    mbs.CreateTorque(itemNumber=body.marker("left"), loadVector=[0.0, 0.0, torque])
+    mbs.Assemble()
+    settings = recommended_settings(end_time=end_time, step=1e-4)
+    settings.solution.file.write = False
+    mbs.SolveDynamic(settings)
+    return mbs, body, added
+
+
+def test_a_table_follows_a_free_spin():
+    """The connector's force at the end is that of the table at the speed of the end."""
+    table = Support("left", RISING, 50.0)
+    _, body, added = run_up([table, HELD])
+    _, q_t, _ = body.coordinates()
+    speed = q_t[3]
+    assert 50.0 < speed < 100.0
+    u, v, force = (each[:2] for each in added[0].values())
+    stiffness = (
+        np.array(RISING[1][0]) * (1.0 - speed / 100.0) + np.array(RISING[1][1]) * speed / 100.0
+    )
+    np.testing.assert_allclose(force, -stiffness @ u - 50.0 * v, rtol=1e-6)
+    assert body.uses_python
+    assert "left by Python function; right by Exudyn" in body.report()
+
+
+def test_refused_calls_leave_the_scene_as_it_was():
+    mbs = exu.SystemContainer().AddSystem()
+    body, good = add_rotor(mbs, rings(), initial_speed=9.0), KINDS["number"]
+    bare = add_rotor(mbs, rings(), name="bare", marker_body=False)
+    point = mbs.AddMarker(MarkerNodePosition(nodeNumber=mbs.AddNode(NodePoint())))
+    off = mbs.AddMarker(MarkerBodyRigid(bodyNumber=mbs.CreateGround()))
+    particle = mbs.CreateMassPoint(mass=1.0)
+
+    def counts():
+        data = mbs.systemData
+        return data.NumberOfObjects(), data.NumberOfMarkers(), len(body.supports)
+
+    before = counts()
+    held, turning = KINDS["about the axis"], KINDS["rotor frame, tilts"]
+    for error, match, arguments in (
+        (TypeError, "body: needs RotorBody", (mbs, good)),
+        (TypeError, r"supports\[1\]: needs Support", (body, [good, "right"])),
+        (ValueError, "support at 'top': no such interface", (body, [good, Support("top", 1.0)])),
+        (ValueError, "marker_body=False", (bare, good)),
+        (ValueError, "tilt_stiffness about the spin axis needs a prescribed", (body, [good, held])),
+        (ValueError, "tilt_stiffness about the spin axis needs a prescribed", (body, [turning])),
+        (TypeError, "base: needs MarkerIndex or ObjectIndex", (body, good, "ground")),
+        (ValueError, r"marker \d+ is 0.15 m off the interface 'left'", (body, good, off)),
+        (ValueError, "has no place and orientation", (body, good, point)),
+        (ValueError, "is a point without orientation", (body, good, particle)),
+        (ValueError, "this system has no", (body, good, exu.ObjectIndex(99))),
+        (ValueError, "base: has nothing for the interface 'left'", (body, good, {"right": off})),
+        (ValueError, "base: 'disc' is no interface", (body, good, {"left": None, "disc": None})),
+    ):
+        with pytest.raises(error, match=match):
+            add_supports(*arguments)
+        assert counts() == before
+    add_supports(body, [])
+    assert counts() == before

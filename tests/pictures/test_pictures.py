@@ -1,0 +1,252 @@
+"""Shapes of modes and responses, their files; spectra and orbits of runs."""
+
+import dataclasses
+from functools import cache
+
+import numpy as np
+import pytest
+from matplotlib import pyplot
+from models import centered_disc, disc_rotor
+from PIL import Image
+
+from exudyn_rotor import (
+    MotionShapes,
+    ReducedRotor,
+    SolidRotor,
+    Spectra,
+    StressField,
+    Support,
+    Unbalance,
+    campbell,
+    mode_shapes,
+    response_shapes,
+    spectra,
+    unbalance_response,
+)
+
+SPEED = 300.0
+EQUAL = [Support(name, 2e7, damping=200.0) for name in ("left", "right")]
+UNEQUAL = [Support(name, [[2e7, 0.0], [0.0, 8e6]], damping=200.0) for name in ("left", "right")]
+
+
+@cache
+def reduced() -> ReducedRotor:
+    """Return a disc on a shaft along z with first-order elements."""
+    return centered_disc(order=1).reduce(4)
+
+
+@cache
+def modes() -> MotionShapes:
+    return mode_shapes(reduced(), SPEED, supports=EQUAL, modes=6, stiffening="tilt")
+
+
+def test_modes_are_those_of_the_campbell_diagram():
+    result = campbell(reduced(), [SPEED], supports=EQUAL, stiffening="tilt")
+    order = np.argsort(result.frequencies_inertial[0], kind="stable")[:6]
+    np.testing.assert_allclose(
+        modes().frequencies, result.frequencies_inertial[0, order], rtol=1e-9, atol=1e-6
+    )
+    assert [label.split(", ")[1] for label in modes().labels] == result.whirl[0, order].tolist()
+    assert "backward" in modes().table()
+
+
+@pytest.mark.parametrize("supports", [EQUAL, UNEQUAL])
+def test_orbits_are_those_of_the_response(supports):
+    """Of the places that the unbalance response looks at, forward and backward, any supports."""
+    given = {"supports": supports, "own": False}
+    heavy = [Unbalance("right", 1e-4)]
+    shapes = response_shapes(reduced(), [SPEED], heavy, **given)
+    response = unbalance_response(reduced(), [SPEED], heavy, at=["left", "right"], **given)
+    found = [orbit for _, orbit in shapes.orbits(0, points=9)]
+    largest = np.abs(found).max()
+    ends = found[0], found[-1]
+    for place, orbit in zip(("left", "right"), ends, strict=True):
+        # the shaft is a thirtieth of its length further in, where its motion is the mean of a slice
+        expected = response.orbit(SPEED, place, points=9)
+        np.testing.assert_allclose(orbit[:, :2], expected, atol=0.1 * largest)
+    # what the rotor frame sees, turned into space, is the same motion
+    node = int(np.argmax(disc_rotor(1).nodes[:, 2]))
+    at_node = unbalance_response(reduced(), [SPEED], heavy, at=[node], **given)
+    for time in (0.0, 0.4 / SPEED):
+        local = shapes.displacement(0, time)[node]
+        seen = shapes.axis.rotation(SPEED * time) @ local
+        orders = at_node.orders
+        exact = sum(
+            (at_node.phasor(None, "n1", n)[0] * np.exp(1j * n * SPEED * time)).real for n in orders
+        )
+        np.testing.assert_allclose(seen[0], exact, rtol=1e-6)
+
+
+@pytest.mark.parametrize("speed", [SPEED, -SPEED])
+def test_orbits_of_whirl_are_circles_of_their_sense(speed):
+    """Forward whirl turns with the spin, whatever its sign; circles on equal supports."""
+    shapes = mode_shapes(reduced(), speed, supports=EQUAL, modes=6)
+    for index, label in enumerate(shapes.labels):
+        word = label.split(", ")[1]
+        if word not in ("forward", "backward"):
+            continue
+        _, orbit = max(shapes.orbits(index, 13), key=lambda pair: np.abs(pair[1]).max())
+        radii = np.hypot(*orbit[:, :2].T)
+        assert radii[0] > 0.1  # of the largest displacement, which is one
+        np.testing.assert_allclose(radii, radii[0], rtol=0.05)
+        turn = np.cross(orbit[0], orbit[1])[2] * np.sign(speed)
+        assert (turn > 0.0) == (word == "forward")
+
+
+def test_shapes_in_engineering_units():
+    """300 rad/s are 2864.8 rpm and 47.746 Hz."""
+    shown = modes().frequencies[3] / (2.0 * np.pi)
+    ax = modes().plot(3, units="rpm")
+    titles = [text.get_text() for text in ax.figure.texts]
+    assert f"{modes().labels[3]}\n{shown:.5g} Hz at a spin of 2864.8 rpm" in titles
+    pyplot.close(ax.figure)
+    assert "47.746" in modes().table()
+    assert "2864.8" in modes().table(units="rpm").splitlines()[1]
+    assert "[rad/s]" in modes().table(units="SI").splitlines()[0]
+
+
+def test_responses_tell_their_size_and_speed(tmp_path):
+    """Masses of 2 kg on springs of 20 kN/m at the ends of a rod, U Ω²/(k − m Ω²) of one of them."""
+    meshio = pytest.importorskip("meshio")
+    rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]
+    rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    speeds = np.array([50.0, 80.0])
+    # of springs that differ, along n2 the half: the larger semi-axis
+    supports = [Support(name, np.diag([2e4, 8e4])) for name in ("left", "right")]
+    shapes = response_shapes(rotor, speeds, Unbalance("left", 1e-4), supports=supports)
+    sizes = 1e-4 * speeds**2 / (2e4 - 2.0 * speeds**2)
+    assert shapes.labels == tuple(f"unbalance, largest {size:.3g} m" for size in sizes)
+    shown = dataclasses.replace(shapes, triangles=np.array([[0, 1, 0]]))
+    shown.to_vtk(tmp_path / "response.vtu")
+    names = meshio.read(tmp_path / "response.vtu").point_data
+    for index, speed in enumerate(speeds):
+        assert any(name.startswith(f"{index} unbalance") and f"{speed:g} rad" in name
+                   for name in names)  # fmt: skip
+
+
+@pytest.mark.parametrize("frame", ["inertial", "rotor"])
+def test_animation_is_a_film_of_one_period(tmp_path, frame):
+    path = tmp_path / "mode.gif"
+    modes().animate(path, 3, frame=frame, frames=3, seconds=1.5)
+    with Image.open(path) as film:
+        assert film.n_frames == 3
+        assert film.info["duration"] == 500
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_files_for_paraview(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    modes().to_vtk(tmp_path / "modes.vtu")
+    read = meshio.read(tmp_path / "modes.vtu")
+    assert read.cells[0].type == "triangle"
+    used = np.unique(modes().triangles)
+    np.testing.assert_allclose(read.points, modes().positions[used])
+    name = f"3 {modes().labels[3]}, order 0, real"
+    expected = modes().displacement(3, 0.0)[used]
+    np.testing.assert_allclose(read.point_data[name], expected, atol=1e-12)
+
+
+def test_stress_in_the_order_of_paraview(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    nodes = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [9, 9, 9]]
+    modes_of = np.zeros((4, 6, 1))
+    modes_of[:, :, 0] = np.arange(1.0, 7.0)  # xx, yy, zz, yz, xz, xy
+    none = np.zeros((4, 6))
+    field = StressField(nodes, [[0, 1, 2]], modes_of, none, True, none)
+    field.to_vtk(tmp_path / "stress.vtu", [2.0], 0.0)
+    read = meshio.read(tmp_path / "stress.vtu")
+    assert read.point_data["stress"].tolist() == [[2, 4, 6, 12, 8, 10]] * 3
+
+
+def test_wrong_requests_are_refused(tmp_path):
+    with pytest.raises(ValueError, match="ending"):
+        modes().to_vtk(tmp_path / "modes.stl")
+    with pytest.raises(ValueError, match=r"ending .gif"):
+        modes().animate(tmp_path / "modes.mp4")
+    with pytest.raises(ValueError, match="index"):
+        modes().plot(99)
+    with pytest.raises(ValueError, match="no mesh nodes"):
+        mode_shapes(reduced().without_shapes(), SPEED, supports=EQUAL)
+    with pytest.raises(ValueError, match="above zero"):
+        response_shapes(reduced(), [0.0, 1.0], [Unbalance("left", 1e-4)], supports=EQUAL)
+
+
+def run_up() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return time, motion and speed: unbalance of 3 µm, and a backward circle of 1 µm at 40 Hz."""
+    time = np.arange(0.0, 4.0, 1e-3)
+    speed = 2.0 * np.pi * (20.0 + 10.0 * time)
+    angle = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
+    z = 3e-6 * np.exp(1j * angle) + 1e-6 * np.exp(-2j * np.pi * 40.0 * time)
+    return time, np.column_stack([z.real, z.imag]), speed
+
+
+def test_spectra_part_forward_from_backward():
+    time, motion, speed = run_up()
+    found = spectra(time, motion, speed, length=0.2, overlap=0.75)
+    spacing = np.diff(found.frequencies)[0]
+    ahead = np.where(found.frequencies > 0.0, found.amplitudes, 0.0)
+    strongest = found.frequencies[np.argmax(ahead, axis=1)]
+    np.testing.assert_allclose(strongest, found.speeds, atol=0.6 * spacing)
+    behind = np.argmin(np.abs(found.frequencies + 2.0 * np.pi * 40.0))
+    np.testing.assert_allclose(found.amplitudes[:, behind], 1e-6, rtol=0.02)
+    np.testing.assert_allclose(found.speeds, np.interp(found.times, time, speed), rtol=1e-9)
+    assert len(found.table().splitlines()) == len(found.times) + 1
+
+
+@pytest.mark.parametrize(
+    ("units", "per_speed", "per_rate"),
+    [("Hz", 0.5 / np.pi, 0.5 / np.pi), ("rpm", 30.0 / np.pi, 0.5 / np.pi), ("SI", 1.0, 1.0)],
+)
+def test_spectra_in_engineering_units(units, per_speed, per_rate):
+    """Motion that runs twice as fast as the spin of 100 and 200 rad/s is on the line of order 2."""
+    found = Spectra([0.5, 1.5], [100.0, 200.0], [0.0, 200.0, 400.0], [[0, 1, 0], [0, 0, 1]])
+    speeds, rates = per_speed * found.speeds, per_rate * 2.0 * found.speeds
+    figure, (cascade, spectrogram) = pyplot.subplots(1, 2)
+    found.plot(cascade, orders=[2.0], units=units)
+    np.testing.assert_allclose(cascade.lines[0].get_xydata(), np.column_stack([rates, speeds]))
+    found.plot_spectrogram(spectrogram, units=units)
+    np.testing.assert_allclose(spectrogram.lines[0].get_ydata(), 0.5 * rates)
+    assert [text.get_text() for text in spectrogram.get_legend().get_texts()] == ["spin speed"]
+    first = found.table(units=units).splitlines()[1].split()
+    np.testing.assert_allclose([float(word) for word in first[1:3]], [speeds[0], rates[0]], 1e-4)
+    pyplot.close(figure)
+
+
+def test_amplitude_of_one_signal():
+    """A harmonic on a line of the spectrum, and a constant that is taken out."""
+    time = np.arange(0.0, 1.0, 1e-3)
+    found = spectra(time, 5.0 + 2.0 * np.cos(2.0 * np.pi * 50.0 * time), 300.0, length=0.5)
+    best = np.argmax(found.amplitudes[0])
+    np.testing.assert_allclose(found.frequencies[best], 2.0 * np.pi * 50.0, rtol=1e-9)
+    np.testing.assert_allclose(found.amplitudes[0, best], 2.0, rtol=1e-9)
+    assert found.amplitudes[:, 0].max() < 1e-9
+
+
+def test_cascade_and_spectrogram_are_drawn():
+    found = spectra(*run_up(), length=0.4)
+    figure, axes = pyplot.subplots(1, 2)
+    limit = 2.0 * np.pi * 100.0
+    found.plot(axes[0], highest=limit, orders=(1.0, -1.0))
+    found.plot_spectrogram(axes[1], highest=limit)
+    np.testing.assert_allclose(axes[0].get_xlim(), (-100.0, 100.0), atol=3.0)
+    assert len(axes[0].collections[0].get_paths()) == len(found.times)
+    pyplot.close(figure)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"length": 0.004}, "steps"),
+        ({"overlap": 1.0}, "overlap"),
+        ({"time": [0.0, 1.0, 3.0, 4.0]}, "motion: needs the shape"),
+        ({"time": np.geomspace(1.0, 2.0, 100)}, "even steps"),
+        ({"speed": [1.0, 2.0]}, "speed: needs one number"),
+    ],
+)
+def test_records_that_make_no_spectra_are_refused(change, words):
+    time = np.arange(100) * 1e-3
+    given = {"time": time, "motion": np.sin(time), "speed": 1.0, "length": 0.05, **change}
+    with pytest.raises(ValueError, match=words):
+        spectra(**given)

@@ -1,0 +1,137 @@
+"""Blades with level 'full' against rotating beams, and component modes at speed."""
+
+import ngsolve as ngs
+import numpy as np
+import pytest
+import scipy.linalg as la
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+from models import STEEL, disc_rotor
+from netgen.occ import Box, OCCGeometry, Pnt, X
+from numpy.polynomial import Polynomial
+
+from exudyn_rotor import (
+    Prestress,
+    SolidRotor,
+    SpinAxis,
+    campbell,
+    free_modes,
+    spinning_modes,
+)
+from exudyn_rotor.theory.stiffening import stiffening
+
+LENGTH, WIDTH, HEIGHT = 1.0, 0.06, 0.02
+
+
+def blade(hub: float = 0.0) -> SolidRotor:
+    """Return a beam along x, clamped at x = 0; it spins about z at a distance of x = −hub."""
+    solid = Box(Pnt(0, -WIDTH / 2, -HEIGHT / 2), Pnt(LENGTH, WIDTH / 2, HEIGHT / 2))
+    solid.mat("steel")
+    solid.faces.Min(X).name = "root"
+    mesh = ngs.Mesh(OCCGeometry(solid).GenerateMesh(maxh=0.06))
+    axis = SpinAxis((0, 0, 1), (-hub, 0, 0))
+    return SolidRotor.from_ngsolve(mesh, STEEL, axis).clamped("root")
+
+
+# ------------------------------------------------------------------ rotating cantilever
+
+
+def rotating_beam(speed: float, hub: float, across: bool, count: int = 10) -> float:
+    """Return the lowest flap (or, across, lag) frequency of a rotating Euler beam [rad/s].
+
+    Ritz method with xⁱ, i ≥ 2, for ``EI w'''' − (T w')' + ρA ẅ − [lag] ρAΩ² w = 0`` and the
+    tension ``T = ρAΩ² ∫_x^L (hub + s) ds``.
+    """
+    area, sides = WIDTH * HEIGHT, (HEIGHT, WIDTH) if not across else (WIDTH, HEIGHT)
+    bending = STEEL["youngsModulus"] * sides[1] * sides[0] ** 3 / 12
+    line = STEEL["density"] * area
+    x = Polynomial([0, 1])
+    tension = line * speed**2 * (hub * (LENGTH - x) + (LENGTH**2 - x**2) / 2)
+    shapes = [Polynomial.basis(i) for i in range(2, 2 + count)]
+
+    def form(weight: Polynomial | float, order: int) -> np.ndarray:
+        slopes = [shape.deriv(order) if order else shape for shape in shapes]
+        integrals = [[(a * b * weight).integ() for b in slopes] for a in slopes]
+        return np.array([[F(LENGTH) - F(0) for F in row] for row in integrals])
+
+    M = form(line, 0)
+    K = form(bending, 2) + form(tension, 1) - (speed**2 * M if across else 0.0)
+    return float(np.sqrt(la.eigh(K, M, eigvals_only=True)[0]))
+
+
+@pytest.mark.parametrize("hub", [0.0, 1.0])
+def test_flap_and_lag_of_a_rotating_blade(hub):
+    solid = blade(hub)
+    reduced = solid.reduce(8, prestress=True)
+    speeds = np.array([0.0, 150.0, 400.0])
+    found = campbell(reduced, speeds, stiffening="full").frequencies_rotor
+    tilt = campbell(reduced, speeds, stiffening="tilt").frequencies_rotor
+    for i, speed in enumerate(speeds):
+        flap, lag = (rotating_beam(speed, hub, across) for across in (False, True))
+        assert np.abs(found[i] / flap - 1).min() < 0.01
+        # shear and the Coriolis coupling with stretching lower the lag mode
+        assert np.abs(found[i] / lag - 1).min() < 0.01
+        if speed > 0.0:
+            assert np.abs(tilt[i] / flap - 1).min() > 0.02
+
+
+def test_euler_stress_of_a_blade_is_that_of_its_load():
+    solid = blade()
+    kept = np.setdiff1d(np.arange(solid.node_count), solid.interfaces["root"].nodes)
+    rows = (3 * kept[:, None] + np.arange(3)).ravel()
+    load = -solid.mass @ np.cross((0, 0, 1), solid.nodes).ravel()
+    displacement = np.zeros(load.size)
+    stiffness = sp.csc_array(solid.stiffness[rows][:, rows])
+    displacement[rows] = spla.spsolve(stiffness, load[rows])
+    expected = solid.elements.geometric_stiffness(displacement)
+    found = solid.prestress(euler=True).euler
+    assert abs(found - expected).max() < 1e-8 * abs(expected).max()
+    reduced = solid.reduce(4, prestress=solid.prestress(euler=True))
+    B = reduced.shapes.matrix.T @ expected @ reduced.shapes.matrix
+    terms = stiffening(reduced.invariants, "full")
+    np.testing.assert_allclose(terms.B, B, rtol=0, atol=1e-7 * np.abs(B).max())
+    # without it, what the tilts of rigid rotors feel is left
+    plain = solid.reduce(4, prestress=True).invariants
+    assert np.array_equal(stiffening(plain, "full").B, stiffening(plain, "tilt").B)
+
+
+# ------------------------------------------------------------------ modes at speed
+
+
+@pytest.mark.parametrize("speed", [3.0, 20.0])
+def test_modes_at_speed_of_a_mass_on_a_string_and_oblique_springs(speed):
+    """At the radius r; tension mΩ²r holds both sideways motions by mΩ², inertia frees one of them.
+
+    Sideways ``[[k_t, k_c], [k_c, k_a + mΩ²]]``: the lowest motion turns out of the tangential
+    direction by α, ``tan 2α = 2 k_c/(k_t − k_a − mΩ²)``. Its Coriolis force ``m e × φ`` is radial
+    and stretches ``k_r − mΩ²``. To rounding.
+    """
+    mass, radial, along, axial, oblique = 2.0, 9e5, 900.0, 800.0, 300.0
+    nodes = np.array([[0.7, 0.0, 0.0], [0.0, 0.0, 0.5], [0.0, 0.0, -0.5]])
+    stiffness = 1e8 * np.eye(9)  # of two points on the axis
+    stiffness[:3, :3] = [[radial, 0, 0], [0, along, oblique], [0, oblique, axial]]
+    rotor = SolidRotor.from_matrices(mass * np.eye(9), stiffness, nodes, "z")
+    tension = mass * np.diag([0.0, 1.0, 1.0, *[0.0] * 6])
+    string = Prestress.from_matrix(tension, nodes, balanced=False)
+    basis = spinning_modes(rotor.with_prestress(string), 1, [speed]).matrix[:3]
+    angle = 0.5 * np.arctan2(2 * oblique, along - axial - mass * speed**2)
+    mode = np.array([0.0, -np.sin(angle), np.cos(angle)]) / np.sqrt(mass)
+    mode *= np.sign(mode[np.argmax(np.abs(mode))])
+    np.testing.assert_allclose(basis[:, 1], mode, rtol=0, atol=1e-12)
+    response = mass * np.cross((0, 0, 1), mode) / (radial + mass * speed**2)
+    np.testing.assert_allclose(basis[:, 2], response, rtol=0, atol=1e-9 * abs(response).max())
+
+
+@pytest.fixture(scope="module")
+def rotor() -> SolidRotor:
+    return disc_rotor(1)
+
+
+def test_modes_at_speed_of_a_free_rotor(rotor):
+    carrying = rotor.with_prestress(rotor.prestress())
+    reduced = carrying.reduce(spinning_modes(carrying, 4, [500.0]))
+    assert reduced.rigid == rotor.reduce(1).rigid
+    assert 8 <= reduced.size - 6 <= 4 + 2 * (4 + 6)  # rigid motions are among the modes at speed
+    np.testing.assert_allclose(
+        reduced.frequencies[6:10], free_modes(rotor, 4).frequencies, rtol=1e-6
+    )

@@ -1,0 +1,199 @@
+"""Results are small, readable, stored without pickle, and drawn without a display."""
+
+import inspect
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from matplotlib import pyplot
+from point_rotors import ring_rotor
+from small_results import STORED
+
+import exudyn_rotor
+from exudyn_rotor import plotting, results
+from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
+from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse
+from exudyn_rotor.linear.response.steady_response import harmonic_response, unbalance_response
+from exudyn_rotor.linear.response.unbalance import Unbalance
+from exudyn_rotor.results import Result, load_result, numbers, storable, words
+
+
+@storable
+@dataclass(frozen=True, eq=False)
+class Everything(Result):
+    """One field of every kind."""
+
+    reals: np.ndarray
+    counts: np.ndarray
+    name: str
+    names: tuple[str, ...]
+    number: float
+    flag: bool
+    pairs: np.ndarray = numbers("pairs", 2, least=0.0)
+    marks: np.ndarray = numbers("pairs", dtype=bool)
+    titles: tuple[str, ...] = words(2, default=("x", "y"))
+    absent: np.ndarray | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Unstorable(Result):
+    """Not registered."""
+
+    value: float
+
+
+def everything(**changes) -> Everything:
+    values = {"reals": np.array([1.0, np.nan]), "counts": np.arange(3), "name": "Läufer",
+              "names": (), "number": 0.1, "flag": True, "pairs": np.zeros((1, 2)),
+              "marks": np.zeros(1, dtype=bool)}  # fmt: skip
+    return Everything(**(values | changes))
+
+
+@pytest.fixture(scope="module")
+def ellipses() -> UnbalanceResponse:
+    rotor = ring_rotor(0.1, 0.2, 10.0).with_interface("mid", range(10)).reduce(0)
+    supports = [Support("mid", np.diag([4e5, 8e5]), 200.0, 5e4, 10.0)]
+    speeds = np.linspace(0.0, 400.0, 101)
+    return unbalance_response(
+        rotor, speeds, [Unbalance("mid", 1e-4)], supports=supports, at=["mid", 2]
+    )
+
+
+@pytest.fixture(scope="module")
+def shaken() -> HarmonicResponse:
+    rotor = ring_rotor(0.1, 0.2, 10.0).with_interface("mid", range(10)).reduce(0)
+    supports = [Support("mid", 4e5, 200.0, 5e4, 10.0)]
+    force = HarmonicForce("mid", (1.0, 0.0))
+    return harmonic_response(rotor, [100.0, 200.0], force, speed=90.0, supports=supports)
+
+
+def test_every_kind_of_field_comes_back(tmp_path):
+    kept = everything(names=("a", "b"))
+    kept.save(tmp_path / "kept.npz")
+    back = load_result(tmp_path / "kept.npz")
+    assert type(back) is Everything
+    assert np.array_equal(back.reals, kept.reals, equal_nan=True)
+    assert back.counts.dtype == kept.counts.dtype
+    assert (back.name, back.names, back.number, back.flag) == ("Läufer", ("a", "b"), 0.1, True)
+    assert type(back.flag) is bool
+    assert back.absent is None
+    everything().save(tmp_path / "empty.npz")
+    assert Everything.load(tmp_path / "empty.npz").names == ()
+
+
+RESULTS = {name: kept for name, kept in STORED.items() if isinstance(kept, Result)}
+
+
+def test_every_result_of_the_package_is_stored():
+    package = {n for n, c in results._REGISTERED.items() if c.__module__.startswith("exudyn_rotor")}
+    assert set(RESULTS) == package
+    assert package <= set(exudyn_rotor.__all__)  # load_result finds their modules there
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_every_result_has_a_table_a_short_repr_and_a_picture(name):
+    result = RESULTS[name]
+    lines = result.table().splitlines()
+    assert len(lines) >= 2
+    assert max(map(len, lines)) <= 120
+    assert repr(result).startswith(f"{name}(")
+    assert len(repr(result)) < 400
+    if name == "CriticalSpeeds":  # their places in a Campbell diagram are its picture
+        return
+    assert inspect.signature(result.plot).parameters["ax"].default is None
+    drawn = result.plot(*((np.ones(2), 1.0) if name == "StressField" else ()))
+    for ax in np.ravel(drawn):  # a Bode diagram has two: size and phase
+        assert isinstance(ax, pyplot.Axes)
+        assert ax.figure is pyplot.gcf()
+
+
+def test_what_cannot_be_stored_leaves_the_old_file(tmp_path):
+    path = tmp_path / "kept.npz"
+    everything().save(path)
+    with pytest.raises(TypeError, match="a Unstorable cannot be stored"):
+        Unstorable(1.0).save(path)
+    assert Everything.load(path).number == 0.1
+    assert [file.name for file in tmp_path.iterdir()] == ["kept.npz"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"name": {"a": 1}}, "name: needs a name"),
+        ({"name": ""}, "name: needs a name that is not empty"),
+        ({"names": (1.0,)}, "names: needs a name"),
+        ({"names": [3]}, "names: needs a name"),
+        ({"reals": np.array([object()])}, "reals: needs numbers"),
+        ({"reals": np.ma.masked_array([1.0, 2.0], [0, 1])}, "reals: .* masked"),
+        ({"counts": None}, "counts: needs"),
+        ({"number": "0.1"}, "number: needs a finite number"),
+        ({"number": np.nan}, "number: needs a finite number"),
+        ({"flag": "no"}, "flag: needs True or False"),
+        ({"pairs": np.zeros((2, 3))}, r"pairs: needs the shape \(2, 2\), got \(2, 3\)"),
+        ({"pairs": np.array([[0.0, np.inf]])}, "pairs: needs finite numbers"),
+        ({"pairs": np.array([[0.0, -1.0]])}, "pairs: needs values ≥ 0.0"),
+        ({"marks": np.ones(2, dtype=bool)}, r"marks: needs the shape \(1,\)"),
+        ({"marks": np.ones(1)}, "marks: needs flags"),
+        ({"titles": ("a",)}, r"titles: needs the shape \(2,\)"),
+    ],
+)
+def test_the_constructor_checks_every_field(changes, message):
+    with pytest.raises((TypeError, ValueError), match=message):
+        everything(**changes)
+
+
+def test_orbit_is_drawn_for_every_place(ellipses):
+    axes = ellipses.plot_orbit(240.0)
+    drawn = axes.lines[0].get_xdata() + 1j * axes.lines[0].get_ydata()
+    major, minor = ellipses.semi_axes("mid")
+    index = np.argmin(np.abs(ellipses.speeds - 240.0))
+    assert np.abs(drawn).max() == pytest.approx(1e6 * major[index], rel=1e-3)
+    assert minor[index] < 0.0
+    area = 0.5 * np.sum((drawn[:-1].conj() * drawn[1:]).imag)
+    expected = np.pi * 1e12 * major[index] * minor[index]  # negative: it turns backward
+    assert area == pytest.approx(expected, rel=1e-3)
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["mid", "node 2"]
+    title = ellipses.plot_orbit(240.0, units="rpm").get_title(loc="right")
+    assert title == f"spin speed {30.0 / np.pi * ellipses.speeds[index]:.4g} rpm"
+
+
+def test_pictures_are_figures_of_pyplot(ellipses, shaken, tmp_path):
+    """What is drawn last is what ``pyplot.savefig`` writes, and given axes make no figure."""
+    for draw in (
+        lambda ax: ellipses.plot_polar("mid", ax=ax),
+        lambda ax: shaken.plot_orbit(100.0, ax=ax),
+    ):
+        drawn = draw(None)
+        assert pyplot.gcf() is drawn.figure
+        assert pyplot.gca() is drawn
+        before = pyplot.get_fignums()
+        given = pyplot.subplots()[1]
+        assert draw(given) is given
+        assert len(pyplot.get_fignums()) == len(before) + 1
+    pyplot.savefig(tmp_path / "a.png")
+    pixels = pyplot.imread(tmp_path / "a.png")
+    assert np.ptp(pixels[..., :3]) > 0.5  # not blank
+
+
+@pytest.mark.parametrize("corners", [3, 6])
+def test_surfaces_are_drawn_in_new_and_in_given_axes(corners):
+    nodes = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, 0, 1]], float)
+    triangles = [[0, 1, 3, 2, 4, 5][:corners], [1, 2, 3, 0, 4, 5][:corners]]
+    drawn = plotting.draw_surface(nodes, triangles, np.arange(6.0), "T [K]")
+    assert pyplot.gca() is drawn
+    assert [ax.get_ylabel() for ax in drawn.figure.axes][1] == "T [K]"
+    assert not drawn.figure.texts  # the ticks tell the size
+    across = plotting.draw_surface(nodes * [1, 1, 9], triangles, np.arange(6.0), "T [K]")
+    assert "z from 0 m to " in across.figure.texts[0].get_text()
+    given = pyplot.subplots(subplot_kw={"projection": "3d"})[1]
+    size = given.figure.get_size_inches()
+    assert plotting.draw_surface(nodes, triangles, np.arange(6.0), "T [K]", given) is given
+    assert np.array_equal(given.figure.get_size_inches(), size)
+    flat = pyplot.subplots()[1]
+    with pytest.raises(TypeError, match="ax: needs Axes3D, got"):
+        plotting.draw_surface(nodes, triangles, np.arange(6.0), "T [K]", flat)
+    with pytest.raises(ValueError, match="triangles: needs whole numbers ≥ 0 and ≤ 5, got 6"):
+        plotting.draw_surface(nodes, [[0, 1, 6]], np.arange(6.0), "T [K]")
+    with pytest.raises(ValueError, match="values: needs finite numbers"):
+        plotting.draw_surface(nodes, triangles, np.full(6, np.nan), "T [K]")

@@ -1,0 +1,81 @@
+"""Saving is atomic, keeps mode and links of a file, and touches nothing else."""
+
+import os
+
+import numpy as np
+import pytest
+from matplotlib import pyplot
+from matplotlib.figure import Figure
+from small_results import STORED
+
+from exudyn_rotor import plotting
+from exudyn_rotor.storage import read_arrays, write_arrays
+
+
+@pytest.mark.parametrize(
+    ("path", "kind", "message"),
+    [
+        ("none/a.npz", FileNotFoundError, r"path: the folder '.*none' does not exist"),
+        (".", IsADirectoryError, "path: needs the name of a file"),
+        ("none/", IsADirectoryError, "path: needs the name of a file, 'none/' is a folder"),
+        (3, TypeError, "path: needs the path of a file"),
+        ("", ValueError, "path: needs the path of a file"),
+        ("pipe", OSError, "path: needs the name of a file, 'pipe' is a device"),
+    ],
+)
+@pytest.mark.skipif(os.name == "nt", reason="pipes of POSIX")
+def test_paths_that_cannot_be_saved_to(path, kind, message, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    os.mkfifo("pipe")
+    for name in ("ReducedRotor", "Campbell"):
+        with pytest.raises(kind, match=message):
+            STORED[name].save(path)
+    assert sorted(os.listdir()) == ["pipe"]
+
+
+@pytest.mark.parametrize("step", [(np, "savez_compressed"), (os, "fsync"), (os, "replace")])
+def test_interrupted_saves_leave_the_old_file_and_no_draft(step, tmp_path, monkeypatch):
+    path = tmp_path / "a.npz"
+    write_arrays(path, "thing", {"a": np.ones(1)})
+
+    def full(*_, **__):
+        raise OSError("no space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(*step, full)
+        with pytest.raises(OSError, match="no space"):
+            write_arrays(path, "thing", {"a": np.zeros(1)})
+    assert read_arrays(path, "thing")["a"] == 1.0
+    assert os.listdir(tmp_path) == ["a.npz"]
+
+
+def test_pictures_replace_old_ones_when_they_are_complete(tmp_path, monkeypatch):
+    made = pyplot.figure()
+    for name, start in (("a", b"\x89PNG"), ("a.SVG", b"<?xml")):
+        plotting.save(made, tmp_path / name)
+        assert next(tmp_path.glob(f"{name}*")).read_bytes().startswith(start)
+    before = (tmp_path / "a.png").read_bytes()
+    whole = Figure.savefig
+
+    def half(drawn, target, **options):
+        whole(drawn, target, **options)
+        raise OSError("no space left on device")
+
+    monkeypatch.setattr(Figure, "savefig", half)
+    pyplot.plot([0.0, 1.0])
+    with pytest.raises(OSError, match="no space"):
+        plotting.save(made, tmp_path / "a.png")
+    assert (tmp_path / "a.png").read_bytes() == before
+    assert sorted(os.listdir(tmp_path)) == ["a.SVG", "a.png"]
+
+
+def test_pictures_of_several_axes(tmp_path):
+    """As responses and histories return them."""
+    made, axes = pyplot.subplots(2, 2)
+    for drawn in (axes, axes[0], made):
+        plotting.save(drawn, tmp_path / "a")
+        assert (tmp_path / "a.png").stat().st_size > 1000
+        (tmp_path / "a.png").unlink()
+    for wrong in (np.array([]), np.array([1.0]), [axes]):
+        with pytest.raises(TypeError, match="drawn: needs Axes"):
+            plotting.save(wrong, tmp_path / "a")

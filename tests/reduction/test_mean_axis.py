@@ -1,0 +1,182 @@
+"""Modes in a mean-axis frame, and how Exudyn's own body errs with Craig–Bampton modes."""
+
+import warnings
+
+import exudyn as exu
+import numpy as np
+import pytest
+import scipy.linalg
+from exudyn.FEM import FEMinterface, HCBstaticModeSelection
+from exudyn.itemInterface import (
+    Force,
+    MarkerNodeRigid,
+    SensorNode,
+    Torque,
+)
+from models import disc_fem
+
+from exudyn_rotor import (
+    ObjectFixedAxisFFRFreducedOrderInterface,
+    SolidRotor,
+    use_mean_axis_modes,
+)
+from exudyn_rotor.reduction.basis import rigid_columns
+from exudyn_rotor.reduction.mean_axis import false_softening
+
+OWN, TWIN = "CreateFFRFReducedOrderObject", "CreateFixedAxisFFRFReducedOrderObject"
+SPEED = 500.0
+
+
+def copy(fem, modes=None):
+    """Return the FEMinterface with other modes, which may be replaced."""
+    model = FEMinterface()
+    for name in ("nodes", "massMatrix", "stiffnessMatrix", "surface", "nodeSets"):
+        setattr(model, name, getattr(fem, name))
+    model.modeBasis = {"matrix": fem.modeBasis["matrix"] if modes is None else modes, "type": "x"}
+    return model
+
+
+@pytest.fixture(scope="module")
+def held():
+    """Craig–Bampton modes as in Exudyn's examples, of a disc on a shaft."""
+    fem = copy(disc_fem())
+    seats = [node_set["NodeNumbers"] for node_set in fem.nodeSets]
+    fem.ComputeHurtyCraigBamptonModes(seats, 4, computationMode=HCBstaticModeSelection.RBE2)
+    return fem
+
+
+@pytest.fixture(scope="module")
+def solid(held):
+    return SolidRotor.from_fem_interface(held, "z")
+
+
+def rigid_of(solid):
+    return rigid_columns(solid.nodes, solid.axis, solid.center_of_mass)
+
+
+def test_modes_lose_their_momentum_and_nothing_else(held, solid):
+    fem = copy(held)
+    assert use_mean_axis_modes(fem) == ()
+    rigid, mass = rigid_of(solid), solid.mass
+    before, after = held.modeBasis["matrix"], fem.modeBasis["matrix"]
+    size = np.sqrt(np.outer(np.diag(rigid.T @ (mass @ rigid)), np.diag(after.T @ (mass @ after))))
+    assert np.all(np.abs(rigid.T @ (mass @ after)) < 1e-10 * size)
+    # with the rigid motions they span what they did
+    both = scipy.linalg.orth(np.hstack([rigid, before]))
+    np.testing.assert_allclose(after, both @ (both.T @ after), atol=1e-9 * np.abs(after).max())
+    assert np.linalg.matrix_rank(after) == before.shape[1]
+    # deformation energies stay
+    np.testing.assert_allclose(
+        after.T @ (solid.stiffness @ after),
+        before.T @ (solid.stiffness @ before),
+        atol=1e-9 * np.abs(before.T @ (solid.stiffness @ before)).max(),
+    )
+
+
+@pytest.mark.filterwarnings("ignore:the modes of the FEMinterface hold")
+def test_force_and_sensor_at_the_node_are_on_exudyns_frame(held):
+    """At rest, where its body does not soften; the tilt is 1e-4."""
+    found = []
+    for call in (OWN, TWIN):
+        mbs = exu.SystemContainer().AddSystem()
+        axis = {"axis": "z"} if call == TWIN else {}
+        made = getattr(mbs, call)(name="rotor", femInterface=held, **axis)
+        node = made["FFRFReducedOrderObjectDict"]["nRigidBody"]
+        marker = mbs.AddMarker(MarkerNodeRigid(nodeNumber=node))
+        mbs.AddLoad(Force(markerNumber=marker, loadVector=[900.0, 300.0, 200.0]))
+        mbs.AddLoad(Torque(markerNumber=marker, loadVector=[0.0, 20.0, 30.0]))
+        kind = exu.OutputVariableType.Displacement
+        sensor = SensorNode(nodeNumber=node, outputVariableType=kind, storeInternal=True)
+        sensor = mbs.AddSensor(sensor)
+        mbs.Assemble()
+        settings = exu.SimulationSettings()
+        settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 40, 2e-3
+        settings.timeIntegration.verboseMode = 0
+        settings.solution.file.write = False
+        mbs.SolveDynamic(settings)
+        found.append(mbs.GetSensorStoredData(sensor)[:, 1:])
+    assert abs(found[1] - found[0]).max() < 1e-3 * abs(found[0]).max()
+
+
+def whirl(call, fem, **more):
+    """Return the path of a journal of an unbalanced rotor on two bearings over some turns."""
+    mbs = exu.SystemContainer().AddSystem()
+    omega = [0.0, 0.0, SPEED]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        made = getattr(mbs, call)("rotor", fem, initialAngularVelocity=omega, **more)
+    ground = mbs.CreateGround()
+    mbs.Assemble()
+    sensor = None
+    for name in ("rotor:left", "rotor:right"):
+        marker = made[name]
+        place = mbs.GetMarkerOutput(
+            marker, exu.OutputVariableType.Position, exu.ConfigurationType.Reference
+        )
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[ground, marker],
+            localPosition0=list(place),
+            stiffness=[2e6] * 3,
+            damping=[500.0] * 3,
+        )
+        sensor = mbs.AddSensor(
+            exu.utilities.SensorMarker(
+                markerNumber=marker,
+                outputVariableType=exu.OutputVariableType.Displacement,
+                storeInternal=True,
+            )
+        )
+    mbs.Assemble()
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.numberOfSteps = 250
+    settings.timeIntegration.endTime = 0.025
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = 1e-4
+    mbs.SolveDynamic(settings)
+    return mbs.GetSensorStoredData(sensor)[:, 1:3]
+
+
+def test_exudyns_body_agrees_in_the_mean_axis_frame_only(held):
+    """With the first boundary as its frame it softens falsely; the fixed axis does not."""
+    held = copy(held)
+    held.massMatrix = held.massMatrix.copy()
+    rim = int(np.argmax(held.GetNodePositionsAsArray()[:, 0]))
+    held.AddNodeMass(rim, 0.01)
+    mean = copy(held)
+    use_mean_axis_modes(mean)
+    twin = whirl(TWIN, held, axis="z")
+    size = np.abs(twin).max()
+    np.testing.assert_allclose(whirl(TWIN, mean, axis="z"), twin, atol=1e-6 * size)
+    away = [np.abs(whirl(OWN, fem) - twin).max() / size for fem in (held, mean)]
+    # 2e-3, as the other tests of the swapped call: second order in the tilt, and O(h²) of the turn
+    assert away[1] < 2e-3
+    assert away[0] > 10.0 * away[1]
+
+
+def test_the_speed_of_the_warning_is_that_of_the_missing_stiffness(held, solid):
+    """At that speed 1 % of the stiffness is missing, of the worst of all combinations."""
+    loss = false_softening(solid, held.modeBasis["matrix"])
+    cms = ObjectFixedAxisFFRFreducedOrderInterface(held, axis="z")
+    expected = f"up to 1% of a mode's stiffness at {np.sqrt(0.01 / loss):.3g} rad/s"
+    with pytest.warns(UserWarning, match=expected):
+        cms.AddObjectFFRFreducedOrder(exu.SystemContainer().AddSystem())
+    mean = copy(held)
+    use_mean_axis_modes(mean)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        cms = ObjectFixedAxisFFRFreducedOrderInterface(mean, axis="z")
+        cms.AddObjectFFRFreducedOrder(exu.SystemContainer().AddSystem())
+
+
+def test_bad_input_is_refused_and_changes_nothing(held):
+    with pytest.raises(TypeError, match="fem: needs FEMinterface"):
+        use_mean_axis_modes("rotor")
+    fem = copy(held)
+    before = fem.modeBasis["matrix"]
+    with pytest.raises(ValueError, match="rank_tolerance"):
+        use_mean_axis_modes(fem, rank_tolerance=0.0)
+    assert fem.modeBasis["matrix"] is before
+    fem.modeBasis = {}
+    with pytest.raises(ValueError, match="fem: it holds no modes"):
+        use_mean_axis_modes(fem)

@@ -1,0 +1,179 @@
+"""Interfaces by position, rigid discs, clamps in some directions, summary and curved meshes."""
+
+import itertools
+from functools import cache
+
+import ngsolve as ngs
+import numpy as np
+import pytest
+from models import ALUMINIUM, STEEL, two_material_cylinder
+from netgen.occ import Cylinder, Glue, OCCGeometry, Pnt, Z
+
+from exudyn_rotor import SolidRotor, SpinAxis, Support, campbell
+
+HARD = {"youngsModulus": 2.1e15, "poissonsRatio": 0.3, "density": 7850.0}
+RADIUS, LENGTH = 0.02, 0.4
+BAND = 0.25, 0.04  # of the disc
+OUTER = 0.1  # radius of the disc
+
+
+@cache
+def shaft(with_disc: bool = False) -> SolidRotor:
+    """Return a shaft along z that is cut at the band, alone or with a meshed stiff disc there."""
+    low, high = BAND[0] - 0.5 * BAND[1], BAND[0] + 0.5 * BAND[1]
+    cuts = [0.0, low, high, LENGTH]
+    parts = [Cylinder(Pnt(0, 0, a), Z, RADIUS, b - a) for a, b in itertools.pairwise(cuts)]
+    for part in parts:
+        part.mat("steel")
+    parts[0].faces.Min(Z).name, parts[-1].faces.Max(Z).name = "left", "right"
+    if with_disc:
+        wheel = Cylinder(Pnt(0, 0, low), Z, OUTER, BAND[1])
+        parts.append((wheel - Cylinder(Pnt(0, 0, low), Z, RADIUS, BAND[1])).mat("hard"))
+    mesh = ngs.Mesh(OCCGeometry(Glue(parts)).GenerateMesh(maxh=0.05, curvaturesafety=1.5))
+    materials = {"steel": STEEL, "hard": HARD} if with_disc else STEEL
+    rotor = SolidRotor.from_ngsolve(mesh, materials, "z", check_units=False)
+    return rotor.center_interfaces()
+
+
+def wheel() -> tuple[float, tuple[float, float]]:
+    """Return mass and moments of inertia of the meshed disc."""
+    mass = STEEL["density"] * np.pi * (OUTER**2 - RADIUS**2) * BAND[1]
+    polar = 0.5 * mass * (OUTER**2 + RADIUS**2)
+    return mass, (polar, 0.5 * polar + mass * BAND[1] ** 2 / 12.0)
+
+
+@pytest.mark.parametrize("axis", ["z", SpinAxis([1.0, 2.0, -0.5], [0.3, -0.1, 0.2])])
+def test_interface_at_takes_the_outer_surface_of_a_band(axis):
+    """Neither the bore nor the face between sleeve and shaft; any axis."""
+    inner = Cylinder(Pnt(0, 0, 0), Z, 0.04, 0.2) - Cylinder(Pnt(0, 0, 0), Z, 0.02, 0.2)
+    sleeve = Cylinder(Pnt(0, 0, 0), Z, 0.06, 0.2) - Cylinder(Pnt(0, 0, 0), Z, 0.04, 0.2)
+    inner.mat("a")
+    sleeve.mat("b")
+    mesh = ngs.Mesh(OCCGeometry(Glue([inner, sleeve])).GenerateMesh(maxh=0.08, curvaturesafety=0.7))
+    made = SolidRotor.from_ngsolve(mesh, {"a": STEEL, "b": STEEL}, "z")
+    axis = SpinAxis.of(axis)
+    turn = np.column_stack([axis.plane, axis.direction])
+    rotor = SolidRotor(
+        made.nodes @ turn.T + axis.point, made.mass, made.stiffness, axis,
+        triangles=made.triangles,
+    ).interface_at("seat", 0.08, 0.08)  # fmt: skip
+    seat = rotor.interfaces["seat"]
+    np.testing.assert_allclose(np.linalg.norm(axis.radial(seat.positions), axis=1), 0.06, rtol=1e-9)
+    np.testing.assert_allclose(seat.reference, axis.point + 0.08 * axis.direction, atol=1e-12)
+    along = made.nodes[:, 2]
+    outer = np.hypot(*made.nodes[:, :2].T) > 0.0599
+    expected = np.flatnonzero(outer & (along > 0.04 - 1e-9) & (along < 0.12 + 1e-9))
+    assert seat.nodes.tolist() == expected.tolist()
+    assert seat.nodes.size > 20
+    # a band at the end takes the edge of the end face, and not the face
+    end = rotor.interface_at("end", 0.0, 0.08).interfaces["end"]
+    np.testing.assert_allclose(np.linalg.norm(axis.radial(end.positions), axis=1), 0.06, rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("left", 0.2, 0.1), "exists already"),
+        (("seat", 0.2, 0.0), "width"),
+        (("seat", 0.9, 0.1), r"position: no node of the outer .* from 0 to 0.4"),
+        (("seat", np.nan, 0.1), "position"),
+    ],
+)
+def test_bands_that_hold_nothing_are_refused(arguments, words):
+    with pytest.raises(ValueError, match=words):
+        shaft().interface_at(*arguments)
+
+
+def test_disc_adds_its_mass_and_moments():
+    """Second moments of the rigid rotor: those of the shaft, and ``E + m c cᵀ`` of the disc."""
+    mass, inertia = 5.0, np.array([[0.03, 0.001, 0.0], [0.001, 0.04, -0.002], [0.0, -0.002, 0.05]])
+    bare = shaft()
+    rotor = bare.add_disc(BAND[0], mass, inertia, BAND[1], name="seat")
+
+    def moments(solid):
+        return solid.nodes.T @ (solid.mass[::3, ::3] @ solid.nodes)
+
+    center = np.array([0.0, 0.0, BAND[0]])
+    expected = 0.5 * np.trace(inertia) * np.eye(3) - inertia + mass * np.outer(center, center)
+    np.testing.assert_allclose(moments(rotor) - moments(bare), expected, atol=1e-12)
+    np.testing.assert_allclose(rotor.total_mass - bare.total_mass, mass, rtol=1e-12)
+    assert rotor.rigid_motions == 6
+    assert rotor.discs[0].nodes.tolist() == rotor.interfaces["seat"].nodes.tolist()
+
+
+@pytest.fixture(scope="module")
+def rigid_and_meshed():
+    mass, inertia = wheel()
+    rotors = shaft().add_disc(BAND[0], mass, inertia, BAND[1]), shaft(with_disc=True)
+    return [rotor.reduce(8, prestress=True) for rotor in rotors]
+
+
+@pytest.mark.parametrize("level", ["tilt", "full"])
+def test_disc_whirls_as_a_meshed_stiff_one(rigid_and_meshed, level):
+    """Both levels of stiffening, up to 1.5 times the first frequency.
+
+    The meshed disc stiffens the shaft's section from its surface inwards as the rigid one does;
+    1e-3 is what other meshes of the same shaft differ by.
+    """
+    supports = [Support(name, 1e8) for name in ("left", "right")]
+    found = []
+    for reduced in rigid_and_meshed:
+        result = campbell(reduced, [0.0, 1500.0], supports=supports, stiffening=level)
+        lateral = np.isin(result.whirl, ("forward", "backward", "mixed"))
+        rows = zip(result.frequencies_inertial, lateral, strict=True)
+        found.append([np.sort(values[chosen])[:4] for values, chosen in rows])
+    np.testing.assert_allclose(found[0], found[1], rtol=2e-3)
+    # the gyroscopic split of the second pair is well above that
+    assert found[0][1][3] / found[0][1][2] > 1.3
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"mass": 0.0}, "mass"),
+        ({"inertia": (0.3, 0.1)}, "polar ≤ 2 × transverse"),
+        ({"inertia": (0.1, -0.1)}, "above zero"),
+        ({"inertia": (0.1, 0.1, 0.1)}, "polar and transverse"),
+        ({"width": 0.001}, "on one line"),
+        ({"name": "left"}, "exists already"),
+    ],
+)
+def test_impossible_discs_are_refused(change, words):
+    given = {"position": 0.15, "mass": 1.0, "inertia": (0.02, 0.02), "width": 0.06, **change}
+    with pytest.raises(ValueError, match=words):
+        shaft().add_disc(**given)
+
+
+@pytest.mark.parametrize(
+    ("directions", "modulus"), [("axial", 2.1e11), (["radial", "tangential"], 2.1e11 / 2.6)]
+)
+def test_waves_in_a_bar_held_in_one_direction(directions, modulus):
+    """Held along the axis, or about it, at one end: ``ω = ½π √(modulus/ρ) / L`` (fixed, free).
+
+    Lateral contraction adds ``½ (½π ν r/L)²`` = 3e-4 to the mass of axial waves (Rayleigh).
+    """
+    rotor = shaft().clamped("left", directions)
+    reduced = rotor.reduce(12)
+    frequencies = np.sqrt(np.diag(reduced.invariants.K)[len(reduced.rigid) :])
+    expected = 0.5 * np.pi * np.sqrt(modulus / STEEL["density"]) / LENGTH
+    assert np.min(np.abs(frequencies / expected - 1.0)) < 1e-3
+
+
+def test_summary_names_materials_and_discs():
+    mesh = two_material_cylinder()
+    materials = {"steel": STEEL, "aluminium": ALUMINIUM}
+    rotor = SolidRotor.from_ngsolve(mesh, materials, "z").add_disc(0.2, 3.0, (0.02, 0.01), 0.12)
+    text = rotor.summary()
+    assert "steel: 73.97" in text  # π 0.1² 0.3 · 7850 = 73.98 kg
+    assert "aluminium: 8.48" in text
+    assert "E 7e+10 Pa, ν 0.33, ρ 2700 kg/m³" in text
+    assert "rigid disc       3 kg at [0, 0, 0.2] m, polar 0.02, transverse 0.01 kg m²" in text
+
+
+def test_curved_elements_are_replaced_with_a_word():
+    mesh = two_material_cylinder()
+    mesh.Curve(2)
+    materials = {"steel": STEEL, "aluminium": ALUMINIUM}
+    with pytest.warns(UserWarning, match=r"Curve\(2\)\) are replaced by mid nodes"):
+        SolidRotor.from_ngsolve(mesh, materials, "z")
+    SolidRotor.from_ngsolve(mesh, materials, "z")  # no second word: the mid nodes are there

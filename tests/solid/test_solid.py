@@ -1,0 +1,238 @@
+"""The finite-element layer: sources of models, masses, interfaces, rigid motions, stress."""
+
+import numpy as np
+import pytest
+from exudyn.FEM import FEMinterface
+from models import ALUMINIUM, STEEL, block_beam, disc_rotor, two_material_cylinder
+
+from exudyn_rotor.solid.point_mass import PointMass
+from exudyn_rotor.solid.surface import area_weights
+from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.nodal import rotations, translations
+
+MATERIALS = {"steel": STEEL, "aluminium": ALUMINIUM}
+
+
+def relative_difference(actual, expected):
+    return abs(actual - expected).max() / abs(expected).max()
+
+
+@pytest.fixture(scope="module")
+def disc():
+    return disc_rotor()
+
+
+@pytest.fixture(scope="module")
+def beam():
+    return SolidRotor.from_ngsolve(block_beam(), STEEL, "z")
+
+
+@pytest.fixture(scope="module")
+def cylinder():
+    return SolidRotor.from_ngsolve(two_material_cylinder(), MATERIALS, "z")
+
+
+# ------------------------------------------------------------------ the same as FEMinterface
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_ngsolve_model_equals_the_model_of_fem_interface(order):
+    mesh = two_material_cylinder()
+    fem = FEMinterface()
+    fem.ImportMeshFromNGsolve(mesh, materials=MATERIALS, meshOrder=order)
+
+    rotor = SolidRotor.from_ngsolve(mesh, MATERIALS, "z", order=order)
+
+    assert np.array_equal(rotor.nodes, fem.nodes["Position"])
+    assert relative_difference(rotor.mass, fem.massMatrix) < 1e-12
+    assert relative_difference(rotor.stiffness, fem.stiffnessMatrix) < 1e-12
+    expected_triangles = fem.surface[0]["Trigs6" if order == 2 else "Trigs"]
+    assert np.array_equal(rotor.triangles, expected_triangles)
+    sets = {node_set["Name"]: node_set for node_set in fem.nodeSets}
+    assert set(rotor.interfaces) == {"left", "joint"} == set(sets) - {"default"}
+    for name, interface in rotor.interfaces.items():
+        sorting = np.argsort(sets[name]["NodeNumbers"])
+        assert np.array_equal(interface.nodes, sets[name]["NodeNumbers"][sorting])
+        np.testing.assert_allclose(
+            interface.weights, sets[name]["NodeWeights"][sorting], rtol=1e-12, atol=0
+        )
+
+
+def test_import_of_fem_interface_keeps_the_model():
+    mesh = two_material_cylinder()
+    assembled = SolidRotor.from_ngsolve(mesh, MATERIALS, "z")
+    fem = FEMinterface()
+    # the mesh has its mid nodes already and FEMinterface would add them a second time
+    fem.ImportMeshFromNGsolve(two_material_cylinder(), materials=MATERIALS, meshOrder=2)
+
+    imported = SolidRotor.from_fem_interface(fem, "z")
+
+    assert np.array_equal(imported.nodes, assembled.nodes)
+    assert np.array_equal(imported.triangles, assembled.triangles)
+    assert relative_difference(imported.mass, assembled.mass) < 1e-12
+    assert relative_difference(imported.stiffness, assembled.stiffness) < 1e-12
+    for name, interface in assembled.interfaces.items():
+        np.testing.assert_allclose(imported.interfaces[name].center, interface.center, atol=1e-15)
+
+
+# ------------------------------------------------------------------ mass
+
+
+def test_mass_and_inertia_of_the_cylinder(cylinder):
+    # An edge of angle α as a parabola misses the share α⁴/480 of the circle's area (series of the
+    # segment areas), and twice that of the polar inertia; here α ≤ maxh/radius.
+    missing = (0.06 / 0.1) ** 4 / 480
+    masses = np.pi * 0.1**2 * np.array([0.3 * STEEL["density"], 0.1 * ALUMINIUM["density"]])
+    mass = masses.sum()
+    assert mass * (1 - missing) < cylinder.total_mass < mass
+    spin = rotations(cylinder.nodes, np.zeros(3))[:, 2]
+    inertia = 0.5 * mass * 0.1**2
+    assert inertia * (1 - 2 * missing) < spin @ cylinder.mass @ spin < inertia
+    height = masses @ [0.15, 0.35] / mass
+    np.testing.assert_allclose(cylinder.center_of_mass, [0, 0, height], atol=0.1 * missing)
+
+
+def test_a_point_mass_moves_the_centre_of_mass(beam):
+    position = np.array([0.021, 0.03, 0.3])
+    heavier = beam.add_point_mass(position, 0.5)
+
+    (placed,) = heavier.point_masses
+    assert isinstance(placed, PointMass)
+    assert placed.node == beam.nearest_node(position)
+    # the corner of the block is a node, 1 mm beside the asked position
+    np.testing.assert_allclose(beam.nodes[placed.node], [0.02, 0.03, 0.3], atol=1e-15)
+    assert placed.distance == pytest.approx(0.001, rel=1e-9)
+    assert heavier.total_mass == pytest.approx(beam.total_mass + 0.5, rel=1e-12)
+    expected = beam.total_mass * beam.center_of_mass + 0.5 * beam.nodes[placed.node]
+    np.testing.assert_allclose(
+        heavier.center_of_mass, expected / heavier.total_mass, rtol=0, atol=1e-14
+    )
+    assert beam.point_masses == ()
+    assert len(heavier.add_point_mass([0, 0, 0], 1e-3).point_masses) == 2
+
+
+# ------------------------------------------------------------------ arrays and immutability
+
+
+def test_from_matrices_takes_dense_sparse_damping_and_interfaces(beam):
+    damping = 1e-5 * beam.stiffness.toarray()
+    nodes = beam.interfaces["left"].nodes
+    rotor = SolidRotor.from_matrices(
+        beam.mass.tocsc(),
+        beam.stiffness.toarray(),
+        beam.nodes.tolist(),
+        SpinAxis([0, 0, 2.0]),
+        damping,
+        interfaces={"even": nodes, "weighted": (nodes, beam.interfaces["left"].weights)},
+        triangles=beam.triangles,
+    )
+    assert relative_difference(rotor.mass, beam.mass) == 0.0
+    assert relative_difference(rotor.damping, damping) == 0.0
+    assert np.ptp(rotor.interfaces["even"].weights) == 0.0
+    np.testing.assert_allclose(
+        rotor.interfaces["weighted"].center, beam.interfaces["left"].center, atol=1e-16
+    )
+    assert rotor.stress_recovery is None
+
+
+# ------------------------------------------------------------------ interfaces
+
+
+def test_area_weights_are_the_exact_areas_of_a_triangle():
+    # right triangle with legs 2 and 1: corners get 1/12 of the area, mid nodes 3/12
+    corners = np.array([[0, 0, 0], [2, 0, 0], [0, 1, 0]], dtype=float)
+    mids = (corners + np.roll(corners, -1, axis=0)) / 2
+    nodes, weights = area_weights(np.vstack([corners, mids]), np.arange(6)[None, :])
+    assert nodes.tolist() == [0, 1, 2, 3, 4, 5]
+    np.testing.assert_allclose(weights, [1 / 12] * 3 + [1 / 4] * 3, rtol=1e-14)
+
+
+def test_mean_motion_is_exact_for_a_rigid_motion(disc):
+    shift, turn = np.array([1e-4, -2e-4, 3e-4]), np.array([2e-3, 1e-3, -3e-3])
+    motion = translations(disc.node_count) @ shift + rotations(disc.nodes, np.zeros(3)) @ turn
+    for interface in disc.center_interfaces().interfaces.values():
+        measured = interface.mean_motion(disc.node_count) @ motion
+        expected = shift + np.cross(turn, interface.reference)
+        # eps of the displacement for each node in each of three sums, those of the centre, of W and
+        # of the motion; rotations are those over the radius
+        rounding = 3.0 * np.finfo(float).eps * len(interface.nodes) * np.abs(motion).max()
+        np.testing.assert_allclose(measured[:3], expected, rtol=0, atol=rounding)
+        np.testing.assert_allclose(measured[3:], turn, rtol=0, atol=rounding / interface.radius)
+
+
+def test_interfaces_are_centred_on_the_axis(disc):
+    axis = SpinAxis([0, 0, 1], [1e-3, 0, 0])
+    rotor = SolidRotor.from_matrices(
+        disc.mass,
+        disc.stiffness,
+        disc.nodes,
+        axis,
+        interfaces={name: face.nodes for name, face in disc.interfaces.items()},
+    )
+    moved = rotor.center_interfaces(["left"])
+    np.testing.assert_allclose(moved.interfaces["left"].reference[:2], [1e-3, 0], atol=1e-16)
+    np.testing.assert_allclose(
+        moved.interfaces["left"].center, rotor.interfaces["left"].center, atol=1e-16
+    )
+    right = moved.interfaces["right"]
+    np.testing.assert_array_equal(right.reference, right.center)
+
+
+# ------------------------------------------------------------------ rigid motions
+
+
+# ------------------------------------------------------------------ stress
+
+
+def hooke(gradient, material):
+    """Return xx, yy, zz, yz, xz, xy for one displacement gradient ∂u_i/∂x_j, written out."""
+    modulus, ratio = material["youngsModulus"], material["poissonsRatio"]
+    strain = (gradient + gradient.T) / 2
+    factor = modulus / ((1 + ratio) * (1 - 2 * ratio))
+    normal = [
+        factor * ((1 - ratio) * strain[i, i] + ratio * (strain[j, j] + strain[k, k]))
+        for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1))
+    ]
+    shear = [modulus / (1 + ratio) * strain[i, j] for i, j in ((1, 2), (0, 2), (0, 1))]
+    return np.array(normal + shear)
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_stress_of_linear_displacements_is_hookes_law(order):
+    rotor = SolidRotor.from_ngsolve(two_material_cylinder(), MATERIALS, "z", order=order)
+    gradients = np.random.default_rng(3).normal(size=(2, 3, 3)) * 1e-3
+    columns = np.stack([(rotor.nodes @ g.T).ravel() for g in gradients], axis=1)
+
+    stress = rotor.stress_recovery(columns)
+
+    assert stress.shape == (rotor.node_count, 6, 2)
+    height = rotor.nodes[:, 2]
+    for column, gradient in enumerate(gradients):
+        for material, inside in ((STEEL, height < 0.299), (ALUMINIUM, height > 0.301)):
+            expected = hooke(gradient, material)
+            error = np.abs(stress[inside, :, column] - expected).max()
+            assert error < 1e-9 * np.abs(expected).max()
+
+
+def test_stress_of_quadratic_displacements_is_exact_inside_one_material(beam):
+    # pure bending, Euler-Bernoulli: u_z = −κ x z, u_x = κ (z² + ν(x² − y²))/2, u_y = κ ν x y
+    curvature, ratio = 1e-3, STEEL["poissonsRatio"]
+    x, y, z = beam.nodes.T
+    motion = curvature * np.stack(
+        [(z**2 + ratio * (x**2 - y**2)) / 2, ratio * x * y, -x * z], axis=1
+    )
+    stress = beam.stress_recovery(motion.reshape(-1, 1))[:, :, 0]
+    expected = np.zeros_like(stress)
+    expected[:, 2] = -STEEL["youngsModulus"] * curvature * x
+    np.testing.assert_allclose(stress, expected, rtol=0, atol=1e-9 * np.abs(expected).max())
+
+
+# ------------------------------------------------------------------ texts and units
+
+
+def test_a_consistent_system_of_units_is_possible(beam):
+    material = {"youngsModulus": 2.1e5, "poissonsRatio": 0.3, "density": 7.85e-9}
+    tonnes = SolidRotor.from_ngsolve(block_beam(scale=1e3), material, "z", check_units=False)
+    assert tonnes.total_mass == pytest.approx(beam.total_mass / 1000, rel=1e-12)
+    assert tonnes.rigid_motions == 6

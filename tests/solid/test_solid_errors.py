@@ -1,0 +1,159 @@
+"""Wrong input of the finite-element layer: every error names the value and what to do."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from exudyn.FEM import FEMinterface
+from models import STEEL, block_beam, two_material_cylinder
+
+from exudyn_rotor.solid_rotor import SolidRotor
+
+
+@pytest.fixture(scope="module")
+def mesh():
+    return block_beam()
+
+
+def chain(count=3, spring=1e6):
+    """Return `count` unit masses on a curve, each held by springs to the ground."""
+    number = np.arange(count, dtype=float)
+    return {
+        "mass": np.eye(3 * count),
+        "stiffness": spring * np.eye(3 * count),
+        "nodes": np.stack([number, 0.1 * number**2, 0.1 * number**3], axis=1),
+    }
+
+
+def make(changes):
+    return SolidRotor.from_matrices(**{**chain(), **changes}, axis="x")
+
+
+# ------------------------------------------------------------------ arrays
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"nodes": np.zeros((3, 2))}, r"nodes: the shape must be \(n, 3\), got \(3, 2\)"),
+        ({"nodes": np.zeros((0, 3))}, r"nodes: the shape must be \(n, 3\)"),
+        ({"nodes": np.zeros((3, 6))}, "6 coordinates per node mean rotation-carrying"),
+        ({"nodes": [[0, 0, np.nan], [1, 0, 0], [2, 1, 0]]}, "1 of 3 positions are not finite"),
+        ({"mass": np.eye(8)}, r"mass matrix: the shape must be \(9, 9\).*got \(8, 8\)"),
+        ({"stiffness": np.ones(9)}, r"stiffness matrix: needs a square matrix.*\(9,\)"),
+        ({"mass": np.eye(18)}, "mass matrix: 6 coordinates for each of 3 nodes.*rotation-carrying"),
+        ({"stiffness": None}, r"stiffness matrix: is missing"),
+        ({"damping": np.eye(6)}, r"damping matrix: the shape must be \(9, 9\)"),
+        ({"stiffness": 1j * np.eye(9)}, "stiffness matrix: needs real numbers, got imaginary"),
+        ({"triangles": [[0.5, 1, 2]]}, "triangles: needs whole numbers, got"),
+        ({"triangles": [[0, 1]]}, r"triangles: the shape must be \(t, 3\) or \(t, 6\)"),
+        ({"triangles": [[0, 1, 3]]}, "triangles: node numbers 0 to 3 are outside"),
+    ],
+)
+def test_shapes(changes, message):
+    with pytest.raises(ValueError, match=message):
+        make(changes)
+
+
+# ------------------------------------------------------------------ mass
+
+
+# ------------------------------------------------------------------ stiffness
+
+
+# ------------------------------------------------------------------ interfaces
+
+
+@pytest.mark.parametrize(
+    ("entry", "message"),
+    [
+        ([], "interface 'a' has no nodes"),
+        ([0, 3], "interface 'a': there is no node 3; the model has the nodes 0 to 2"),
+        ([-1], "interface 'a': there is no node -1"),
+        ([0, 1, 1], "interface 'a': repeated node numbers 1"),
+        (([0, 1], [1.0, -0.5]), "interface 'a': weights.*cannot be negative, got -0.5"),
+        (
+            ([0, 1], [1.0]),
+            r"interface 'a': weights: needs finite numbers of shape \(2,\), got \[1.0\]",
+        ),
+    ],
+)
+def test_wrong_interfaces(entry, message):
+    with pytest.raises(ValueError, match=message):
+        make({"interfaces": {"a": entry}})
+
+
+# ------------------------------------------------------------------ meshes
+
+
+# ------------------------------------------------------------------ materials and units
+
+
+def test_regions_without_material():
+    with pytest.raises(ValueError, match=r"\['aluminium'\] have no material; given are \['steel'"):
+        SolidRotor.from_ngsolve(two_material_cylinder(0.2), {"steel": STEEL}, "z")
+    with pytest.raises(ValueError, match="one material was given, but the mesh has 2 regions"):
+        SolidRotor.from_ngsolve(two_material_cylinder(0.2), STEEL, "z")
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        (
+            {"youngsModulus": 0.0},
+            r"materials: 'steel': youngsModulus: needs a finite number \[Pa\] > 0, got 0.0",
+        ),
+        ({"youngsModulus": np.nan}, "materials: 'steel': youngsModulus: .* got nan"),
+        ({"poissonsRatio": 0.5}, "materials: 'steel': poissonsRatio: .* > -1 and < 0.5, got 0.5"),
+        ({"poissonsRatio": -1.0}, "materials: 'steel': poissonsRatio: .* got -1.0"),
+        ({"density": -7850.0}, r"materials: 'steel': density: needs a finite number \[kg/m³\] > 0"),
+        ({"colour": 1.0}, "materials: 'steel': needs exactly the keys"),
+        ({"density": 7.85e-9, "youngsModulus": 2.1e5}, "mm and tonnes.*check_units=False"),
+        ({"density": 7.85e-6}, "mm and kg.*convert to SI"),
+        ({"youngsModulus": 2.1e5}, "wave speed of 5.17 m/s.*cannot be"),
+        ({"youngsModulus": 2.1e14}, r"wave speed of 1\.64e\+05 m/s"),
+    ],
+)
+def test_materials_that_cannot_be(mesh, changes, message):
+    with pytest.raises(ValueError, match=message):
+        SolidRotor.from_ngsolve(mesh, {"steel": {**STEEL, **changes}}, "z")
+
+
+def test_a_mesh_in_millimetres_with_si_materials():
+    with pytest.raises(ValueError, match=r"cannot be a rotor; lengths in mm, as Netgen.*Scale"):
+        SolidRotor.from_ngsolve(block_beam(scale=1e3), STEEL, "z")
+
+
+# ------------------------------------------------------------------ FEMinterface
+
+
+def fem_interface(**changes):
+    """Return a FEMinterface that holds the chain of masses."""
+    fem = FEMinterface()
+    arrays = chain()
+    fem.nodes = {"Position": arrays["nodes"]}
+    fem.massMatrix = sp.csr_matrix(arrays["mass"])
+    fem.stiffnessMatrix = sp.csr_matrix(arrays["stiffness"])
+    for name, value in changes.items():
+        setattr(fem, name, value)
+    return fem
+
+
+def node_set(name, *numbers):
+    return {"Name": name, "NodeNumbers": np.array(numbers)}
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"nodes": {"RigidBodyRxyz": np.zeros((3, 6))}}, "rotation-carrying"),
+        ({"nodes": {"Position2D": np.zeros((3, 2))}}, r"'Position' nodes only.*Position2D"),
+        ({"nodes": {}}, "got no nodes"),
+        ({"massMatrix": None}, "massMatrix is missing"),
+        ({"stiffnessMatrix": None}, "stiffnessMatrix is missing"),
+        ({"nodeSets": [node_set("a", 0), node_set("a", 1)]}, r"several node sets.*\['a'\]"),
+        ({"nodeSets": [node_set("a")]}, "interface 'a' has no nodes"),
+    ],
+)
+def test_wrong_fem_interface(changes, message):
+    with pytest.raises(ValueError, match=message):
+        SolidRotor.from_fem_interface(fem_interface(**changes), "x")

@@ -1,0 +1,98 @@
+"""The iterative solver: what the direct one finds, in memory that is known before."""
+
+import numpy as np
+import pytest
+from models import ALUMINIUM as LIGHT
+from models import STEEL, two_material_cylinder
+from netgen.occ import Box, OCCGeometry
+from ngsolve import Mesh
+
+from exudyn_rotor import SolidRotor, craig_bampton_modes, free_modes
+from exudyn_rotor.reduction.attachment import attachment_modes
+from exudyn_rotor.solvers import choice, conjugate_gradients, davidson
+from exudyn_rotor.solvers.inertia_relief import inertia_relief
+from exudyn_rotor.solvers.memory import TooLittleMemoryError
+
+# a residual of 1e-6 of ω²Mφ leaves the square of that in ω; the rounding of K φ more
+SAME_FREQUENCY = 1e-9
+# twelve digits of the load, times a condition of 1e3 for smooth loads
+SAME_DISPLACEMENT = 1e-9
+
+
+@pytest.fixture(scope="module")
+def cylinder():
+    """Two materials, 0.4 m along a skew axis through its centre line."""
+    mesh = two_material_cylinder(safety=0.5)
+    return SolidRotor.from_ngsolve(mesh, {"steel": STEEL, "aluminium": LIGHT}, "z")
+
+
+def both(rotor):
+    return rotor.with_solver("direct"), rotor.with_solver("iterative")
+
+
+@pytest.mark.parametrize("held", [None, ("x", "y", "z"), ("axial",), ("radial", "tangential")])
+def test_modes_are_those_of_the_factor(cylinder, held):
+    rotor = cylinder if held is None else cylinder.clamped("left", held)
+    expected, found = (free_modes(one, 7) for one in both(rotor))
+    np.testing.assert_allclose(found.frequencies, expected.frequencies, rtol=SAME_FREQUENCY)
+
+
+@pytest.mark.parametrize("coupling", ["RBE2", "RBE3"])
+def test_craig_bampton_modes_are_those_of_the_factor(cylinder, coupling, monkeypatch):
+    monkeypatch.setattr(davidson, "_MOST_STEPS", 27)  # 25 are needed
+    modes = [craig_bampton_modes(one, 4, coupling=coupling) for one in both(cylinder)]
+    expected, found = (one.frequencies[12:] for one in modes)
+    np.testing.assert_allclose(found, expected, rtol=SAME_FREQUENCY)
+    expected, found = (one.matrix[:, :12] for one in modes)
+    np.testing.assert_allclose(found, expected, atol=SAME_DISPLACEMENT * np.abs(expected).max())
+
+
+def test_static_solutions_are_those_of_the_factor(cylinder, monkeypatch):
+    monkeypatch.setattr(conjugate_gradients, "_MOST_STEPS", 60)  # 46 are needed
+    expected, found = (one.prestress().displacement for one in both(cylinder))
+    assert np.linalg.norm(found - expected) < SAME_DISPLACEMENT * np.linalg.norm(expected)
+    none = np.zeros((cylinder.nodes.size, 0))
+    # 1e-8 is what these leave
+    expected, found = (attachment_modes(one, none).matrix for one in both(cylinder))
+    np.testing.assert_allclose(found, expected, atol=1e-6 * np.abs(expected).max())
+
+
+def test_slow_iteration_gives_way_to_a_factor(monkeypatch):
+    """A plate of one element through the thickness, which linear elements cannot bend."""
+    mesh = Mesh(OCCGeometry(Box((0, -0.1, 0), (0.2, 0.1, 0.001))).GenerateMesh(maxh=0.05))
+    plate = SolidRotor.from_ngsolve(mesh, STEEL, "z")
+    monkeypatch.setattr(choice, "_QUICK", 0)
+    monkeypatch.setattr(choice, "_WORTH_IT", 0.0)
+    assert not inertia_relief(plate).iterative
+    monkeypatch.setattr(conjugate_gradients, "_MOST_STEPS", 10)
+    with pytest.raises(ValueError, match=r"after 10 steps; use rotor\.with_solver\('direct'\)"):
+        plate.with_solver("iterative").prestress()
+
+
+def test_too_little_memory_is_told_before_anything_is_computed(cylinder, monkeypatch):
+    matrices = cylinder.mass, cylinder.stiffness, cylinder.nodes, "z"
+    plain = SolidRotor.from_matrices(*matrices)
+    monkeypatch.setattr(choice, "available_memory", lambda: 1e6)
+    with pytest.raises(TooLittleMemoryError, match=r"needs up to 0\.\d GB, and 0\.0 GB of memory"):
+        plain.reduce(2)
+    with pytest.raises(TooLittleMemoryError, match=r"use rotor\.with_solver\('auto'\)"):
+        free_modes(cylinder.with_solver("direct"), 2)
+    with pytest.raises(TooLittleMemoryError, match="the iterative solver needs about"):
+        cylinder.reduce(2)
+
+
+def test_iteration_takes_over_where_a_factor_does_not_fit(cylinder, monkeypatch):
+    monkeypatch.setattr(choice, "_ITERATIVE_PER_COORDINATE", 0.0)
+    monkeypatch.setattr(choice, "_ITERATIVE_PER_ENTRY", 0.0)
+    assert not inertia_relief(cylinder).iterative
+    monkeypatch.setattr(choice, "available_memory", lambda: 1e6)
+    heavier = cylinder.add_point_mass([0.0, 0.1, 0.1], 0.1)
+    assert inertia_relief(heavier).iterative
+
+
+def test_iteration_needs_elements(cylinder):
+    plain = SolidRotor.from_matrices(cylinder.mass, cylinder.stiffness, cylinder.nodes, "z")
+    with pytest.raises(ValueError, match="needs a model of second-order elements made by"):
+        free_modes(plain.with_solver("iterative"), 2)
+    with pytest.raises(ValueError, match="solver"):
+        cylinder.with_solver("quick")

@@ -1,0 +1,191 @@
+"""The fast arrangement of the equations against their plain statement, and solver settings."""
+
+from dataclasses import replace
+
+import exudyn
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from point_rotors import random_invariants, random_spd, ring_rotor
+from scipy.spatial.transform import Rotation
+
+from exudyn_rotor import (
+    Formulation,
+    Motion,
+    PrescribedMotion,
+    select_modes,
+)
+from exudyn_rotor.multibody.rotor.equations import Layout, user_function_object
+from exudyn_rotor.multibody.solver_settings import recommended_settings
+from exudyn_rotor.theory.formulation import ConstantSpeed
+from exudyn_rotor.theory.kernel import Kernel, constant_part
+from exudyn_rotor.theory.stiffening import stiffening
+
+ORIENTATION = Rotation.from_rotvec([0.3, -0.5, 0.8]).as_matrix()
+SHAKE = PrescribedMotion(
+    lambda t: np.array([0.3, -0.2, 0.4]) * np.sin(2 * t),
+    lambda t: np.array([0.3, -0.2, 0.4]) * 2 * np.cos(2 * t),
+    lambda t: np.array([0.3, -0.2, 0.4]) * -4 * np.sin(2 * t),
+)
+SWING = PrescribedMotion(
+    lambda t: 0.5 * t + np.sin(t), lambda t: 0.5 + np.cos(t), lambda t: -np.sin(t)
+)
+ANGLE = Formulation("none", "free")
+FORMULATIONS = {
+    "free spin": ANGLE,
+    "constant speed": Formulation("none", ConstantSpeed(1.3, 0.2)),
+    "prescribed spin": Formulation("none", SWING),
+    "constant speed, shaken": Formulation(SHAKE, ConstantSpeed(1.3, 0.2)),
+    "prescribed spin, shaken": Formulation(SHAKE, SWING),
+    "free spin, shaken": Formulation(SHAKE, "free"),
+    "frozen spin": Formulation("none", "free", spin_coupling="frozen"),
+    "frozen spin, free": Formulation("free", "free", spin_coupling="frozen"),
+    **{
+        f"{spin_name}, {translation}": Formulation(translation, spin)
+        for translation in ("free", "in-plane")
+        for spin_name, spin in (
+            ("free spin", "free"),
+            ("constant speed", ConstantSpeed(1.3, 0.2)),
+            ("prescribed spin", SWING),
+        )
+    },
+}
+
+
+def motion_of(formulation: Formulation, seed: int, gravity: float) -> Motion:
+    """Return a motion whose invariants have no zeros: all its coordinates are coupled."""
+    invariants, _, _ = random_invariants(seed, 3)
+    displaced = random_spd(np.random.default_rng([seed, 2]), 3)
+    terms = replace(stiffening(invariants, "tilt"), K4=displaced)
+    return Motion(
+        invariants, formulation, terms, ORIENTATION, gravity=gravity * np.array([1.0, -2.0, 3.0])
+    )
+
+
+def kernel_mass(kernel: Kernel, motion: Motion, t: float, q: list) -> np.ndarray:
+    """Return the mass matrix: what varies by the kernel, the rest as it is at rest."""
+    mass = motion.mass_matrix(0.0, np.zeros(motion.size))
+    values = kernel.mass_entries(t, q)
+    mass[kernel.rows, kernel.columns] = mass[kernel.columns, kernel.rows] = values
+    return mass
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS.values(), ids=FORMULATIONS)
+@given(
+    seed=st.integers(0, 10_000),
+    gravity=st.sampled_from([0.0, 1.0]),
+    time=st.floats(-3.0, 3.0),
+)
+@settings(max_examples=15, deadline=None, derandomize=True)
+def test_kernel_equals_the_plain_equations(formulation, seed, gravity, time):
+    """Sums of the same products in another order: 1e-16 of their largest, some tens of them."""
+    motion = motion_of(formulation, seed, gravity)
+    kernel = Kernel(motion, range(motion.size), motion.size)
+    constant = constant_part(motion)
+    for q, q_t in np.random.default_rng(seed).normal(size=(2, 2, motion.size)):
+        forces = kernel.forces(time, q.tolist(), q_t.tolist())
+        total = forces + constant.force - constant.stiffness @ q - constant.damping @ q_t
+        expected = motion.forces(time, q, q_t)
+        assert total == pytest.approx(expected, abs=1e-12 * np.abs(expected).max())
+        mass = motion.mass_matrix(time, q)
+        found = kernel_mass(kernel, motion, time, q.tolist())
+        assert found == pytest.approx(mass, abs=1e-12 * np.abs(mass).max())
+        by_q, by_v = motion.jacobian(time, q, q_t)
+        slopes = -2.0 * (by_q + constant.stiffness) - 3.0 * (by_v + constant.damping)
+        found = kernel.jacobian(time, q.tolist(), q_t.tolist(), 2.0, 3.0)
+        assert found == pytest.approx(slopes, abs=1e-12 * np.abs(slopes).max())
+
+
+@pytest.mark.parametrize(
+    "formulation",
+    [
+        ANGLE,
+        FORMULATIONS["prescribed spin, shaken"],
+        FORMULATIONS["constant speed, shaken"],
+        FORMULATIONS["free spin, free"],
+        FORMULATIONS["free spin, in-plane"],
+        FORMULATIONS["frozen spin, free"],
+        FORMULATIONS["prescribed spin, free"],
+    ],
+)
+def test_jacobian_for_the_solver_is_the_derivative_of_its_forces(formulation):
+    """Of the forces that Exudyn gets from Python; what is native it knows itself.
+
+    Central differences of cubic polynomials with the step h err by h², 1e-10, and eps/h, 2e-11,
+    of entries of order 1 to 100.
+    """
+    motion, step, time = motion_of(formulation, 4, 1.0), 1e-5, 0.4
+    assert motion.invariants.D.any()
+    size, none = motion.size, np.zeros(motion.size)
+    layout = Layout(size, np.arange(size), none, none, none)
+    scene = user_function_object(motion, layout, [0], None)
+    state = np.random.default_rng(7).normal(size=2 * size)
+
+    def force(shift: np.ndarray) -> np.ndarray:
+        q, q_t = np.split(state + shift, 2)
+        return np.array(scene.forceUserFunction(None, time, 0, q.tolist(), q_t.tolist()))
+
+    shifts = step * np.eye(2 * size)
+    slopes = np.array([force(shift) - force(-shift) for shift in shifts]).T / (2.0 * step)
+    q, q_t = (part.tolist() for part in np.split(state, 2))
+    found = scene.jacobianUserFunction(None, time, 0, q, q_t, 2.0, 3.0)
+    expected = -2.0 * slopes[:, :size] - 3.0 * slopes[:, size:]
+    assert found == pytest.approx(expected, abs=1e-8 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize(
+    "name", ["free spin", "free spin, in-plane", "constant speed, free", "prescribed spin, free"]
+)
+def test_mass_matrix_for_the_solver(name):
+    """The whole matrix, among coordinates that are locked by mass."""
+    motion = motion_of(FORMULATIONS[name], 6, 0.0)
+    size = motion.size + 2
+    unknowns = np.array([*range(1, motion.size - 2), *range(size - 3, size)])
+    locked = np.setdiff1d(np.arange(size), unknowns)
+    layout = Layout(size, unknowns, np.isin(np.arange(size), locked) * 1e6, *np.zeros((2, size)))
+    scene = user_function_object(motion, layout, [0], None)
+    for q in np.random.default_rng(3).normal(size=(2, size)):
+        found = scene.massMatrixUserFunction(None, 0.4, 0, q.tolist(), None).Convert2DenseMatrix()
+        expected = layout.spread(motion.mass_matrix(0.4, q[unknowns]), layout.lock_mass)
+        assert found == pytest.approx(expected, abs=1e-12 * np.abs(expected[1:-1, 1:-1]).max())
+        assert np.count_nonzero(found[locked]) == 2
+
+
+def test_recommended_settings_follow_the_accuracy():
+    given = exudyn.SimulationSettings()
+    made = recommended_settings(0.1, 3e-4, accuracy=1e-6, settings=given)
+    assert made is given
+    assert made.timeIntegration.numberOfSteps == 334
+    assert made.timeIntegration.endTime == 0.1
+    assert made.timeIntegration.newton.relativeTolerance == pytest.approx(1e-7)
+    assert recommended_settings(0.1, 1e-3).timeIntegration.numberOfSteps == 100
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((0.0, 1e-3), r"end_time: needs a finite number \[s\] > 0"),
+        ((1.0, -1e-3), r"step: needs a finite number \[s\] > 0"),
+        ((1.0, float("nan")), "step"),
+        ((1e-3, 1.0), "longer than end_time"),
+    ],
+)
+def test_bad_settings_are_refused(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        recommended_settings(*arguments)
+
+
+def test_negligible_decides_what_is_evaluated():
+    """A slight unbalance stays by default, and goes where the caller takes it for nothing."""
+    rotor = ring_rotor(0.1, 0.2, 5.0).add_point_mass([0.1, 0.0, 0.2], 1e-5)
+    reduced, fixed = rotor.reduce(0), Formulation("none", 10.0)
+    kept = select_modes(reduced, fixed).invariants
+    gone = select_modes(reduced, fixed, negligible=1e-4).invariants
+    # the mass m at radius r shifts the centre by m r / M, 4.5e-6 of the radius of gyration
+    assert np.linalg.norm(kept.center) == pytest.approx(1e-6 / 5.0, rel=1e-5)
+    assert np.any(kept.h)
+    assert not np.any(gone.center)
+    assert not np.any(gone.h)
+    with pytest.raises(ValueError, match="negligible: needs"):
+        select_modes(reduced, fixed, negligible=1.0)
