@@ -131,7 +131,7 @@ class SqueezeFilmDamper(ShortFilmBearing):
         slopes[:, :, :2] += k[:, None, None] * np.eye(2)
         return force, slopes
 
-    def _law_of_small_motions(
+    def law_of_small_motions(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
         """Return the force on the journal [N] as :attr:`law`, of the film by the damping (2)."""
@@ -183,9 +183,9 @@ class SqueezeFilmDamper(ShortFilmBearing):
         TypeError, ValueError
             As :meth:`equilibrium`.
         """
-        return self._coefficients_at(self.equilibrium(speed, load), speed)
+        return self.coefficients_at(self.equilibrium(speed, load), speed)
 
-    def _coefficients_at(self, place: np.ndarray, speed: float) -> tuple[np.ndarray, np.ndarray]:
+    def coefficients_at(self, place: np.ndarray, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Return :meth:`coefficients` where the journal rests at a place (2,) [m]."""
         if hypot(*place) >= self.clearance:
             raise ValueError(

@@ -170,7 +170,7 @@ class AttachedBearing(Attached):
             values, tangent, inside = self._of_film(film, *motion)
             torque = values[2:]
         elif self._rests and isinstance(part, SqueezeFilmDamper):
-            values = part._law_of_small_motions(*motion)
+            values = part.law_of_small_motions(*motion)
             tangent = part.slopes(*motion[:2], 0.0, 0.0, *motion[4:])
         else:
             values = (part.law_with_torque or part.law)(*motion)
@@ -193,9 +193,9 @@ class AttachedBearing(Attached):
     def _of_film(film: FilmLaw, *motion: float) -> tuple[tuple[float, ...], Tangent, bool]:
         """Return values, tangent, and whether the film is resolved there."""
         place, rate, speed = np.array(motion[:2]), np.array(motion[2:4]), motion[5]
-        if not hypot(*place) <= film._to_the_edge(*place.tolist()):
+        if not hypot(*place) <= film.to_the_edge(*place.tolist()):
             return film(*motion), film.slopes(*motion), False
-        state = film._state(place, rate, speed)
+        state = film.state_at(place, rate, speed)
         return (*state.force.tolist(), -state.torque), tangent_of(state), True
 
     # ------------------------------------------------------------------ as in lists
@@ -230,7 +230,7 @@ class AttachedBearing(Attached):
         load = -np.sum(self._forces, axis=0)
         if isinstance(self.bearing, SqueezeFilmDamper):
             place = np.mean([place for place, _ in self.seen[0]], axis=0)
-            self._tangents = [self.bearing._coefficients_at(place, speed)]
+            self._tangents = [self.bearing.coefficients_at(place, speed)]
         elif isinstance(self.bearing, TiltingPadBearing):
             self._tangents = self.bearing.film_coefficients(speed, load)
         else:
