@@ -1,19 +1,25 @@
 """Bearings between two rotors in scenes: the bore, or the outer ring, turns with one of them."""
 
+from dataclasses import replace
+
 import exudyn as exu
 import numpy as np
 import pytest
 from exudyn.rigidBodyUtilities import InertiaCuboid
-from scipy.spatial.transform import Rotation
+from test_magnetic_bearing import DELAYED, bearing
 from test_scene_trains import HELD, SPEED, accelerations_left
 from train_models import FIRST, SECOND, rings
 
 from exudyn_rotor import (
+    LinearActuator,
+    OilFilm,
     RollingBearing,
     ShortJournalBearing,
     Support,
+    TiltingPadBearing,
     add_rotor,
     add_supports,
+    grooved_pads,
     linear_model,
 )
 
@@ -115,10 +121,19 @@ def test_supports_between_rotors_are_links_of_a_train(kind):
     assert accelerations_left(mbs, [first, second], model, (1.0, 1.7)) < 1e-9
 
 
-def test_a_bearing_between_axes_that_are_not_parallel_is_refused():
-    turn = Rotation.from_euler("x", 0.1).as_matrix()
-    inner = {"spin": 90.0, "rotation": turn, "position": [0.0, 0.0, 0.0]}
-    at = rings(*FIRST).interfaces["a"].reference
-    inner["position"] = at - turn @ at
-    with pytest.raises(ValueError, match="not parallel"):
-        scene(SHORT, {"spin": 60.0}, inner)
+PADS = OilFilm(RADIUS, LENGTH, VISCOSITY, grooved_pads(CLEARANCE, [0.0, 3.0], 0.5), axial_nodes=0)
+REFUSED = {
+    "alike in all directions": Support("a", 1e5, 0.0, np.diag([300.0, 200.0])),
+    "without tilt_damping": Support("a", 1e5, 0.0, 300.0, 2.0),
+    "about the axis": Support("a", 1e5, 0.0, np.diag([300.0, 300.0, 50.0])),
+    "constant": Support("a", 1e5, 0.0, ([0.0, 300.0], [2e2, 3e2])),
+    "whose bore is at rest": replace(SHORT, load=[0.0, -9.0]).linearised(),
+    "its pads": TiltingPadBearing(interface="a", film=PADS, pad_inertia=1e-6),
+    "magnets would turn": bearing("a", DELAYED, LinearActuator(80.0, 1e5)),
+}
+
+
+@pytest.mark.parametrize("match", REFUSED)
+def test_what_a_marker_that_turns_cannot_carry_is_refused(match):
+    with pytest.raises(ValueError, match=f"(?s)stands on another rotor.*{match}"):
+        scene(REFUSED[match], {"spin": 60.0}, {"spin": 90.0})

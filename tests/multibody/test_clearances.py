@@ -9,7 +9,6 @@ from point_rotors import ring_rotor
 
 from exudyn_rotor import (
     AnnularSeal,
-    ClearanceStop,
     JournalBearing,
     MagneticBearing,
     OilFilm,
@@ -154,11 +153,3 @@ def test_a_run_ends_at_the_first_step_outside(case, monkeypatch):
         with pytest.raises(ValueError, match="left its bearing") as error:
             run(mbs, **how)
         assert f" at t = {time:g} s: its journal is {distance:.3g} m from" in str(error.value)
-
-
-def test_a_rub_is_meant_where_there_is_a_stop():
-    stop = ClearanceStop(interface="left", radius=0.1, clearance=CLEARANCE, stiffness=1e8)
-    mbs, _, added = scene([KINDS["seal"], stop], -3e4)
-    assert run(mbs)
-    place = added[0].values()[0]
-    assert np.hypot(*place[:2]) > CLEARANCE

@@ -6,7 +6,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 from apart import distance
-from exudyn.itemInterface import MarkerBodyRigid, MarkerNodePosition, NodePoint
+from exudyn.itemInterface import MarkerBodyRigid
 from exudyn.rigidBodyUtilities import InertiaCuboid
 from point_rotors import ring_rotor
 from scipy.spatial.transform import Rotation
@@ -199,39 +199,3 @@ def test_a_table_follows_a_free_spin():
     np.testing.assert_allclose(force, -stiffness @ u - 50.0 * v, rtol=1e-6)
     assert body.uses_python
     assert "left by Python function; right by Exudyn" in body.report()
-
-
-def test_refused_calls_leave_the_scene_as_it_was():
-    mbs = exu.SystemContainer().AddSystem()
-    body, good = add_rotor(mbs, rings(), initial_speed=9.0), KINDS["number"]
-    bare = add_rotor(mbs, rings(), name="bare", marker_body=False)
-    point = mbs.AddMarker(MarkerNodePosition(nodeNumber=mbs.AddNode(NodePoint())))
-    off = mbs.AddMarker(MarkerBodyRigid(bodyNumber=mbs.CreateGround()))
-    particle = mbs.CreateMassPoint(mass=1.0)
-
-    def counts():
-        data = mbs.systemData
-        return data.NumberOfObjects(), data.NumberOfMarkers(), len(body.supports)
-
-    before = counts()
-    held, turning = KINDS["about the axis"], KINDS["rotor frame, tilts"]
-    for error, match, arguments in (
-        (TypeError, "body: needs RotorBody", (mbs, good)),
-        (TypeError, r"supports\[1\]: needs Support", (body, [good, "right"])),
-        (ValueError, "support at 'top': no such interface", (body, [good, Support("top", 1.0)])),
-        (ValueError, "marker_body=False", (bare, good)),
-        (ValueError, "tilt_stiffness about the spin axis needs a prescribed", (body, [good, held])),
-        (ValueError, "tilt_stiffness about the spin axis needs a prescribed", (body, [turning])),
-        (TypeError, "base: needs MarkerIndex or ObjectIndex", (body, good, "ground")),
-        (ValueError, r"marker \d+ is 0.15 m off the interface 'left'", (body, good, off)),
-        (ValueError, "has no place and orientation", (body, good, point)),
-        (ValueError, "is a point without orientation", (body, good, particle)),
-        (ValueError, "this system has no", (body, good, exu.ObjectIndex(99))),
-        (ValueError, "base: has nothing for the interface 'left'", (body, good, {"right": off})),
-        (ValueError, "base: 'disc' is no interface", (body, good, {"left": None, "disc": None})),
-    ):
-        with pytest.raises(error, match=match):
-            add_supports(*arguments)
-        assert counts() == before
-    add_supports(body, [])
-    assert counts() == before
