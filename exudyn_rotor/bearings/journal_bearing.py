@@ -291,3 +291,14 @@ class RememberingLaw(FilmLaw):
         # at once where no time has passed, but for rounding
         duration = max(self._duration, _AT_ONCE * float(self._film.grid.step.min()))
         return super().state_at(place, rate, speed, 1.0 / duration, self._voids)
+
+
+def tangent_of(state: FilmState) -> tuple[np.ndarray, np.ndarray]:
+    """Return stiffness and damping (2, 2) of the tangent at a place of the journal.
+
+    Of films that conserve mass those of slow motion: the derivatives of the force that scenes have
+    where they look for an equilibrium.
+    """
+    if state.film.cavitation == "mass-conserving":
+        return state.slow_stiffness, state.slow_damping
+    return state.coefficients()

@@ -22,8 +22,7 @@ import numpy as np
 
 from exudyn_rotor.bearings.actuator import SaturatingActuator
 from exudyn_rotor.bearings.bearing import Bearing
-from exudyn_rotor.bearings.film.state import FilmState
-from exudyn_rotor.bearings.journal_bearing import FilmLaw, JournalBearing
+from exudyn_rotor.bearings.journal_bearing import FilmLaw, JournalBearing, tangent_of
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.rolling import RollingBearing, contacts
 from exudyn_rotor.bearings.short_film import ShortFilmBearing
@@ -251,17 +250,6 @@ def moved(seen: Seen) -> float:
     places = np.array([place for place, _ in filter(None, seen)]).reshape(-1, 2)
     apart = places - np.sum(places, axis=0) / max(len(places), 1)
     return float(np.linalg.norm(apart, axis=1).max(initial=0.0))
-
-
-def tangent_of(state: FilmState) -> Tangent:
-    """Return stiffness and damping (2, 2) of the tangent at a place of the journal.
-
-    Of films that conserve mass those of slow motion: the derivatives of the force that scenes have
-    where they look for an equilibrium.
-    """
-    if state.film.cavitation == "mass-conserving":
-        return state.slow_stiffness, state.slow_damping
-    return state.coefficients()
 
 
 def attached_to(
