@@ -71,9 +71,9 @@ class Invariants:
     TypeError, ValueError
         If shapes do not fit, an entry is not finite, the mass is not positive or M not positive
         definite, the direction is no unit vector, M, K, C, J or a matrix that is given of K2, B,
-        K4, K2_estimated, H and K0 is not symmetric, or G not skew-symmetric. Sparse matrices are taken
-        as they come from a solid rotor, which has
-        checked them: of them only shape and entries are looked at.
+        K4, K2_estimated, H and K0 is not symmetric, or G not skew-symmetric. Sparse matrices are
+        taken as they come from a solid rotor, which has checked them: of them only shape and
+        entries are looked at.
 
     Examples
     --------
