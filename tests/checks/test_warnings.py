@@ -301,7 +301,7 @@ PLACES = {
         response_with_one_mode, UserWarning, "errs by about"),
     "linear/model/linear_model.py:_warn_of_refused": (
         campbell_below_a_table, UserWarning, "no values at .* which are NaN"),
-    "linear/modal/resonance.py:_warn": (
+    "linear/modal/resonance.py:warn": (
         critical_speeds_below_a_table, UserWarning, "none are looked for"),
     "linear/response/steady_response.py:_warn_of_missing": (
         response_below_a_table, UserWarning, "no steady motion at .* NaN there"),
@@ -335,9 +335,8 @@ PLACES = {
 # part of the text of warnings that the tests of their analyses make fire
 ELSEWHERE = {
     "bearings/tilting_pad.py:_of_pads": "carry nothing at",
-    "linear/modal/critical_speed_map.py:critical_speed_map": "no values at .* which are NaN",
     "linear/over.py:_warn_of_lost": "do not converge for all motions",
-    "linear/stability/stability.py:warn_of_refused": "no values at .* which are NaN",
+    "linear/over.py:warn_of_refused": "no values at .* which are NaN",
 }
 TEXTS = {place: text for place, (_, _, text) in PLACES.items()} | ELSEWHERE
 # places that several kinds of bodies reach
