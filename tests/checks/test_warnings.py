@@ -260,6 +260,11 @@ def campbell_with_one_mode(beam):
     campbell(beam.reduce(1), [0.0], supports=supports, stiffening="tilt")
 
 
+def deflection_with_one_mode(beam):
+    supports = [Support("left", 1e9, tilt_stiffness=1e9)]
+    static_response(beam.reduce(1), loads={"right": [100.0, 0.0, 0.0]}, supports=supports)
+
+
 def curved_elements(_):
     mesh = block_beam(0.1)
     mesh.Curve(2)
@@ -297,6 +302,8 @@ PLACES = {
         second_forward_mode_that_is_unstable_first, UserWarning, "another mode"),
     "linear/modal/basis_error.py:warn": (
         campbell_with_one_mode, UserWarning, "errs by about"),
+    "linear/static/static_response.py:static_response": (
+        deflection_with_one_mode, UserWarning, "a static deflection or reaction errs by about"),
     "linear/response/steady_response.py:_with_warning": (
         response_with_one_mode, UserWarning, "errs by about"),
     "linear/model/linear_model.py:_warn_of_refused": (
