@@ -78,9 +78,9 @@ def test_rotor_whirls_along_its_stops_with_few_linearisations(monkeypatch):
 
 
 def test_search_ends_where_the_steps_that_are_left_lead_nowhere(monkeypatch):
-    """After n steps in vain of 20 the others reach 2^-n/4 (2^(20-n) - 1): below 1 from n = 9 on.
+    """After n steps in vain of 12 the others reach 2^-n/4 (2^(12-n) - 1): below 1 from n = 5 on.
 
-    Of 8 steps with more angles they do from n = 3 on. Before them is the search from the start.
+    Of 5 steps with more angles they do from n = 2 on. Before them is the search from the start.
     """
     goals = []
 
@@ -91,7 +91,7 @@ def test_search_ends_where_the_steps_that_are_left_lead_nowhere(monkeypatch):
     monkeypatch.setattr(steady_motion._Search, "_newton", fails)
     with pytest.raises(UnconvergedError, match="no steady motion found"):
         steady_state(upright())
-    assert goals == [12] * (1 + 9) + [48] * 3
+    assert goals == [12] * (1 + 5) + [48] * 2
 
 
 def test_forces_alone_leave_what_linearised_ones_do():
