@@ -363,6 +363,7 @@ def test_wrong_input_is_refused():
         ({"at": "nowhere"}, "at: 'nowhere' is unknown"),
         ({"machine": "steam"}, "machine: 'steam' is unknown"),
         ({"supports": Support("x", 1.0)}, "support at 'x': no such interface"),
+        ({"supports": ()}, "supports: needs the bearings of the rotor, got none"),
     ):
         values = {"speed": 9.0, "cross_coupling": 1.0, "at": "disc", "supports": bearing} | given
         with pytest.raises(ValueError, match=message):
