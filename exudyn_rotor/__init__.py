@@ -123,6 +123,8 @@ if TYPE_CHECKING:
     from exudyn_rotor.multibody.twins.exudyn_interface import (
         ObjectFixedAxisFFRFreducedOrderInterface as ObjectFixedAxisFFRFreducedOrderInterface,
     )
+    from exudyn_rotor.nonlinear.periodic_response import periodic_response as periodic_response
+    from exudyn_rotor.nonlinear.periodic_result import PeriodicResponse as PeriodicResponse
     from exudyn_rotor.pictures.motion_shapes import MotionShapes as MotionShapes
     from exudyn_rotor.pictures.shapes import mode_shapes as mode_shapes
     from exudyn_rotor.pictures.shapes import response_shapes as response_shapes
@@ -225,6 +227,8 @@ _NAMES = {
     "multibody.supports.foundation_body": "SceneFoundation add_foundation",
     "multibody.twins.exudyn_call": "MainSystemCreateFixedAxisFFRFReducedOrderObject",
     "multibody.twins.exudyn_interface": "ObjectFixedAxisFFRFreducedOrderInterface",
+    "nonlinear.periodic_response": "periodic_response",
+    "nonlinear.periodic_result": "PeriodicResponse",
     "pictures.motion_shapes": "MotionShapes",
     "pictures.shapes": "mode_shapes response_shapes",
     "pictures.spectra": "Spectra plot_orbit spectra",

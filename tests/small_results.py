@@ -13,6 +13,7 @@ from exudyn_rotor import (
     EnergyBalance,
     HarmonicResponse,
     MotionShapes,
+    PeriodicResponse,
     ReducedRotor,
     RollingBearingResponse,
     Sensitivity,
@@ -72,6 +73,12 @@ def results() -> list:
         RollingBearingResponse(
             ("left", "node 2"), speeds, np.array([[0, 0], [1, -1]]), np.repeat(motion, 2, axis=2),
             3.3, ("left", "right"), table, table - 1.0, *[speeds] * 4, np.array([[0, 1], [2, -3]]),
+            coordinates=RNG.normal(size=(3, 2, 5)) + 1j, basis="rotor"),
+        PeriodicResponse(
+            ("left", "node 2"), speeds, [0, 0, 1], ("value", "fold", "computed"), speeds,
+            np.column_stack([speeds, 0.5 * speeds]), [[0, 0], [1, -1]],
+            np.repeat(motion, 2, axis=2), ("left", "right"), table, table, table, table - 1.0,
+            speeds, -speeds, speeds + 1j, 2, "spin speed [rad/s]", [[0, 1], [2, -3]],
             coordinates=RNG.normal(size=(3, 2, 5)) + 1j, basis="rotor"),
         BaseResponse(("left", "node 2"), speeds, motion[:, :, 0].real, 90.0),
         EnergyBalance(speeds, *RNG.uniform(size=(6, 3))),

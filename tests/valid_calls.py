@@ -107,6 +107,7 @@ RETURNED = {
     **{"EnergyBalance": "energy_balance", "Foundation": "Foundation.from_modes"},
     **{"HarmonicResponse": "harmonic_response", "MotionShapes": "mode_shapes"},
     **{"PrescribedMotion": "PrescribedMotion.run_up", "Prestress": "SolidRotor.prestress"},
+    **{"PeriodicResponse": "periodic_response"},
     **{"Proposal": "propose", "RollingBearingResponse": "rolling_bearing_response"},
     **{"RunCheck": "check_run", "SceneFoundation": "add_foundation", "Sensitivity": "sensitivity"},
     **{"SeparationMargins": "separation_margins", "SolidRotor": "SolidRotor.from_ngsolve"},
@@ -249,6 +250,9 @@ CALLS = {
         "stiffness": 7e9,
         "load": [0.0, -500.0],
     },
+    "PeriodicResponse.displacement": {"point": 0, "time": [0.0, 0.1]},
+    "PeriodicResponse.orbit": {"point": 0},
+    "PeriodicResponse.state": {"point": 0},
     "RollingBearingResponse.displacement": {"speed": 20.0, "time": [0.0, 0.1]},
     "RollingBearingResponse.state": {"speed": 20.0},
     "RotorBody.start_recording": lambda w: {"self": w.free_body},
@@ -328,6 +332,20 @@ CALLS = {
     "recommended_settings": {"end_time": 1.0, "step": 1e-3},
     "report": lambda w: {"path": w.folder / "report.html", "contents": [w.ReducedRotor]},
     "response_shapes": lambda w: {"unbalances": [w.Unbalance]},
+    "periodic_response": {
+        "values": [10.0, 20.0],
+        "supports": [
+            er.SqueezeFilmDamper(
+                interface=end,
+                radius=0.06,
+                length=0.02,
+                clearance=1e-4,
+                viscosity=0.01,
+                centring_stiffness=1e6,
+            )
+            for end in ENDS
+        ],
+    },
     "rolling_bearing_response": lambda w: {
         "speeds": [20.0],
         "supports": [w.RollingBearing, *w.supports],

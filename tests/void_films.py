@@ -120,4 +120,3 @@ def oscillations(motion, step, rank=7):
 
 
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
-TO_X = Rotation.from_euler("y", 90.0, degrees=True).as_matrix()

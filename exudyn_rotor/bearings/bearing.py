@@ -16,10 +16,12 @@ from exudyn_rotor.bearings.film.equilibria import Equilibria
 from exudyn_rotor.bearings.support import COEFFICIENTS, NoCoefficientsError, Support
 
 _REMEMBERED = 1000  # coefficients of a bearing
+_DIFFERENCE, _STILL = 1e-6, 1e-6  # of the largest motion, which is at least that in SI units
 _HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a bearing holds count
 
 Law = Callable[[float, float, float, float, float, float], tuple[float, float]]
 ClearanceAlong = Callable[..., float]  # by a direction (2,), which may be left out
+LawAlong = Callable[[np.ndarray, np.ndarray, float], tuple[np.ndarray, np.ndarray]]
 LawWithTorque = Callable[[float, float, float, float, float, float], tuple[float, float, float]]
 
 
@@ -105,6 +107,15 @@ class Bearing(LoadedBearing):
         return None
 
     @property
+    def law_along(self) -> LawAlong:
+        """For harmonic balance: forces and their derivatives by motions (t, 4), unchecked.
+
+        Of displacements and velocities [m], [m/s], spin angles (t,) and the spin speed: forces
+        (t, 2) [N], and minus their derivatives by the motion, (t, 2, 4).
+        """
+        return self._along
+
+    @property
     def clearance_along(self) -> ClearanceAlong:
         """For scenes: how far that way, of length 1 (2,), or at least, the journal may go [m].
 
@@ -140,6 +151,25 @@ class Bearing(LoadedBearing):
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
         """Return the force on the journal [N]."""
+
+    def _along(
+        self, motion: np.ndarray, angles: np.ndarray, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """See :attr:`law_along`; by differences, unless a law knows better."""
+        law, sizes = self.law, np.abs(motion).max(axis=0)
+        steps = _DIFFERENCE * np.repeat([max(*sizes[:2], _STILL), max(*sizes[2:], _STILL)], 2)
+        force, slopes = np.empty((len(motion), 2)), np.empty((len(motion), 2, 4))
+        for row, (state, angle) in enumerate(zip(motion, angles.tolist(), strict=True)):
+            force[row] = law(*state.tolist(), angle, speed)
+            for column, step in enumerate(steps):
+                less, more = state.copy(), state.copy()
+                less[column] -= step
+                more[column] += step
+                change = np.subtract(
+                    law(*less.tolist(), angle, speed), law(*more.tolist(), angle, speed)
+                )
+                slopes[row, :, column] = change / (2.0 * step)
+        return force, slopes
 
     @abstractmethod
     def coefficients(

@@ -99,6 +99,19 @@ class JournalBearing(Bearing):
         """
         return self._film_law(torque=True)
 
+    def _along(
+        self, motion: np.ndarray, angles: np.ndarray, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        law, forces, slopes = self._film_law(torque=False), [], []
+        for x, y, vx, vy in motion:
+            forces.append(law(x, y, vx, vy, 0.0, speed))
+            tangent = law.tangent(x, y)
+            if tangent is None:
+                one = np.array([[x, y, vx, vy]])
+                tangent = (super()._along(one, angles[:1], speed)[1][0],)
+            slopes.append(np.hstack(tangent))
+        return np.array(forces), np.array(slopes)
+
     def _film_law(self, torque: bool) -> FilmLaw:
         if self.remembers:
             raise ValueError(

@@ -178,6 +178,13 @@ class RollingBearing(Bearing):
         px, py = float(loads @ c), float(loads @ s)
         return -px - d * vx, -py - d * vy, self.cage_ratio * (x * py - y * px)
 
+    def _along(
+        self, motion: np.ndarray, angles: np.ndarray, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        _, force, stiffness = contacts(self, motion[:, :2], angles)
+        damping = np.broadcast_to(self.damping * np.eye(2), stiffness.shape)
+        return force - self.damping * motion[:, 2:], np.concatenate([stiffness, damping], axis=-1)
+
     def equilibrium(
         self, speed: float, load: ArrayLike | None = None, angle: float = 0.0
     ) -> np.ndarray:

@@ -118,6 +118,20 @@ class SqueezeFilmDamper(ShortFilmBearing):
         fx, fy = self._film(x, y, vx, vy, 0.0)
         return fx - k * x, fy - k * y
 
+    @property
+    def _film_turns(self) -> bool:
+        return False
+
+    def _along(
+        self, motion: np.ndarray, angles: np.ndarray, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        force, slopes = super()._along(motion, angles, speed)
+        inside = np.hypot(*motion[:, :2].T) <= THINNEST * self.clearance
+        k = self.centring_stiffness * inside  # the law outside has it
+        force = force - k[:, None] * motion[:, :2]
+        slopes[:, :, :2] += k[:, None, None] * np.eye(2)
+        return force, slopes
+
     def _law_tangent(self, motion: np.ndarray, speed: float) -> Tangent | None:
         found = self._film_tangent(motion, 0.0, speed)
         return found and (self.centring_stiffness * np.eye(2) + found[0], found[1])

@@ -61,8 +61,8 @@ class Coupled:
 
     def modes(self, multiple: float) -> Modes:
         """Return all modes under a multiple of the anticipated cross-coupling."""
-        motions = motions_over(self._model(multiple), [self.speed], held=True)[0]
-        return Modes(multiple, self._content.named(motions))
+        motions = motions_over(self._model(multiple), [self.speed], held=True)
+        return Modes(multiple, self._content.named(motions).rows(0))
 
     def first_forward(self) -> tuple[tuple[Modes, int], tuple[Modes, int]]:
         """Return the first forward mode without cross-coupling, and as it is first fed by it.

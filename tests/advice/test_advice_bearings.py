@@ -1,25 +1,19 @@
 """Proposals for bearings with coordinates of their own, and for tables that begin above zero."""
 
 import exudyn
-import numpy as np
 import pytest
 from point_rotors import ring_rotor
 
 from exudyn_rotor import (
-    JournalBearing,
     LinearActuator,
     MagneticBearing,
-    OilFilm,
     PIDController,
     SolidRotor,
     Support,
     add_rotor,
     add_supports,
-    grooved_pads,
-    linear_model,
     propose,
 )
-from exudyn_rotor.advice.candidate import candidate
 
 ENDS = ("left", "right")
 GRAVITY = [0.0, -9.81, 0.0]
@@ -90,31 +84,3 @@ def test_scene_and_list_of_magnets_agree(reduced):
     expected = propose(reduced, supports=magnets, speeds=(100.0, 400.0))
     assert found.modes == expected.modes
     assert numbers(found) == pytest.approx(numbers(expected), rel=1e-5)
-
-
-def test_films_that_conserve_mass_hold_a_scene(reduced):
-    """The equations are those that all analyses have for such a scene, voids included."""
-    pads = grooved_pads(6e-5, [0.0, np.pi], 0.3)
-    film = OilFilm(0.03, 0.03, 0.02, pads, nodes=18, axial_nodes=0, cavitation="mass-conserving")
-    bearings = [JournalBearing(interface="left", film=film), Support("right", 1e6, 100.0)]
-    mbs, body = scene(reduced, bearings)
-    given = candidate(mbs, body, None, None, False)
-    model = linear_model(mbs, body=body, about="given")
-    assert type(given.source) is type(model)
-    assert given.resonating.size < given.source.size == model.size
-    assert given.motion().shape[1] == given.translations.shape[1] == model.size
-
-
-def test_a_scene_is_not_looked_at_outside_the_speeds_asked_for(reduced):
-    table = ([90.0, 250.0, 500.0], [1e6, 2e6, 3e6])
-    supports = [Support(name, table, damping=100.0) for name in ENDS]
-    found = in_scene(reduced, supports, speeds=(100.0, 400.0))
-    expected = propose(reduced, supports=supports, speeds=(100.0, 400.0))
-    assert found.modes == expected.modes
-    assert numbers(found) == pytest.approx(numbers(expected), rel=1e-3)
-
-
-def test_a_list_is_not_looked_at_outside_the_speeds_asked_for(reduced):
-    table = ([390.0, 500.0], [1e6, 3e6])
-    supports = [Support(name, table, damping=100.0) for name in ENDS]
-    assert propose(reduced, supports=supports, speeds=(400.0, 500.0)).speeds == (400.0, 500.0)

@@ -3,7 +3,6 @@
 import exudyn as exu
 import numpy as np
 import pytest
-from exudyn.rigidBodyUtilities import InertiaCuboid
 from point_rotors import SKEW_AXIS, ring_rotor
 from scipy.spatial.transform import Rotation
 
@@ -152,16 +151,6 @@ def test_energy_lost_is_what_the_bearing_takes(kind):
         assert np.ptp(motion[2]) > 1e-6
 
 
-def test_what_is_left_with_damping_of_the_integrator_falls_with_the_square_of_the_step():
-    """Generalised alpha at a spectral radius of 0.9 takes energy itself, of second order."""
-    left = []
-    for step in (4e-5, 2e-5):
-        bearings, motion, energy = run(KINDS["short film"], step, 0.004, radius=0.9, **SWING)
-        left.append(abs(energy[0] - energy[-1] + work(bearings, motion)) / np.ptp(energy))
-    assert left[0] > 1e-8
-    assert left[1] == pytest.approx(left[0] / 4.0, rel=0.2)
-
-
 @pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 @pytest.mark.parametrize("axis", [(0.0, 0.0, 1.0), tuple(SKEW_AXIS), (-1.0, 0.0, 0.0)])
 @pytest.mark.parametrize("kind", ["short film", "finite film"])
@@ -197,31 +186,3 @@ def test_a_stop_brakes_a_free_spin_by_coulombs_friction(axis, sense):
     expected = sense * (80.0 - friction * normal * 0.05 / INERTIA * time[-1])
     assert speed[-1] == pytest.approx(expected, rel=1e-9)
     assert abs(speed[-1]) < 79.6
-
-
-def test_a_base_gets_what_the_rotor_loses():
-    """Angular momentum about the axis, of a rotor and of the block that carries its films."""
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, turned_rings(np.array([0.0, 0.0, 1.0])), initial_speed=80.0)
-    block = InertiaCuboid(density=2500.0, sideLengths=[0.3, 0.1, 0.5])
-    base = mbs.CreateRigidBody(inertia=block, nodeType=exu.NodeType.RotationRxyz)
-    add_supports(body, [KINDS["short film"](name) for name in ENDS], base)
-    mbs.Assemble()
-    settings = recommended_settings(0.05, 1e-3, accuracy=1e-8)
-    settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write = False
-    mbs.SolveDynamic(settings)
-    rate = mbs.GetObjectOutputBody(base, exu.OutputVariableType.AngularVelocity, np.zeros(3))[2]
-    lost = INERTIA * (80.0 - body.coordinates()[1][3])
-    assert lost > 0.01
-    assert block.GetInertia6D()[2] * rate == pytest.approx(lost, rel=1e-9)
-
-
-def test_a_single_node_cannot_brake_a_free_spin():
-    rotor = ring_rotor(RADIUS, 0.15, MASS).with_interface("left", [0]).reduce(0)
-    for options, kind in (({"spin": 50.0}, "short film"), ({}, "squeeze film")):
-        body = add_rotor(exu.SystemContainer().AddSystem(), rotor, **options)
-        add_supports(body, KINDS[kind]("left"))
-    with pytest.raises(ValueError, match="its torque would not brake the free spin"):
-        add_supports(body, KINDS["short film"]("left"))
-    add_supports(body, stop("left", friction=0.0))

@@ -16,14 +16,11 @@ from exudyn_rotor import (
     SaturatingActuator,
     SolidRotor,
     Support,
-    Unbalance,
     bearing_loads,
-    campbell,
     linear_model,
     sensitivity,
     stability,
     steady_state,
-    unbalance_response,
 )
 
 K_I, K_S = 80.0, 3e5
@@ -219,25 +216,6 @@ def test_scene_and_list_have_the_same_exponents(kind, turn, rotation):
     assert len(added[0].objects) == 2
 
 
-def test_public_analyses_take_scene_and_list_alike():
-    reduced = rings(heavy=0.0)
-    held = Support("right", np.diag([0.0, 0.0, 5e5]), 150.0, np.diag([0.0, 0.0, 4e3]))
-    supports = [bearing(controller=PD, sensor="right"), bearing("right", angle=0.3), held]
-    mbs, body, _ = on_supports(reduced, supports, spin=0.0, drive="elastic")
-    targets = (
-        linear_model(mbs, body=body, about="given"),
-        linear_model(reduced, supports=supports),
-    )
-    speeds, unbalance = [60.0, SPEED], [Unbalance("left", 1e-4)]
-    responses = [unbalance_response(each, speeds, unbalance, accuracy=None) for each in targets]
-    orbits = [each.motion[:, :, each.orders.tolist().index(1), :3] for each in responses]
-    np.testing.assert_allclose(*orbits, rtol=0.0, atol=1e-9 * np.abs(orbits[1]).max())
-    frequencies = [np.sort(campbell(each, speeds).frequencies_rotor) for each in targets]
-    np.testing.assert_allclose(*frequencies, rtol=1e-8, atol=1e-5)
-    growth = [stability(each, speeds).growth for each in targets]
-    np.testing.assert_allclose(*growth, rtol=1e-7, atol=1e-6)
-
-
 @pytest.mark.parametrize("controller", ["PD", "PID"])
 def test_magnets_under_weight_are_stiffer_in_one_direction(controller):
     """The list takes the slopes where the scene's steady state finds the journal."""
@@ -258,22 +236,6 @@ def test_magnets_under_weight_are_stiffer_in_one_direction(controller):
         assert rest[1] < -1e-5
     in_list = linear_model(rigid(), supports=[*supports, AXIAL])
     assert distance(linear_model(mbs, body=body), in_list, SPEED) < 1e-6
-
-
-@pytest.mark.parametrize("weight", [95.0, 99.0])
-def test_slopes_are_exact_where_a_magnet_is_all_but_without_current(weight):
-    """No difference of forces crosses the end of its current."""
-    gravity = [0.0, -weight, 0.0]
-    loads = bearing_loads(rigid(), ["left", "right"], gravity)
-    supports = [
-        bearing(name, actuator=MAGNETS, load=load)
-        for name, load in zip(("left", "right"), loads, strict=True)
-    ]
-    carrying = MAGNETS.current_for(np.linalg.norm(loads[0]), 0.0)
-    assert 0.9 < carrying / MAGNETS.bias_current < 1.0
-    mbs, body, _ = on_supports(rigid(), [*supports, AXIAL], spin=SPEED, gravity=gravity)
-    in_list = linear_model(rigid(), supports=[*supports, AXIAL])
-    assert distance(linear_model(mbs, body=body), in_list, SPEED) < 1e-8
 
 
 # ------------------------------------------------------------------ laws and refusals

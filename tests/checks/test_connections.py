@@ -1,6 +1,5 @@
 """What a rotor cannot carry is found, for any axis; nothing else is."""
 
-import warnings
 from functools import cache
 
 import exudyn as exu
@@ -18,15 +17,12 @@ from exudyn.itemInterface import (
     MarkerNodeCoordinates,
     MarkerNodeRigid,
     MarkerNodeRotationCoordinate,
-    MarkerSuperElementRigid,
     NodePointGround,
-    SensorNode,
     Torque,
 )
 from exudyn.utilities import (
     GenericJoint,
     Gravity,
-    InertiaCuboid,
     RevoluteJointZ,
     RigidBodySpringDamper,
     SphericalJoint,
@@ -35,10 +31,7 @@ from exudyn.utilities import (
 from point_rotors import free_stiffness
 from scipy.spatial.transform import Rotation
 
-from exudyn_rotor import ConnectionWarning, SolidRotor, add_rotor, check_run
-
-# every assembly of these scenes warns of what is asked for here
-pytestmark = pytest.mark.filterwarnings("ignore::exudyn_rotor.ConnectionWarning")
+from exudyn_rotor import SolidRotor, add_rotor, check_run
 
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
 TO_X = Rotation.from_euler("y", np.pi / 2).as_matrix()
@@ -191,71 +184,6 @@ def test_coordinates_of_the_node(mount):
         assert len(s.found()) == (index in s.body.locks.tilts)
 
 
-@pytest.mark.parametrize("locking", ["mass", "constraints"])
-def test_forces_on_a_node_that_stands_still(locking):
-    """Those at a marker move the modes, those on a coordinate nothing."""
-    for translation, across, along in (("none", 1, 1), ("in-plane", 0, 1), ("free", 0, 0)):
-        for index, expected in ((0, across), (2, along)):
-            s = Scene(translation=translation, locking=locking)
-            s.mbs.AddLoad(Force(markerNumber=s.rigid, loadVector=[10.0, 20.0, 30.0]))
-            assert s.found() == ()
-            marker = s.mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=s.node, coordinate=index))
-            s.mbs.AddLoad(LoadCoordinate(markerNumber=marker, load=1.0))
-            found = s.found()
-            assert len(found) == expected
-            assert all("does not move" in sentence for sentence in found)
-
-
-def test_coordinates_of_a_node_off_the_centre_of_mass_move_that():
-    """As in a swapped body, whose node is in the mesh origin, 0.2 m below the centre of mass."""
-    for place, expected in (("mesh_origin", 1), ("centre_of_mass", 0)):
-        for index in (1, 5):
-            mbs = exu.SystemContainer().AddSystem()
-            body = add_rotor(
-                mbs, rings(np.eye(3), np.array([0.0, 0.0, 0.2]), "z"), frame_node=place
-            )
-            node = body.nodes["rigid"]
-            marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=index))
-            mbs.AddLoad(LoadCoordinate(markerNumber=marker, load=1.0))
-            mbs.Assemble()
-            found = body.check_connections(warn=False)
-            assert len(found) == (expected if index == 1 else 0)
-            assert all("0.2 m off the node's place" in sentence for sentence in found)
-
-
-def test_sensors_that_show_the_frame_alone():
-    kinds = exu.OutputVariableType
-    for kind, expected in (
-        (kinds.AngularVelocityLocal, 1),
-        (kinds.Acceleration, 1),
-        (kinds.AngularVelocity, 0),
-        (kinds.Coordinates, 0),
-    ):
-        s = Scene()
-        s.mbs.AddSensor(SensorNode(nodeNumber=s.node, outputVariableType=kind))
-        found = s.found()
-        assert len(found) == expected
-        assert all("without tilts" in sentence for sentence in found)
-
-
-def test_offset_without_a_lever():
-    """A marker that assembly leaves as it is: its offset turns with the frame alone."""
-    for condense, expected in ((True, 0), (False, 1)):
-        s = Scene(condense_markers=condense)
-        marker = s.mbs.AddMarker(
-            MarkerSuperElementRigid(
-                bodyNumber=s.flexible,
-                meshNodeNumbers=[0, 1, 2, 3],
-                weightingFactors=[0.25] * 4,
-                offset=[0.0, 0.0, 0.1],
-            )
-        )
-        s.mbs.CreateForce(itemNumber=marker, loadVector=[1.0, 2.0, 3.0])
-        found = s.found()
-        assert len(found) == expected
-        assert all("no lever for tilts" in sentence for sentence in found)
-
-
 def test_run_check_counts_them_and_a_warning_names_them():
     s = Scene("z along x")
     marker = s.mbs.AddMarker(
@@ -286,18 +214,6 @@ def test_weight_of_a_pendulum_is_no_lost_load(spin):
     assert unresisted(mbs, body) < 1e-5
 
 
-def test_torque_on_a_rotor_of_dynamic_unbalance_is_no_lost_load():
-    """It turns about its axis, across which its angular momentum has a share of 0.08.
-
-    Nothing holds it, and the torque has a share across the axis by the tilt, 4e-5 at the end.
-    """
-    mbs = exu.SystemContainer().AddSystem()
-    tilt = Rotation.from_euler("y", 20, degrees=True).as_matrix()
-    body = add_rotor(mbs, rings(tilt, np.zeros(3), "z"))
-    mbs.CreateTorque(itemNumber=body.marker("left"), loadVector=[0.0, 0.0, 0.1])
-    assert unresisted(mbs, body) < 1e-4
-
-
 def unresisted(mbs, body):
     """Run the scene for a short time, and return the check's share of lost loads."""
     body.start_recording()
@@ -309,48 +225,3 @@ def unresisted(mbs, body):
     settings.solution.sensors.writePeriod = 1e-3
     mbs.SolveDynamic(settings)
     return check_run(body, warn=False)["unresisted load"].value
-
-
-def test_own_locks_are_none_of_them():
-    for options in (
-        {"spin": 10.0},
-        {"spin": 10.0, "locking": "constraints"},
-        {"marker_body": False},
-    ):
-        mbs = exu.SystemContainer().AddSystem()
-        body = add_rotor(mbs, rotor("z"), translation="none", **options)
-        mbs.Assemble()
-        assert body.check_connections() == ()
-
-
-@pytest.mark.filterwarnings("default::exudyn_rotor.ConnectionWarning")
-def test_assembly_warns_of_each_item_once_and_of_this_rotor_alone():
-    s = Scene()
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        s.mbs.Assemble()
-    s.mbs.AddObject(springs(s, 0.0, 0.0, 10.0))
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        s.mbs.Assemble()
-    lost = s.mbs.AddLoad(LoadCoordinate(markerNumber=tilt_of(s), load=1.0))
-    with pytest.warns(ConnectionWarning, match=s.mbs.GetLoad(lost)["name"]):
-        s.mbs.Assemble()
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        s.mbs.Assemble()
-        s.mbs.Reset()
-        add_rotor(s.mbs, rotor("z"))
-        s.mbs.Assemble()
-        # another body in the place of the rotor, with a load that it can carry
-        s.mbs.Reset()
-        inertia = InertiaCuboid(density=1e3, sideLengths=[0.1, 0.1, 0.1])
-        s.mbs.CreateRigidBody(inertia=inertia, nodeType=exu.NodeType.RotationRxyz)
-        s.mbs.AddLoad(LoadCoordinate(markerNumber=tilt_of(s), load=1.0))
-        s.mbs.Assemble()
-
-
-def tilt_of(s):
-    return s.mbs.AddMarker(
-        MarkerNodeCoordinate(nodeNumber=s.node, coordinate=s.body.locks.tilts[0])
-    )

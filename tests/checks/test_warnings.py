@@ -390,14 +390,3 @@ def test_every_warning_has_a_test():
         file = path.relative_to(PACKAGE).as_posix()
         found += calls_of_warn(path.read_text(encoding="utf-8"), file)
     assert sorted(found) == sorted(TEXTS)
-
-
-def test_calls_are_found_in_every_form():
-    source = (
-        "import warnings\ndef f():\n    warnings.warn('x')\nfrom warnings import warn\nwarn('y')"
-    )
-    assert calls_of_warn(source, "a.py") == ["a.py:f", "a.py:module"]
-
-
-def test_assumption_warning_is_a_user_warning():
-    assert issubclass(AssumptionWarning, UserWarning)

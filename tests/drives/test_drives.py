@@ -1,13 +1,10 @@
 """Motors and drag in scenes: start-up and coast-down in closed form, energy, axes, refusals."""
 
-from dataclasses import replace
-
 import exudyn as exu
 import numpy as np
 import pytest
 from exudyn.rigidBodyUtilities import InertiaCuboid
 from rings import J, Z, rings, run, speed_of
-from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
     DirectCurrentMotor,
@@ -59,15 +56,6 @@ def test_start_and_coast_down_in_closed_form(name, at):
     assert speed_of(body) == pytest.approx(expected, rel=2e-5)
 
 
-AXES = {
-    "x": ([1.0, 0.0, 0.0], None),
-    "y": ([0.0, 1.0, 0.0], None),
-    "-y": ([0.0, -1.0, 0.0], None),
-    "-z mounted": ([0.0, 0.0, -1.0], Rotation.from_euler("x", 0.3).as_matrix()),
-    "skew": ([2.0, -1.0, 2.0], Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()),
-}
-
-
 def eccentric(axis=Z, rotation=None, at=None, steps=60, modes=0):
     """Start an eccentric rotor on springs, a full one without `modes`; return scene and sensors."""
     mbs = exu.SystemContainer().AddSystem()
@@ -82,30 +70,6 @@ def eccentric(axis=Z, rotation=None, at=None, steps=60, modes=0):
         body.start_recording()
     run(mbs, 0.2, steps, body)
     return mbs, body, sensors
-
-
-@pytest.fixture(scope="module")
-def upright():
-    return eccentric()
-
-
-@pytest.mark.parametrize("name", AXES)
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
-def test_axes_change_nothing(upright, name):
-    mbs, body, sensors = eccentric(*AXES[name])
-    assert speed_of(body) == pytest.approx(speed_of(upright[1]), rel=1e-8)
-    found, expected = (
-        scene.GetSensorStoredData(made[0])[-1]
-        for scene, made in ((mbs, sensors), (upright[0], upright[2]))
-    )
-    np.testing.assert_allclose(found, expected, rtol=1e-7)
-
-
-@pytest.mark.parametrize("at", [None, "left"])
-def test_a_full_body_takes_drives(at):
-    """All displacements of ten masses and one more, as coordinates and as modes."""
-    speeds = [speed_of(eccentric(at=at, modes=modes)[1]) for modes in (None, 24)]
-    assert speeds[0] == pytest.approx(speeds[1], rel=1e-6)  # accuracy of the run
 
 
 @pytest.mark.parametrize("at", [None, "left"])
@@ -143,27 +107,6 @@ def test_the_stator_takes_the_reaction():
     both = J * back / (J + back)
     relative = 100.0 * (1.0 - np.exp(-0.5 * 0.05 / both))
     assert speed_of(body) - omega[2] == pytest.approx(relative, rel=1e-4)
-
-
-def test_torques_backwards_are_those_forwards():
-    for motor, other in (
-        (INDUCTION, replace(INDUCTION, synchronous_speed=-100.0)),
-        (MOTOR, replace(MOTOR, no_load_speed=-100.0)),
-        (LIMITED, replace(LIMITED, stall_torque=-4.0)),
-    ):
-        for speed in (-20.0, 10.0, 80.0, 130.0):
-            assert other.torque(-speed) == pytest.approx(-motor.torque(speed), rel=1e-12)
-
-
-def test_who_evaluates_is_reported():
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rings().reduce(0))
-    add_drive(body, MOTOR, "left")
-    curve = add_drive(body, TorqueCurve(([0.0, 1.0], [1.0, 0.0])))
-    assert curve.uses_python
-    assert "DirectCurrentMotor at left by symbolic function; TorqueCurve by Python" in body.report()
-    mbs.Assemble()
-    assert body.check_connections() == ()
 
 
 def test_refused_calls_leave_the_scene_as_it_was():

@@ -5,23 +5,18 @@ import numpy as np
 import pytest
 import scipy.linalg
 from rings import J, Z, rings, run, speed_of
-from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
     DirectCurrentMotor,
     Drag,
     GearMesh,
-    Link,
-    RotorTrain,
     Support,
     TorqueCurve,
     add_drive,
     add_rotor,
     add_supports,
-    campbell,
     connect_rotors,
-    linear_model,
 )
 
 RADII = (0.06, 0.09)
@@ -130,21 +125,6 @@ def test_a_kick_goes_through_gears_and_gyroscopes():
     np.testing.assert_allclose(found, expected, atol=5e-3 * np.abs(expected).max())
 
 
-def test_the_linear_train_of_both_is_the_same():
-    gears, speed = mesh(helix_angle=0.3), 400.0
-    roots = np.linalg.eigvals(first_order(*closed_form(gears, 2e6, speed)))
-    expected = np.sort(np.abs(roots.imag))[2::2]
-    supports, rotor = [Support(name, 2e6 * np.eye(3)) for name in ENDS], rings().reduce(0)
-    train = RotorTrain(
-        {"one": rotor, "two": rotor},
-        {"one": 1.0, "two": -RADII[0] / RADII[1]},
-        {"one": supports, "two": supports},
-        [Link("one:left", "two:left", gears)],
-    )
-    found = np.sort(campbell(train, [speed], accuracy=None).frequencies_inertial[0])
-    np.testing.assert_allclose(found[-len(expected) :], expected, rtol=1e-6)
-
-
 MOTOR = DirectCurrentMotor(stall_torque=9.0, no_load_speed=60.0)
 
 
@@ -225,62 +205,6 @@ def test_energy_goes_into_drives_springs_and_losses(backlash):
     assert abs(left[1]) < 0.02
 
 
-PLACES = {
-    "x": {"axis": [1.0, 0.0, 0.0]},
-    "-z": {"axis": [0.0, 0.0, -1.0]},
-    "y": {"axis": [0.0, 1.0, 0.0]},
-    "skew": {
-        "axis": [2.0, -1.0, 2.0],
-        "rotation": Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix(),
-    },
-    "second turned over": {"flip": True},
-}
-
-
-@pytest.mark.parametrize("name", PLACES)
-@pytest.mark.filterwarnings("ignore:rotor '.*'. no node of Exudyn turns")
-def test_axes_and_senses_change_nothing(name):
-    gears, heavy = mesh(helix_angle=0.2, damping=300.0), 0.0 if "turned" in name else 0.02
-    first = driven(gears=gears, heavy=heavy)
-    other = driven(gears=gears, heavy=heavy, **PLACES[name])
-    expected, found = ([speed_of(body) for body in result[1]] for result in (first, other))
-    found[1] *= -1.0 if "turned" in name else 1.0
-    np.testing.assert_allclose(found, expected, rtol=1e-6)
-    np.testing.assert_allclose(other[2][2][-1, 1:], first[2][2][-1, 1:], rtol=1e-4)
-
-
-def test_a_full_body_meshes():
-    """Ten masses on stiff springs, beside their rigid motions alone."""
-    found = [driven(gears=mesh(), full=full)[1] for full in (False, True)]
-    speeds = [[speed_of(body) for body in bodies] for bodies in found]
-    np.testing.assert_allclose(speeds[1], speeds[0], rtol=2e-2)
-
-
-def test_teeth_part_and_hit_as_two_inertias_do():
-    """A torque that swings, by the scene and by an equation of two inertias on stiff bearings."""
-    gears = mesh(backlash=2e-4, stiffness=1e5, damping=20.0, pressure_angle=1e-3)
-    mbs, bodies, connection = pair(gears, support=1e9)
-    swing = lambda t: 6.0 * np.sin(80.0 * t)  # noqa: E731
-    add_drive(bodies[0], TorqueCurve(lambda speed, t: swing(t)))
-    sensor = connection.add_sensor()
-    run(mbs, 0.2, 1000)
-
-    def rates(t, y):
-        x, x_t = np.zeros(12), np.zeros(12)
-        x[[5, 11]], x_t[[5, 11]] = y[:2], y[2:]
-        force = gears.forces(x, x_t)
-        return [*y[2:], (force[5] + swing(t)) / J, force[11] / J]
-
-    force = mbs.GetSensorStoredData(sensor)[:, 1]
-    expected = solve_ivp(rates, (0.0, 0.2), np.zeros(4), rtol=1e-8, atol=1e-10, max_step=1e-3)
-    np.testing.assert_allclose(
-        [speed_of(body) for body in bodies], expected.y[2:, -1], rtol=5e-3, atol=2e-3
-    )
-    assert force.min() < -20.0
-    assert force.max() > 20.0
-    assert 0.05 < np.mean(force == 0.0) < 0.9
-
-
 def test_mesh_frequency_is_that_of_the_teeth():
     """At a constant speed, 20 teeth and a stiffness that varies shake the mesh 20 times a turn."""
     gears = mesh(teeth=[20, 30], variation=[0.1], damping=2e3)
@@ -331,11 +255,3 @@ def test_refused_calls_leave_the_scene_as_it_was():
             connect_rotors(*arguments)
         assert counts() == before
         assert one.drives == []
-
-
-def test_linear_analyses_of_the_scene_are_for_one_rotor():
-    mbs, bodies, _ = pair(mesh())
-    mbs.Assemble()
-    for body, other in zip(bodies, bodies[::-1], strict=True):
-        with pytest.raises(ValueError, match=f"second rotor.*{other.name!r}.*RotorTrain"):
-            linear_model(mbs, body=body)

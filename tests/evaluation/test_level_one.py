@@ -5,8 +5,6 @@ import pytest
 
 from exudyn_rotor import SolidRotor, Support, stability, stability_level_one
 
-MASS, STIFFNESS = 2.0, 2e4
-
 
 @pytest.fixture(scope="module")
 def rotor():

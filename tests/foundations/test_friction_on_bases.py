@@ -4,9 +4,8 @@ import exudyn as exu
 import numpy as np
 import pytest
 from exudyn.itemInterface import SensorNode
-from exudyn.utilities import InertiaCuboid
 from point_rotors import ring_rotor
-from rings import J, run
+from rings import run
 
 from exudyn_rotor import (
     Foundation,
@@ -20,7 +19,6 @@ from exudyn_rotor import (
     add_supports,
     grooved_pads,
 )
-from exudyn_rotor.multibody.supports.turning_base import on_turning_base
 
 RADIUS, LENGTH, CLEARANCE, VISCOSITY, SPEED = 0.05, 0.02, 2e-4, 0.02, 80.0
 ENDS = {"left": [0.0, 0.0, -0.15], "right": [0.0, 0.0, 0.15]}
@@ -93,45 +91,3 @@ def test_what_the_rotor_loses_of_its_momentum_the_block_gains(kind):
         couple += np.trapezoid(couple_of_pads(tilts, rates, speed), time)
     assert lost < 0.0
     assert abs(lost + gained - couple) < 1e-6 * abs(lost)
-
-
-def braking(kind, share=None):
-    """Return the rotor's deceleration on a heavy body that turns, or on the ground [rad/s²]."""
-    mbs, body, _ = rotor_in_a_scene()
-    base = None
-    if share is not None:
-        base = mbs.CreateRigidBody(
-            inertia=InertiaCuboid(1e3, [1.0, 1.0, 1.0]),
-            initialAngularVelocity=[0.0, 0.0, share * SPEED],
-        )
-    add_supports(body, [KINDS[kind](name) for name in ENDS], base)
-    spin = body.add_spin_sensor()
-    run(mbs, 4e-6, 4, accuracy=1e-8)
-    time, _, speed = mbs.GetSensorStoredData(spin).T[:3]
-    return (speed[0] - speed[-1]) / time[-1]
-
-
-@pytest.mark.parametrize("share", [1.0, 0.5, -0.5])
-@pytest.mark.parametrize("kind", ["short", "finite"])
-def test_friction_is_that_of_the_speed_against_the_bore(kind, share):
-    still = braking(kind)
-    assert braking(kind, share) == pytest.approx((1.0 - share) * still, abs=1e-6 * still)
-    if kind == "short":  # N. Petroff (1883), with the journal in the middle; two bearings
-        torque = 2.0 * 2.0 * np.pi * VISCOSITY * RADIUS**3 * LENGTH * SPEED / CLEARANCE
-        assert J * still == pytest.approx(torque, rel=1e-4)
-
-
-def test_journal_that_turns_with_its_bore_has_no_wedge():
-    """Both as one body, the journal off the middle: the film carries nothing, wherever it is."""
-
-    class Turning:
-        def GetMarkerOutput(self, marker, kind):
-            return 30.0 * axes[:, 2]
-
-    axes = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
-    bearing = KINDS["short"]("left")
-    law = on_turning_base(bearing.law_with_torque, Turning(), exu.MarkerIndex(0), axes)
-    x, y = 8e-5, -5e-5
-    still = bearing.law_with_torque(x, y, 0.0, 0.0, 0.0, 50.0)
-    assert law(x, y, -30.0 * y, 30.0 * x, 0.0, 30.0) == pytest.approx((0.0, 0.0, 0.0), abs=1e-12)
-    assert law(x, y, -30.0 * y, 30.0 * x, 0.0, 80.0) == pytest.approx(still, rel=1e-12)

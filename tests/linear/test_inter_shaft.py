@@ -1,29 +1,20 @@
 """Bearings between two rotors in scenes: the bore, or the outer ring, turns with one of them."""
 
-from dataclasses import replace
-
 import exudyn as exu
 import numpy as np
 import pytest
 from exudyn.rigidBodyUtilities import InertiaCuboid
 from scipy.spatial.transform import Rotation
-from test_magnetic_bearing import DELAYED, bearing
 from test_scene_trains import HELD, SPEED, accelerations_left
 from train_models import FIRST, SECOND, rings
 
 from exudyn_rotor import (
-    JournalBearing,
-    LinearActuator,
-    OilFilm,
     RollingBearing,
     ShortJournalBearing,
     Support,
-    TiltingPadBearing,
     add_rotor,
     add_supports,
-    grooved_pads,
     linear_model,
-    recommended_settings,
 )
 
 RADIUS, LENGTH, CLEARANCE, VISCOSITY, OFF = 0.02, 0.02, 1e-4, 0.02, 6e-5
@@ -87,18 +78,6 @@ def test_a_film_in_a_casing_that_turns(kind):
     assert force_on_inner(mbs, added.objects[0]) == pytest.approx(expected, rel=1e-9)
 
 
-def test_axes_against_each_other():
-    """−90 rad/s about −z are 90 about z; a table about −z has −90 + 60 of both."""
-    turn, at = np.diag([1.0, -1.0, -1.0]), rings(*FIRST).interfaces["a"].reference
-    upside_down = {"spin": -90.0, "rotation": turn, "position": at - turn @ at}
-    expected = force_on_inner(*scene(SHORT, {"spin": 60.0}, {"spin": 90.0}))
-    found = force_on_inner(*scene(SHORT, {"spin": 60.0}, upside_down))
-    assert found == pytest.approx(expected, rel=1e-9)
-    table = Support("a", ([-40.0, 0.0, 400.0], [3e5, 1e5, 5e5]))
-    found = force_on_inner(*scene(table, {"spin": 60.0}, upside_down))
-    assert found == pytest.approx([-2.5e5 * OFF, 0.0], rel=1e-9, abs=1e-9)
-
-
 def test_elements_go_with_both_rings():
     """The cage has turned by κ θ_i + (1 − κ) θ_o (Harris, Ch. 8)."""
     inner, outer = 0.7, -1.1
@@ -116,26 +95,6 @@ def test_elements_go_with_both_rings():
     assert found == pytest.approx(expected, rel=1e-9)
 
 
-@pytest.mark.parametrize("cavitation", ["reynolds", "mass-conserving"])
-def test_a_turn_of_both_rotors_changes_nothing(cavitation):
-    """The film is that of a bore at rest, but for w² OFF t of the velocity, 1e-5 of c Ω."""
-    pads = grooved_pads(CLEARANCE, [0.3], 0.4)
-    film = OilFilm(RADIUS, LENGTH, VISCOSITY, pads, cavitation, nodes=16, axial_nodes=0)
-    forces = []
-    for turn in (0.0, 30.0):
-        spins = {"spin": turn}, {"spin": SPEED + turn}
-        journal = JournalBearing(interface="a", film=film)
-        mbs, connector = scene(journal, *spins, initial_velocity=[0.0, turn * OFF, 0.0])
-        initial = exu.ConfigurationType.Initial
-        mbs.systemData.SetODE2Coordinates(mbs.systemData.GetODE2Coordinates(), initial)
-        settings = recommended_settings(2e-6, 1e-6)
-        settings.timeIntegration.verboseMode = 0
-        settings.solution.file.write = False
-        assert mbs.SolveDynamic(settings)
-        forces.append(mbs.GetObjectOutput(connector, KINDS.Force))
-    assert forces[1] == pytest.approx(forces[0], abs=1e-3 * np.linalg.norm(forces[0]))
-
-
 def test_tables_are_over_the_difference_of_the_speeds():
     """As those of a link in a train: a scene's accelerations are those of its equations."""
     table = Support("a", ([0.0, 100.0], [1e5, 4e5]), ([0.0, 100.0], [9.0, 30.0]))
@@ -150,24 +109,6 @@ def test_tables_are_over_the_difference_of_the_speeds():
     mbs.Assemble()
     model = linear_model(mbs, body=[first, second])
     assert accelerations_left(mbs, [first, second], model, (1.0, 1.7)) < 1e-9
-
-
-PADS = OilFilm(RADIUS, LENGTH, VISCOSITY, grooved_pads(CLEARANCE, [0.0, 3.0], 0.5), axial_nodes=0)
-REFUSED = {
-    "alike in all directions": Support("a", 1e5, 0.0, np.diag([300.0, 200.0])),
-    "without tilt_damping": Support("a", 1e5, 0.0, 300.0, 2.0),
-    "about the axis": Support("a", 1e5, 0.0, np.diag([300.0, 300.0, 50.0])),
-    "constant": Support("a", 1e5, 0.0, ([0.0, 300.0], [2e2, 3e2])),
-    "whose bore is at rest": replace(SHORT, load=[0.0, -9.0]).linearised(),
-    "its pads": TiltingPadBearing(interface="a", film=PADS, pad_inertia=1e-6),
-    "magnets would turn": bearing("a", DELAYED, LinearActuator(80.0, 1e5)),
-}
-
-
-@pytest.mark.parametrize("match", REFUSED)
-def test_what_a_marker_that_turns_cannot_carry_is_refused(match):
-    with pytest.raises(ValueError, match=f"(?s)stands on another rotor.*{match}"):
-        scene(REFUSED[match], {"spin": 60.0}, {"spin": 90.0})
 
 
 def test_a_bearing_between_axes_that_are_not_parallel_is_refused():

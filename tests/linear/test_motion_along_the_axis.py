@@ -3,7 +3,6 @@
 import exudyn as exu
 import numpy as np
 import pytest
-from exudyn.itemInterface import CartesianSpringDamper, MarkerBodyPosition
 from point_rotors import SKEW_AXIS, free_stiffness
 
 from exudyn_rotor import (
@@ -19,8 +18,6 @@ from exudyn_rotor import (
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene import steady_motion
 from exudyn_rotor.theory.rotating_axes import axes_of
-
-pytestmark = pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn")
 
 MASS, RADIUS, ARM, G = 10.0, 0.1, 0.15, 9.81
 SPEED, HEAVY = 100.0, 5e-4  # rad/s, and kg at RADIUS on either ring
@@ -94,27 +91,3 @@ def test_load_along_the_axis_that_nothing_holds_is_refused_at_once(direction, sp
     weight = MASS * 1.0
     with pytest.raises(UnconvergedError, match=rf"along its axis, where a load of {weight:.3g} N"):
         steady_state(body)
-
-
-def test_thrust_bearing_behind_a_gap_holds():
-    """A stop of 1e6 N/m, 1 mm below the rotor at rest."""
-    rotor, _ = two_rings(np.array([0.0, 0.0, 1.0]))
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor.reduce(0), spin=0.0, translation="none", gravity=[0.0, 0.0, -G])
-    springs = [Support(name, 1e6 * np.eye(2)) for name in ("left", "right")]
-    add_supports(body, springs)
-
-    def stop(mbs, t, item, u, v, k, d, offset):
-        return [0.0, 0.0, 1e6 * min(u[2] + 1e-3, 0.0)]
-
-    base = mbs.AddMarker(
-        MarkerBodyPosition(bodyNumber=mbs.CreateGround(), localPosition=[0.0, 0.0, -ARM])
-    )
-    mbs.AddObject(
-        CartesianSpringDamper(
-            markerNumbers=[base, body.marker("left")], springForceUserFunction=stop
-        )
-    )
-    mbs.Assemble()
-    place = steady_state(body).interface_motion("left")[2]
-    assert place == pytest.approx(-1e-3 - MASS * G / 1e6, rel=1e-6)

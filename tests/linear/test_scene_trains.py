@@ -186,32 +186,6 @@ def test_spins_of_a_scene_that_a_drive_holds_are_held_in_its_train(connection, t
     assert accelerations_left(mbs, bodies, model, [*model.ratios.values()]) < 1e-8
 
 
-@pytest.mark.filterwarnings("ignore:rotor '.'. no node of Exudyn turns")
-def test_a_coupling_to_a_shaft_of_constant_speed_holds_torsion():
-    """A's, through gears B's, too; damping across the axis turns with the shaft."""
-    mbs, bodies = geared(GEARS)
-    connect_rotors(COUPLING, bodies[0], "b", ConstantSpeed(SPEED))
-    mbs.Assemble()
-    model = linear_model(mbs, body=bodies)
-    assert model.free_motions == ()
-    assert accelerations_left(mbs, bodies, model, [1.0, -0.5]) < 1e-8
-
-
-@pytest.mark.parametrize("driven", ["", "A", "AB"])
-@pytest.mark.parametrize("connection", [GEARS, COUPLING], ids=["gears", "coupling"])
-def test_frequencies_of_a_train_at_rest_are_exudyns(connection, driven):
-    """Of the scene's own linearisation, torsion included; its 4 locked tilts are 1 rad/s."""
-    mbs, bodies = geared(connection, driven=driven, speed=1e-6)  # undamped, no gyroscopics
-    M, _, K = linear_model(mbs, body=bodies).at(1e-6).matrices(0.0)
-    squares = (
-        la.eigh(K, M, eigvals_only=True),
-        np.sort(mbs.ComputeODE2Eigenvalues(convert2Frequencies=False)[0]),
-    )
-    found, expected = (given[given > 10.0] for given in squares)
-    assert len(found) == (10 if driven == "AB" else 11)
-    np.testing.assert_allclose(found, expected, rtol=1e-6)
-
-
 def test_gears_and_couplings_of_a_scene_are_links():
     """The same numbers as of the train that is written by hand."""
     coupling = FlexibleCoupling(
@@ -308,16 +282,3 @@ def test_what_a_train_does_not_have_is_refused():
             linear_model(mbs, body=given)
     with pytest.raises(TypeError, match="body: needs RotorBody"):
         linear_model(mbs, body=[*bodies, mbs])
-
-
-def test_a_rotor_without_marker_body_is_a_second_one():
-    mbs = exudyn.SystemContainer().AddSystem()
-    bodies = [
-        add_rotor(mbs, rings(*FIRST).reduce(0), name=name, spin=SPEED, marker_body=shown)
-        for name, shown in (("A", True), ("B", False))
-    ]
-    mbs.Assemble()
-    for body in bodies:
-        with pytest.raises(ValueError, match=r"a second rotor in this system.*body=\[…\]"):
-            linear_model(mbs, body=body)
-    assert linear_model(mbs, body=bodies).size == 10  # without the spins

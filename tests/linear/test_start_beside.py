@@ -14,7 +14,6 @@ from exudyn_rotor import (
     Mount,
     PIDController,
     Support,
-    UnbalanceResponse,
     add_foundation,
     add_rotor,
     add_supports,
@@ -95,27 +94,10 @@ def test_run_begins_in_steady_whirl(kind, translation):
     assert left(found, lambda: scene(kind, translation=translation)) < NO_TRANSIENT
 
 
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn")
-def test_run_about_a_skew_axis_begins_at_an_angle():
-    kind, axis = "levitated above a block", "skew"
-    found = unbalance_response(model(kind, axis), [SPEED], accuracy=None)
-    options = {"spin": "free", "initial_speed": SPEED, "initial_angle": 0.7}
-    assert left(found, lambda: scene(kind, axis, **options)) < NO_TRANSIENT
-
-
 def test_response_of_a_scene_starts_its_controllers():
     mbs, body = scene("levitated above a block")
     found = unbalance_response(linear_model(mbs, body=body, about="given"), [SPEED])
     assert left(found, lambda: scene("levitated above a block")) < NO_TRANSIENT
-
-
-def test_stored_response_starts_a_run_too(tmp_path):
-    kind = "levitated above a block"
-    found = unbalance_response(model(kind), [SPEED], accuracy=None)
-    found.save(tmp_path / "response.npz")
-    loaded = UnbalanceResponse.load(tmp_path / "response.npz")
-    _, body = scene(kind)
-    assert np.array_equal(loaded.state(SPEED, body).q_t, found.state(SPEED, body).q_t)
 
 
 def test_other_scenes_are_refused():

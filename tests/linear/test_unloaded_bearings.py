@@ -10,7 +10,6 @@ from exudyn_rotor import (
     JournalBearing,
     OilFilm,
     RollingBearing,
-    ShortJournalBearing,
     Support,
     add_rotor,
     add_supports,
@@ -45,11 +44,6 @@ def journal(load=None, grooves=(), preload=0.0, **film):
     film = {"nodes": 24, "axial_nodes": 0} | film
     oil = OilFilm(radius=0.05, length=0.05, viscosity=0.02, pads=pads, **film)
     return lambda name: JournalBearing(interface=name, film=oil, load=load)
-
-
-def short(name):
-    sizes = {"radius": 0.05, "length": 0.05, "clearance": CLEARANCE, "viscosity": 0.02}
-    return ShortJournalBearing(interface=name, **sizes)
 
 
 def scene(made, gravity, speed=100.0, eccentric=0.0, z=0.0, names=("left", "right")):
@@ -94,13 +88,6 @@ def test_contacts_are_linear_by_their_stiffness_once_held(place):
     np.testing.assert_allclose(moved - start, -K @ dx - 10.0 * dv, rtol=1e-12, atol=1e-9)
 
 
-def test_contacts_that_just_touch_need_no_more_angles(linearisations):
-    """Without clearance, elements across the load touch: differences along them are one-sided."""
-    mbs, body, _ = scene(balls(0.0), ACROSS, eccentric=0.05)
-    linear_model(mbs, body=body, about="equilibrium").at(100.0)
-    assert len(linearisations) <= 24
-
-
 def test_upright_rotor_whirls_in_the_clearance():
     """Free across the axis it turns about its centre of mass: the middle moves by m r/M."""
     _, body, _ = scene(balls(5e-6, 0.0), UPRIGHT, eccentric=2e-3)
@@ -123,12 +110,6 @@ WITHOUT_SIDE = {
     "half": journal(cavitation="half-sommerfeld"),
     "voids": journal(grooves=[1.7], cavitation="mass-conserving"),
 }
-WITH_SIDE = {
-    "tension": journal(cavitation="none"),
-    "preload": journal(grooves=[0.3, 3.4], preload=0.4),
-    "supply": journal(grooves=[0.3, 3.4], supply_pressure=1e5),
-    "short": short,
-}
 
 
 @pytest.mark.parametrize("about", ["given", "equilibrium"])
@@ -137,23 +118,6 @@ def test_film_in_whose_middle_the_journal_stands_asks_for_a_load(kind, about):
     mbs, body, _ = scene(WITHOUT_SIDE[kind], UPRIGHT)
     with pytest.raises(UnconvergedError, match=r"no load presses .* 'left' .*load=…"):
         linear_model(mbs, body=body, about=about).at(100.0)
-
-
-def test_third_bearing_without_a_load_asks_for_it_where_the_state_is_given():
-    mbs, body, _ = scene(journal(), ACROSS, names=("left", "right", "middle"))
-    with pytest.raises(UnconvergedError, match="no load presses the journal"):
-        linear_model(mbs, body=body, about="given").at(100.0)
-    linear_model(mbs, body=body, about="equilibrium").at(100.0)
-
-
-@pytest.mark.parametrize("kind", WITH_SIDE)
-def test_film_that_is_smooth_in_its_middle_needs_no_load(kind):
-    mbs, body, _ = scene(WITH_SIDE[kind], UPRIGHT)
-    first, second = (
-        exponents(linear_model(mbs, body=body, about=about), 100.0)
-        for about in ("given", "equilibrium")
-    )
-    assert np.sort_complex(first) == pytest.approx(np.sort_complex(second), rel=1e-3, abs=0.1)
 
 
 @pytest.mark.parametrize("kind", ["reynolds", "half-sommerfeld"])

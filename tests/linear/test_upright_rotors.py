@@ -16,19 +16,12 @@ from exudyn_rotor import (
     TiltingPadBearing,
     add_rotor,
     add_supports,
-    bearing_loads,
     grooved_pads,
     steady_state,
 )
 from exudyn_rotor.bearings.held_law import HeldBearing
-from exudyn_rotor.theory.rotating_axes import axes_of, parts_across
+from exudyn_rotor.theory.rotating_axes import axes_of
 
-pytestmark = [
-    pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn"),
-    pytest.mark.filterwarnings("ignore:rotor 'rotor'. a contact that opens"),  # a film's grooves
-]
-
-UPRIGHT = (0.0, 0.0, 1.0)
 MASS, RADIUS, ARM, SPEED = 10.0, 0.1, 0.15, 300.0
 CONTACT = {"balls": 7e9, "rollers": 5e8}  # N/m^1.5, N/m^(10/9)
 
@@ -91,19 +84,6 @@ def whirl(made, direction, heavy, angles=(0.0, 1.0, 2.5)):
     return np.array([steady.interface_motion("left", angle)[:2] for angle in angles])
 
 
-def test_parts_across_keep_loads_and_leave_rounding():
-    axes = axes_of(SpinAxis(SKEW_AXIS))
-    assert np.all(parts_across(axes, -9.81 * SKEW_AXIS) == 0.0)
-    slight = -9.81 * SKEW_AXIS + 1e-9 * axes[:, 1]
-    assert parts_across(axes, slight) == pytest.approx([0.0, 1e-9], rel=1e-5)
-
-
-def test_upright_rotor_loads_no_bearing():
-    rotor, axes = rings(SKEW_AXIS, 0.0)
-    loads = bearing_loads(rotor, ["left", "right"], -9.81 * axes[:, 2])
-    np.testing.assert_array_equal(loads, np.zeros((2, 2)))
-
-
 @pytest.mark.parametrize("load", [1e-15, 1e-12, 1e-6])
 def test_short_film_carries_the_slightest_load(load):
     """Near the centre F = (μ Ω R L³/c²) π ε/4 across the eccentricity."""
@@ -113,14 +93,6 @@ def test_short_film_carries_the_slightest_load(load):
     # the radial force is smaller by 4 ε/π; the search for ε ends at 1e-15
     near = 4.0 / np.pi * load / (stiff * 5e-5)
     assert place == pytest.approx([load / stiff, 0.0], rel=1e-9, abs=(2e-15 + near**2) * 5e-5)
-
-
-@pytest.mark.parametrize("made", [short, rolling("balls")])
-def test_upright_rotor_whirls_about_a_skew_axis_as_about_a_vertical_one(made):
-    skew, vertical = (whirl(made, direction, 1e-4) for direction in (SKEW_AXIS, UPRIGHT))
-    size = np.abs(vertical).max()
-    assert size > 1e-8
-    assert skew == pytest.approx(vertical, abs=1e-4 * size)  # of the motion: the search's tolerance
 
 
 @pytest.mark.parametrize("made", [short, grooved, tilting])

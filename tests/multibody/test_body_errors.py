@@ -6,7 +6,7 @@ import pytest
 from exudyn.itemInterface import MarkerNodeCoordinate
 from models import disc_rotor
 
-from exudyn_rotor import PrescribedMotion, SolidRotor, add_rotor
+from exudyn_rotor import PrescribedMotion, add_rotor
 
 NAN = float("nan")
 RUN_UP = PrescribedMotion.run_up(0.0, 100.0, 1.0)
@@ -20,22 +20,6 @@ def solid():
 @pytest.fixture(scope="module")
 def reduced(solid):
     return solid.reduce(2, prestress=False)
-
-
-@pytest.fixture(scope="module")
-def grounded():
-    return SolidRotor.from_matrices(
-        np.eye(6), np.diag([1e6] * 6), [[1.0, 0, 0], [0, 1.0, 0]], "z"
-    ).reduce(2)
-
-
-@pytest.fixture(scope="module")
-def needle():
-    """Two masses on the axis."""
-    stiffness = np.kron([[1e6, -1e6], [-1e6, 1e6]], np.diag([0.0, 0.0, 1.0]))
-    return SolidRotor.from_matrices(
-        np.eye(6), stiffness, [[0, 0, 0], [0, 0, 1.0]], "z", grounded=False
-    ).reduce(1)
 
 
 def counts(mbs):
@@ -160,26 +144,6 @@ def test_wrong_kinds_add_nothing(reduced, arguments, kind, message):
     with pytest.raises(kind, match=message):
         add_rotor(mbs, reduced, **arguments)
     assert counts(mbs) == [0] * 5
-
-
-def test_rotors_that_cannot_move_so(grounded, needle):
-    mbs = exu.SystemContainer().AddSystem()
-    with pytest.raises(ValueError, match="use translation='none' and a prescribed spin"):
-        add_rotor(mbs, grounded)
-    with pytest.raises(ValueError, match="no moment of inertia about its axis"):
-        add_rotor(mbs, needle)
-    assert counts(mbs) == [0] * 5
-
-
-def test_wrong_objects(solid, reduced):
-    with pytest.raises(TypeError, match="mbs: needs MainSystem, got SystemContainer"):
-        add_rotor(exu.SystemContainer(), reduced)
-    mbs = exu.SystemContainer().AddSystem()
-    with pytest.raises(
-        TypeError,
-        match=r"rotor: needs ReducedRotor or SolidRotor, got SpinAxis.*SolidRotor\.reduce",
-    ):
-        add_rotor(mbs, solid.axis)
 
 
 def test_sensors_of_what_is_not_there(solid, reduced):

@@ -1,11 +1,8 @@
 """Which angle of the marker body's node is the spin angle, and which way round it counts."""
 
-import itertools
-
 import exudyn as exu
 import numpy as np
 import pytest
-from exudyn.rigidBodyUtilities import RotXYZ2RotationMatrix
 from point_rotors import random_arrays
 from scipy.spatial.transform import Rotation
 
@@ -13,58 +10,12 @@ from exudyn_rotor import (
     ConstantSpeed,
     PrescribedMotion,
     SolidRotor,
-    SpinAxis,
     add_rotor,
     recommended_settings,
 )
-from exudyn_rotor.multibody.rotor.frame import BodyFrame
 
 KINDS = exu.OutputVariableType
-COORDINATE_AXES = [sign * unit for unit in np.eye(3) for sign in (1, -1)]
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
-# all 24 ways to mount coordinate axes along coordinate axes
-UPRIGHT = Rotation.create_group("O").as_matrix().round()
-
-
-def turned_frame(frame, theta):
-    """Return the orientation of the node for a spin angle."""
-    angles = frame.angles.copy()
-    angles[frame.spin - 3] += frame.sign * theta
-    return RotXYZ2RotationMatrix(angles)
-
-
-def check_frame(frame, e, space):
-    for theta in (0.0, 0.4, 2.0, -40.0):
-        expected = space @ SpinAxis(e).rotation(theta) @ frame.B.T
-        np.testing.assert_allclose(turned_frame(frame, theta), expected, rtol=0, atol=1e-13)
-
-
-@pytest.mark.parametrize("e", COORDINATE_AXES, ids=str)
-def test_coordinate_axes_along_coordinate_axes_keep_the_mesh_axes(e):
-    for space in UPRIGHT:
-        frame = BodyFrame.of(e, np.zeros(3), np.zeros(3), space)
-        assert frame.has_mesh_axes
-        check_frame(frame, e, space)
-
-
-def test_mesh_z_keeps_the_mesh_axes_wherever_it_is_mounted():
-    for e in ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]):
-        frame = BodyFrame.of(np.array(e), np.zeros(3), np.zeros(3), SKEW)
-        assert frame.has_mesh_axes
-        assert frame.spin == 5
-        check_frame(frame, e, SKEW)
-
-
-def test_skew_axes_are_turned_where_no_angle_serves():
-    for e, space in itertools.product((SKEW[:, 0], -SKEW[:, 1]), (np.eye(3), SKEW)):
-        frame = BodyFrame.of(e, np.zeros(3), np.zeros(3), space)
-        assert not frame.has_mesh_axes
-        np.testing.assert_allclose(frame.B @ e, [0, 0, 1], atol=1e-15)
-        check_frame(frame, e, space)
-    along_x = Rotation.align_vectors([[1.0, 0, 0]], [SKEW[:, 0]])[0].as_matrix()
-    frame = BodyFrame.of(SKEW[:, 0], np.zeros(3), np.zeros(3), along_x)
-    assert frame.has_mesh_axes
-    check_frame(frame, SKEW[:, 0], along_x)
 
 
 def rotor(direction):
@@ -161,25 +112,6 @@ def skew_scene():
 
 
 OFFSET = np.array([0.3, -0.2, 0.5])
-
-
-def test_added_markers_have_mesh_axes_and_their_offset(skew_scene):
-    solid, mbs, body = skew_scene
-    interface = solid.interfaces["a"]
-    markers = [
-        body.add_marker("a", OFFSET),
-        body.add_marker([0, 1, 2, 3], OFFSET, weights=interface.weights, name="own"),
-        body.add_marker("a", OFFSET, kind="position"),
-    ]
-    expected = solid.nodes[:4].T @ interface.weights + OFFSET
-    mbs.Assemble()
-    for marker in markers:
-        place = mbs.GetMarkerOutput(marker, KINDS.Position, exu.ConfigurationType.Initial)
-        np.testing.assert_allclose(place, SKEW @ expected, atol=1e-12)
-    for marker in markers[:2]:
-        turn = mbs.GetMarkerOutput(marker, KINDS.RotationMatrix, exu.ConfigurationType.Initial)
-        np.testing.assert_allclose(np.reshape(turn, (3, 3)), SKEW, atol=1e-12)
-    assert int(mbs.GetMarkerNumber("own")) == int(markers[1])
 
 
 @pytest.mark.filterwarnings("ignore:.*no node of Exudyn turns")

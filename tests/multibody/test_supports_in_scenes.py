@@ -92,25 +92,6 @@ TO_X, TO_Y = (Rotation.from_euler(a, 90.0, degrees=True).as_matrix() for a in ("
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
 
 
-@pytest.mark.parametrize("kind", ["3 x 3", "tilt, damped", "tilt", "rotor frame", "table"])
-@pytest.mark.parametrize(
-    ("turn", "rotation", "options"),
-    [
-        (TO_X, None, {"translation": "in-plane"}),
-        (TO_Y, None, {"spin": SPEED, "translation": "none"}),
-        (-TO_Y, TO_X, {"spin": 40.0}),
-        (SKEW, None, {"initial_angle": 0.4}),
-        (None, SKEW, {"initial_angle": 0.4}),
-        (SKEW, SKEW, {"spin": 9.0, "translation": "none"}),
-    ],
-    ids=["x", "y", "-y upright", "skew mesh", "skew mounting", "both skew"],
-)
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
-def test_axes_and_formulations_change_nothing(kind, turn, rotation, options):
-    turn = turn if turn is None or np.linalg.det(turn) > 0 else turn @ np.diag([1.0, 1.0, -1.0])
-    assert compared(kind, turn, rotation, **options) < 1e-7
-
-
 MIXED = [
     replace(KINDS["cross-coupled"], tilt_stiffness=2e3, tilt_damping=3.0),
     KINDS["table"],
@@ -221,13 +202,6 @@ def test_a_table_follows_a_free_spin():
     np.testing.assert_allclose(get(number, kinds.Force)[:2], expected, rtol=1e-6)
     assert body.uses_python
     assert "left by Python function; right by Exudyn" in body.report()
-
-
-def test_a_run_beyond_a_table_stops():
-    with pytest.raises(Exception, match="holds 0 to 100 rad/s"):
-        run_up([Support("left", RISING), HELD], torque=4000.0)
-    _, body, _ = run_up([Support("left", RISING, extrapolate=True), HELD], torque=4000.0)
-    assert body.coordinates()[1][3] > 200.0
 
 
 def test_refused_calls_leave_the_scene_as_it_was():

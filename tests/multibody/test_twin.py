@@ -167,64 +167,6 @@ def test_swapping_the_name_of_the_call_gives_the_same_motion(fem, direction):
         assert abs(twin[name] - signal).max() < AGREEMENT[name] * change, name
 
 
-@pytest.mark.parametrize("direction", DIRECTIONS)
-@pytest.mark.filterwarnings("ignore:.*no node of Exudyn turns")
-def test_marker_frames_follow_those_of_the_3d_body(fem, direction):
-    """Offsets, positions and orientations of markers at rest and over one full turn."""
-    mesh, space = DIRECTIONS[direction]
-    offsets = np.array([[0.01, 0.0, 0.02], [0.0, -0.03, 0.0]]) @ mesh.T
-    results = []
-    for call in (OWN, TWIN):
-        mbs = exu.SystemContainer().AddSystem()
-        d = getattr(mbs, call)(
-            "rotor",
-            turned(fem, mesh),
-            referencePosition=[1.0, 2.0, 3.0],
-            referenceRotationMatrix=space,
-            initialAngularVelocity=(space @ mesh @ [0.0, 0.0, 100.0]).tolist(),
-            superElementRigidMarkersOffsets=offsets,
-        )
-        mbs.Assemble()
-        kinds = exu.OutputVariableType.Position, exu.OutputVariableType.RotationMatrix
-        rest = [
-            mbs.GetMarkerOutput(d[name], kind, exu.ConfigurationType.Reference)
-            for name in ("rotor:left", "rotor:right")
-            for kind in kinds
-        ]
-        sensors = [
-            mbs.AddSensor(
-                exudyn.utilities.SensorMarker(
-                    markerNumber=d[name], outputVariableType=kind, storeInternal=True
-                )
-            )
-            for name in ("rotor:left", "rotor:right")
-            for kind in kinds
-        ]
-        mbs.Assemble()
-        mbs.SolveDynamic(settings(400, 2 * np.pi / 100.0))
-        results.append((rest, [mbs.GetSensorStoredData(s)[:, 1:] for s in sensors]))
-    (rest, motion), (twin_rest, twin_motion) = results
-    for own, twin in zip(rest, twin_rest, strict=True):
-        assert abs(own - twin).max() < 1e-12
-    for own, twin in zip(motion, twin_motion, strict=True):
-        # Euler parameters lag by (Ω h)² / 12 of the angle, which the rotor does not
-        assert abs(own - twin).max() < 1.2 * (2 * np.pi / 400) ** 2 / 12 * 2 * np.pi
-
-
-def test_a_script_without_names(fem):
-    """As in Exudyn: markers are called like their boundaries, which must not be there already."""
-    mbs = exu.SystemContainer().AddSystem()
-    d = mbs.CreateFixedAxisFFRFReducedOrderObject(None, fem, axis="z")
-    assert set(d) == {"FFRFReducedOrderObjectDict", "left", "right"}
-    assert int(mbs.GetMarkerNumber("left")) == int(d["left"])
-    with pytest.raises(ValueError, match="already has an item 'left'"):
-        mbs.CreateFixedAxisFFRFReducedOrderObject(None, fem, axis="z")
-    other = turned(fem, TO_X)
-    other.nodeSets = [s | {"Name": s["Name"] + " 2"} for s in fem.nodeSets]
-    mbs.CreateFixedAxisFFRFReducedOrderObject(None, other, axis="x")
-    mbs.Assemble()
-
-
 def test_rotor_beside_a_3d_body(fem):
     """Neither body notices the other."""
 
@@ -251,13 +193,6 @@ def test_rotor_beside_a_3d_body(fem):
         (alone,) = run(call)
         # both share the tolerance of Newton's method
         assert abs(signal - alone).max() < 1e-7 * abs(alone).max()
-
-
-def test_verbose_prints_a_report(fem, capfd):
-    exu.SystemContainer().AddSystem().CreateFixedAxisFFRFReducedOrderObject(
-        "r", fem, axis="z", verbose=True
-    )
-    assert "Sect. 2.2" in capfd.readouterr().out
 
 
 def bare_interface(fem):
@@ -315,58 +250,3 @@ def test_wrong_input_changes_nothing(fem, case):
     with pytest.raises((ValueError, TypeError), match=message):
         mbs.CreateFixedAxisFFRFReducedOrderObject(**arguments)
     assert item_counts(mbs) == before
-
-
-@pytest.mark.parametrize("turn", [np.eye(3), TO_X, TO_Y, SKEW], ids=["z", "x", "y", "skew"])
-@pytest.mark.filterwarnings("ignore:.*no node of Exudyn turns")
-def test_rotor_at_rest_turns_about_the_line_through_its_seats(fem, turn):
-    """The unevenness of the mesh is left out where the line is a mesh axis, and is small else."""
-    mbs = exu.SystemContainer().AddSystem()
-    made = mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", turned(fem, turn))
-    axis = made["FFRFReducedOrderObjectDict"]["rotorBody"].axis
-    expected = turn @ [0.0, 0.0, 1.0]
-    expected = expected * np.sign(expected[np.argmax(np.abs(expected))])
-    tolerance = 1e-3 if turn is SKEW else 1e-15
-    np.testing.assert_allclose(axis.direction, expected, atol=tolerance)
-
-
-def test_rotor_at_rest_without_seats_needs_an_axis(fem):
-    model = turned(fem, TO_X)
-    model.nodeSets = model.nodeSets[:1]
-    mbs = exu.SystemContainer().AddSystem()
-    before = item_counts(mbs)
-    with pytest.raises(ValueError, match="give axis='x'"):
-        mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", model)
-    assert item_counts(mbs) == before
-
-
-def test_the_translation_that_auto_stands_for(fem):
-    """It must not depend on what comes later: free, unless the stiffness holds the rotor."""
-    held = FEMinterface()
-    held.nodes = {"Position": np.array([[0.1, 0.0, 0.0], [-0.1, 0.0, 0.0]])}
-    held.massMatrix, held.stiffnessMatrix = sp.eye(6).tocsr(), 1e6 * sp.eye(6).tocsr()
-    held.modeBasis = {"matrix": np.eye(6), "type": "NormalModes"}
-    system = exu.SystemContainer().AddSystem
-    for model, given, expected in (
-        (fem, {}, "free"),
-        (fem, {"gravity": [0, 0, 9.81], "initialVelocity": [1.0, 0, 0]}, "free"),
-        (fem, {"translation": "in-plane"}, "in-plane"),
-        (held, {"spin": 30.0}, "none"),
-    ):
-        made = getattr(system(), TWIN)(name=None, femInterface=model, axis="z", **given)
-        body = made["FFRFReducedOrderObjectDict"]["rotorBody"]
-        assert body.formulation.translation == expected
-    with pytest.raises(ValueError, match="a prescribed spin"):
-        getattr(system(), TWIN)(name=None, femInterface=held, axis="z")
-    with pytest.raises(ValueError, match=r"translation.*auto"):
-        getattr(system(), TWIN)(name=None, femInterface=fem, axis="z", translation="axial")
-
-
-def test_what_is_returned_prints_short(fem):
-    mbs = exu.SystemContainer().AddSystem()
-    made = mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", fem, axis="z")
-    body = made["FFRFReducedOrderObjectDict"]["rotorBody"]
-    assert repr(body) == (
-        "RotorBody('rotor', Sect. 2.2, stiffening 'tilt', 8 modes, markers: left, right)"
-    )
-    assert len(repr(made)) < 400

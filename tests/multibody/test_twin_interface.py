@@ -10,7 +10,6 @@ from exudyn.FEM import CMSObjectComputeNorm, FEMinterface, ObjectFFRFreducedOrde
 from models import disc_fem
 from run_scenes import item_counts
 
-import exudyn_rotor
 from exudyn_rotor import ObjectFixedAxisFFRFreducedOrderInterface
 
 CLASSES = ObjectFFRFreducedOrderInterface, ObjectFixedAxisFFRFreducedOrderInterface
@@ -113,17 +112,6 @@ def test_names_and_defaults_are_those_of_exudyn():
                 assert default == parameter.default, (method, name)
 
 
-def test_both_twins_take_the_same_of_their_own():
-    """But for markers, which Exudyn's class does not add."""
-    call = exu.MainSystem.CreateFixedAxisFFRFReducedOrderObject
-    of_call = list(inspect.signature(call).parameters.values())
-    of_call = of_call[[parameter.name for parameter in of_call].index("axis") :]
-    of_class = list(inspect.signature(CLASSES[1]).parameters.values())[-len(of_call) :]
-    for one, other in zip(of_call, of_class, strict=True):
-        assert one.name == other.name
-        assert one.default == other.default or one.name == "markers"
-
-
 def test_returned_keys_and_attributes_are_those_of_exudyn(fem):
     own, twin = (made(kind, fem, axis="z") for kind in CLASSES)
     for name in ("nModes", "nNodes", "dim3D"):
@@ -165,89 +153,6 @@ def bare(fem):
     for name in ("nodes", "massMatrix", "stiffnessMatrix", "modeBasis", "surface", "nodeSets"):
         setattr(model, name, getattr(fem, name))
     return model
-
-
-def test_stress_set_later_is_that_given_before(fem):
-    """For modes that are not orthonormal, with dependent ones and a rigid part among them."""
-    mix = np.random.default_rng(3).normal(size=(6, 7)) * 10.0 ** np.arange(-3, 4)
-    model = bare(fem)
-    matrix = fem.modeBasis["matrix"] @ mix
-    matrix[0::3, 2] += 5.0  # translated along x
-    model.modeBasis = {"matrix": matrix, "type": "NormalModes"}
-    stress = fem.postProcessingModes["matrix"].reshape(-1, 6, 6).transpose(0, 2, 1) @ mix
-    stress = stress.transpose(0, 2, 1).reshape(len(stress), -1)
-    found = []
-    for before in (True, False):
-        model.postProcessingModes = (
-            {"matrix": stress, "outputVariableType": exu.OutputVariableType.StressLocal}
-            if before
-            else {}
-        )
-        container = exu.SystemContainer()
-        cms = ObjectFixedAxisFFRFreducedOrderInterface(model, axis="z")
-        rotor = int(cms.AddObjectFFRFreducedOrder(container.AddSystem())["oFFRFreducedOrder"])
-        del cms  # nothing but the container holds the system meanwhile
-        mbs = container.GetSystem(0)
-        if not before:
-            mbs.SetObjectParameter(rotor, "outputVariableModeBasis", stress)
-        found.append(mbs.GetObjectParameter(rotor, "outputVariableModeBasis"))
-    # column by column; the condition of the mixed modes, 1e6 and more, times round-off
-    size = np.abs(found[0]).max(axis=0) + 1e-9 * np.abs(found[0]).max()
-    assert np.all(np.abs(found[1] - found[0]).max(axis=0) < 1e-6 * size)
-    with pytest.raises(
-        ValueError, match=r"outputVariableModeBasis: needs .* got an array of shape"
-    ):
-        mbs.SetObjectParameter(rotor, "outputVariableModeBasis", stress[:, 6:])
-
-
-@pytest.mark.parametrize("call", ["class", "function"])
-def test_strain_modes_are_taken_as_stress_modes_are(fem, call):
-    model = bare(fem)
-    strain = fem.postProcessingModes["matrix"] / 1e11
-    kind = exu.OutputVariableType.StrainLocal
-    model.postProcessingModes = {"matrix": strain, "outputVariableType": kind}
-    mbs = exu.SystemContainer().AddSystem()
-    if call == "class":
-        made = ObjectFixedAxisFFRFreducedOrderInterface(model, axis="z")
-        made.AddObjectFFRFreducedOrder(mbs)
-    else:
-        mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", model, axis="z")
-    own = exu.SystemContainer().AddSystem()
-    ObjectFixedAxisFFRFreducedOrderInterface(fem, axis="z").AddObjectFFRFreducedOrder(own)
-    stress = own.GetObjectParameter(0, "outputVariableModeBasis")
-    found = mbs.GetObjectParameter(0, "outputVariableModeBasis")
-    np.testing.assert_allclose(found, stress / 1e11, atol=1e-9 * np.abs(stress).max() / 1e11)
-    assert mbs.GetObjectParameter(0, "outputVariableTypeModeBasis") == kind
-    mbs.Assemble()
-    assert CMSObjectComputeNorm(mbs, 0, kind, "maxNorm") == 0.0
-    model.postProcessingModes = {"matrix": strain[:, 1:], "outputVariableType": kind}
-    before = item_counts(mbs)
-    with pytest.raises(ValueError, match="femInterface: its strain modes"):
-        mbs.CreateFixedAxisFFRFReducedOrderObject("other", model, axis="z")
-    assert item_counts(mbs) == before
-
-
-def test_other_parameters_and_bodies_are_set_as_before(fem):
-    mbs = exu.SystemContainer().AddSystem()
-    own, twin = (
-        made(kind, fem, axis="z").AddObjectFFRFreducedOrder(mbs)["oFFRFreducedOrder"]
-        for kind in CLASSES
-    )
-    stress = 2.0 * fem.postProcessingModes["matrix"]
-    mbs.SetObjectParameter(own, "outputVariableModeBasis", stress)
-    mbs.SetObjectParameter(parameterName="Vcolor", value=[1.0, 0.0, 0.0, 1.0], objectNumber=twin)
-    np.testing.assert_array_equal(mbs.GetObjectParameter(own, "outputVariableModeBasis"), stress)
-    assert mbs.GetObjectParameter(twin, "Vcolor") == [1.0, 0.0, 0.0, 1.0]
-    mbs.Assemble()
-
-
-def test_the_axis_is_that_of_the_initial_spin(fem):
-    for omega in ([0.0, 0.0, 30.0], [0.0, 0.0, 0.0]):
-        cms = ObjectFixedAxisFFRFreducedOrderInterface(fem)
-        made = cms.AddObjectFFRFreducedOrder(
-            exu.SystemContainer().AddSystem(), initialAngularVelocity=omega
-        )
-        assert made["rotorBody"].axis.direction.tolist() == [0.0, 0.0, 1.0]
 
 
 def test_orientation_by_euler_parameters(fem):
@@ -316,51 +221,3 @@ def test_an_interface_without_a_model(fem, tmp_path):
         ObjectFixedAxisFFRFreducedOrderInterface(model)
     with pytest.raises(ValueError, match="nothing to save before the spin axis is known"):
         ObjectFixedAxisFFRFreducedOrderInterface(fem).SaveToFile(tmp_path / "rotor")
-
-
-def test_a_rotor_body_kept_over_a_reset_says_so(fem):
-    """Its numbers and names then belong to another rotor."""
-    reduced = exudyn_rotor.SolidRotor.from_fem_interface(fem, "z").reduce(fem)
-    mbs = exu.SystemContainer().AddSystem()
-
-    def add():
-        return exudyn_rotor.add_rotor(mbs, reduced, spin=10.0, translation="none")
-
-    old = add()
-    old.start_recording()
-    mbs.Reset()
-    kinds = exu.OutputVariableType
-    uses = {
-        "coordinates": lambda: old.coordinates(),
-        "marker": lambda: old.marker("left"),
-        "add_marker": lambda: old.add_marker("left"),
-        "check_connections": lambda: old.check_connections(),
-        "energy sensor": lambda: old.add_energy_sensor(),
-        "start_recording": lambda: old.start_recording(),
-        "recorded": lambda: old.recorded(),
-        "check_run": lambda: exudyn_rotor.check_run(old, warn=False),
-        "node sensor": lambda: old.add_node_sensor(0, kinds.Position),
-        "interface sensor": lambda: old.add_interface_sensor("left", kinds.Position),
-        "spin sensor": lambda: old.add_spin_sensor(),
-        "drive torque": lambda: old.add_drive_torque_sensor(),
-        "linear model": lambda: exudyn_rotor.linear_model(mbs, body=old),
-    }
-    for again in (False, True):
-        if again:
-            new = add()
-            mbs.Assemble()
-            assert list(map(int, new.markers.values())) == list(map(int, old.markers.values()))
-            assert len(new.coordinates()[0]) == len(new.selection.labels)
-        for use in uses.values():
-            with pytest.raises(ValueError, match="no longer holds rotor 'rotor'"):
-                use()
-
-
-def test_a_rotor_body_whose_numbers_moved_says_so(fem):
-    reduced = exudyn_rotor.SolidRotor.from_fem_interface(fem, "z").reduce(fem)
-    mbs = exu.SystemContainer().AddSystem()
-    ground = mbs.CreateGround()
-    body = exudyn_rotor.add_rotor(mbs, reduced)
-    mbs.DeleteObject(ground)
-    with pytest.raises(ValueError, match="objects were deleted"):
-        body.marker("left")

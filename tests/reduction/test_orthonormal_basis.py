@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 from point_rotors import SKEW_AXIS, random_rotor
 
-from exudyn_rotor import ModeBasis
 from exudyn_rotor.reduction.basis import (
     OrthonormalBasis,
-    _all_at_once,
     gram_schmidt,
     rigid_columns,
 )
@@ -55,39 +53,3 @@ def test_columns_are_orthonormal_and_give_the_old_ones_back(rotor, new):
     back = found.matrix @ found.triangle + first.matrix @ found.first
     scales = SCALES[used]
     np.testing.assert_allclose(back / scales, columns[:, used] / scales, atol=EXACT)
-
-
-def test_only_columns_that_are_nearly_alike_are_taken_one_by_one(rotor):
-    first = of_rigid(rotor)
-    for new, at_once in [(1.0, True), (1e-3, True), (1e-6, False), (0.0, False)]:
-        columns = columns_nearly_alike(first, new)
-        given = (first.matrix, first.momenta), columns, rotor.mass
-        assert (_all_at_once(*given, TOLERANCE) is not None) == at_once
-        assert _all_at_once(*given, 0.99) is None  # a column would be dropped
-
-
-@pytest.mark.parametrize("new", [1.0, 1e-6, 0.0])
-def test_a_basis_may_be_extended_in_steps(rotor, new):
-    """Columns are Q = UW − R(RᵀMUW) with the modes U and their shares W."""
-    rigid = of_rigid(rotor)
-    columns = columns_nearly_alike(rigid, new)
-    labels = tuple("abcd")
-
-    def extended(basis, places):
-        modes = ModeBasis(columns[:, places], [labels[i] for i in places], rotor.nodes)
-        return basis.extended(modes, rotor.mass, rotor.stiffness, TOLERANCE)
-
-    once, steps = extended(rigid, range(4)), extended(extended(rigid, [0, 1]), [2, 3])
-    assert once.dropped == steps.dropped == (() if new else ("c",))
-    rounding = EXACT / max(new, 1e-3)
-    np.testing.assert_allclose(steps.stiffness, once.stiffness, rtol=rounding, atol=EXACT)
-    for basis in (once, steps):
-        Q, R = basis.matrix, rigid.matrix
-        np.testing.assert_allclose(Q.T @ (rotor.mass @ Q), np.eye(Q.shape[1]), atol=EXACT)
-        np.testing.assert_allclose(basis.momenta, rotor.mass @ Q, atol=10 * EXACT)
-        K = Q[:, 6:].T @ (rotor.stiffness @ Q[:, 6:])
-        np.testing.assert_allclose(K, np.diag(basis.stiffness[6:]), atol=EXACT * np.abs(K).max())
-        U = columns @ basis.from_modes
-        np.testing.assert_allclose(
-            U[:, 6:] - R @ (rigid.momenta.T @ U[:, 6:]), Q[:, 6:], atol=rounding
-        )

@@ -9,7 +9,7 @@ import pytest
 from models import ALUMINIUM, STEEL, two_material_cylinder
 from netgen.occ import Cylinder, Glue, OCCGeometry, Pnt, Z
 
-from exudyn_rotor import RigidDisc, SolidRotor, SpinAxis, Support, campbell
+from exudyn_rotor import SolidRotor, SpinAxis, Support, campbell
 
 HARD = {"youngsModulus": 2.1e15, "poissonsRatio": 0.3, "density": 7850.0}
 RADIUS, LENGTH = 0.02, 0.4
@@ -70,14 +70,6 @@ def test_interface_at_takes_the_outer_surface_of_a_band(axis):
     np.testing.assert_allclose(np.linalg.norm(axis.radial(end.positions), axis=1), 0.06, rtol=1e-9)
 
 
-def test_area_weights_of_a_band_are_those_of_its_surface():
-    """A rotation-free mean: the centre of an even cylinder is on its axis."""
-    seat = shaft().interface_at("seat", *BAND).interfaces["seat"]
-    np.testing.assert_allclose(seat.center[:2], 0.0, atol=0.02 * RADIUS)
-    assert seat.weights.min() > 0.0
-    assert np.ptp(seat.weights) > 0.5 * seat.weights.mean()  # corners and mid nodes differ
-
-
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -90,12 +82,6 @@ def test_area_weights_of_a_band_are_those_of_its_surface():
 def test_bands_that_hold_nothing_are_refused(arguments, words):
     with pytest.raises(ValueError, match=words):
         shaft().interface_at(*arguments)
-
-
-def test_a_rotor_without_a_surface_has_no_bands():
-    rotor = SolidRotor.from_matrices(np.eye(3), 1e6 * np.eye(3), [[0, 0, 0]], "z")
-    with pytest.raises(ValueError, match="no surface"):
-        rotor.interface_at("seat", 0.0, 0.1)
 
 
 def test_disc_adds_its_mass_and_moments():
@@ -158,37 +144,6 @@ def test_impossible_discs_are_refused(change, words):
         shaft().add_disc(**given)
 
 
-def test_discs_share_no_nodes():
-    rotor = shaft().add_disc(BAND[0], 1.0, (0.02, 0.02), BAND[1])
-    with pytest.raises(ValueError, match="shares nodes with the disc"):
-        rotor.add_disc(BAND[0] + 0.02, 1.0, (0.02, 0.02), BAND[1])
-
-
-def test_a_section_in_one_plane_takes_thin_discs_only():
-    ring = [[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]]
-    RigidDisc([0, 0, 0], 1.0, np.diag([1, 1, 2]), range(4), ring, 1e9)
-    with pytest.raises(ValueError, match="lie in one plane"):
-        RigidDisc([0, 0, 0], 1.0, np.diag([1.5, 1.5, 2]), range(4), ring, 1e9)
-    with pytest.raises(ValueError, match="on one line"):
-        RigidDisc([0, 0, 0], 1.0, np.diag([1, 1, 2]), [0, 2], ring[::2], 1e9)
-
-
-@pytest.mark.parametrize(
-    ("directions", "free"),
-    [
-        (None, 0),
-        ("axial", 3),
-        (["radial", "tangential"], 3),
-        ("tangential", 3),
-        (["radial"], 4),
-        (["z", "x"], 1),
-    ],
-)
-def test_clamps_hold_the_named_directions(directions, free):
-    """What stays free of a face across the axis."""
-    assert shaft().clamped("left", directions).rigid_motions == free
-
-
 @pytest.mark.parametrize(
     ("directions", "modulus"), [("axial", 2.1e11), (["radial", "tangential"], 2.1e11 / 2.6)]
 )
@@ -202,16 +157,6 @@ def test_waves_in_a_bar_held_in_one_direction(directions, modulus):
     frequencies = np.sqrt(np.diag(reduced.invariants.K)[len(reduced.rigid) :])
     expected = 0.5 * np.pi * np.sqrt(modulus / STEEL["density"]) / LENGTH
     assert np.min(np.abs(frequencies / expected - 1.0)) < 1e-3
-
-
-def test_unknown_directions_are_refused():
-    for wrong, words in (
-        (["w"], "directions"),
-        ([], "one or more"),
-        (["x", "axial"], "not of both"),
-    ):
-        with pytest.raises(ValueError, match=words):
-            shaft().clamped("left", wrong)
 
 
 def test_summary_names_materials_and_discs():

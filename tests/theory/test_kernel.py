@@ -7,15 +7,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from point_rotors import SKEW_AXIS, random_invariants, random_spd, ring_rotor
+from point_rotors import random_invariants, random_spd, ring_rotor
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
     Formulation,
     Motion,
     PrescribedMotion,
-    SpinAxis,
-    add_rotor,
     select_modes,
 )
 from exudyn_rotor.multibody.rotor.equations import Layout, user_function_object
@@ -99,49 +97,6 @@ def test_kernel_equals_the_plain_equations(formulation, seed, gravity, time):
         assert found == pytest.approx(slopes, abs=1e-12 * np.abs(slopes).max())
 
 
-@pytest.mark.parametrize("name", ["free spin, free", "prescribed spin, free", "free spin, shaken"])
-def test_kernel_knows_what_it_has_evaluated(name):
-    """Mass matrix and forces share products; in any order they are those of their arguments."""
-    motion = motion_of(FORMULATIONS[name], 5, 1.0)
-    used = Kernel(motion, range(motion.size), motion.size)
-    states = np.random.default_rng(8).normal(size=(4, 2, motion.size)).tolist()
-    for (q, q_t), (other, _), time in zip(states, states[::-1], (0.1, 0.2, 0.2, 0.3), strict=True):
-        used.forces(time, q, q_t)
-        used.mass_entries(0.5 * time, other)
-        used.forces(0.5 * time, other, q_t)
-        used.jacobian(0.5 * time, other, q_t, 1.0, 1.0)
-        used.forces(0.5 * time, q, q_t)  # the same place at another time
-        fresh = Kernel(motion, range(motion.size), motion.size)
-        mass = used.mass_entries(time, q).copy()
-        forces = used.forces(time, q, q_t).copy()
-        assert mass == pytest.approx(fresh.mass_entries(time, q), rel=1e-14)
-        assert forces == pytest.approx(fresh.forces(time, q, q_t), rel=1e-14)
-
-
-@pytest.mark.parametrize("translation", ["free", "in-plane"])
-def test_unknowns_may_stand_among_others(translation):
-    """With the frame in the centre of mass, translations have only their weight."""
-    invariants, _, _ = random_invariants(3, 3)
-    invariants = replace(invariants, center=np.zeros(3), S=np.zeros((3, 3)))
-    motion = Motion(
-        invariants,
-        Formulation(translation, "free"),
-        stiffening(invariants, "none"),
-        plane=SpinAxis(SKEW_AXIS).plane,
-        gravity=np.array([1.0, -2.0, 3.0]),
-    )
-    count = motion.formulation.translation_count
-    unknowns = np.array([*range(count), 5, 6, 7, 8])
-    kernel, constant = Kernel(motion, unknowns, 9), constant_part(motion)
-    q, q_t = np.random.default_rng(5).normal(size=(2, 9))
-    forces = kernel.forces(0.0, q.tolist(), q_t.tolist())
-    assert not forces[[i for i in range(9) if i not in unknowns]].any()
-    own, rate = q[unknowns], q_t[unknowns]
-    total = forces[unknowns] + constant.force - constant.stiffness @ own - constant.damping @ rate
-    assert total == pytest.approx(motion.forces(0.0, own, rate), rel=1e-12, abs=1e-12)
-    assert constant.force[:count] == pytest.approx(motion.weight)
-
-
 @pytest.mark.parametrize(
     "formulation",
     [
@@ -221,11 +176,6 @@ def test_bad_settings_are_refused(arguments, message):
         recommended_settings(*arguments)
 
 
-def test_bad_accuracy_is_refused():
-    with pytest.raises(ValueError, match="accuracy: needs a finite number > 0 and < 1"):
-        recommended_settings(1.0, 1e-3, accuracy=2.0)
-
-
 def test_negligible_decides_what_is_evaluated():
     """A slight unbalance stays by default, and goes where the caller takes it for nothing."""
     rotor = ring_rotor(0.1, 0.2, 5.0).add_point_mass([0.1, 0.0, 0.2], 1e-5)
@@ -239,10 +189,3 @@ def test_negligible_decides_what_is_evaluated():
     assert not np.any(gone.h)
     with pytest.raises(ValueError, match="negligible: needs"):
         select_modes(reduced, fixed, negligible=1.0)
-
-
-def test_one_word_sets_the_kind_of_all_markers():
-    rotor = ring_rotor(0.1, 0.2, 5.0).with_interface("end", range(5)).reduce(2)
-    mbs = exudyn.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor, markers="position")
-    assert mbs.GetMarker(body.marker("end"))["markerType"] == "SuperElementPosition"

@@ -591,8 +591,10 @@ def named(found: Sequence[Resonance], content: Content) -> tuple[list[Resonance]
         vectors = vectors / np.linalg.norm(vectors, axis=(0, 1))
         # all frequencies go with the speed, so that one speed stands for all
         values = np.full(len(places), 1j * center)
-        names = content.named(Motions(1.0, values, vectors, orders, 0.0), apart=True)
-        codes[places], diameters[places], rotor[places] = names.codes, names.diameters, names.rotor
+        given = values[None], vectors[None], orders, np.zeros(1)
+        names = content.named(Motions(np.ones(1), *given), apart=True)
+        codes[places], diameters[places] = names.codes[0], names.diameters[0]
+        rotor[places] = names.rotor[0]
     ascending = np.argsort([one.speed for one in found], kind="stable")
     senses = signed_diameters(codes, diameters)[ascending]
     groups = same_speed([found[i].speed for i in ascending])
