@@ -96,8 +96,8 @@ def test_unbalance_response_with_a_moving_frame():
     for model in (linear_model(mbs, body=body), linear_model(rings(), supports=supports)):
         model = model.for_responses
         load = {n: SPEED**2 * each for n, each in model.unbalance().items()}
-        [x] = forced_motions([model.at(SPEED)], [load], [0.0], held=model.held_basis)
-        motions.append(model.seen("right")[1] @ x[0])
+        x = forced_motions(model.at(SPEED), load, [0.0], held=model.held_basis)
+        motions.append(model.seen("right")[1] @ x[0][0])
     np.testing.assert_allclose(motions[0], motions[1], atol=1e-7 * np.abs(motions[1]).max())
 
 
