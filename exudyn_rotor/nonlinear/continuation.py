@@ -212,15 +212,24 @@ class Family:
 
     # ------------------------------------------------------------ a branch
 
-    def followed(self, start: Point, values: np.ndarray, sense: float) -> Iterator[Point]:
-        """Yield the points of a branch from a solution on, until it leaves the range of values."""
+    def followed(
+        self,
+        start: Point,
+        values: np.ndarray,
+        sense: float = 1.0,
+        limits: tuple[float, float] | None = None,
+    ) -> Iterator[Point]:
+        """Yield the points of a branch from a solution on, until it leaves its limits.
+
+        These are the first and the last value by default.
+        """
         c = start.c
         if start.tangent is None:
             up = np.zeros_like(c), np.eye(len(start.p))[-1] * sense / self.spans
             start = self.with_tangent(start, up)
         point, step = self.measure(start), _FIRST
         yield point
-        low, high = values[0], values[-1]
+        low, high = limits or (values[0], values[-1])
         for _ in range(_MOST_POINTS):
             try:
                 after, step = self._next(point, step)
@@ -245,7 +254,8 @@ class Family:
             except (UnconvergedError, np.linalg.LinAlgError, ArithmeticError, ValueError):
                 step *= 0.5
                 continue
-            row = self._row(point.tangent, point.c)
+            like = self.widened(point, after.balance.reach).tangent
+            row = self._row(like, point.c)
             turn = np.vdot(row[0], after.tangent[0]).real + row[1] @ after.tangent[1]
             if turn < _TURN and step > _SMOOTH:
                 step *= 0.5

@@ -58,11 +58,20 @@ class Unloaded:
         Interfaces of the laws.
     speed : float
         Ω [rad/s].
+    standing : LinearModel, optional
+        The same in axes that stand still, of a round rotor: there what laws do to motions beside a
+        steady one changes little, and not at all on a circle.
     """
 
     model: LinearModel
     names: Sequence[str]
     speed: float
+    standing: LinearModel | None = None
+
+    @cached_property
+    def for_stability(self) -> Unloaded:
+        """The rest in axes that stand still, if it can be."""
+        return Unloaded(self.standing, self.names, self.speed) if self.standing else self
 
     @cached_property
     def basis(self) -> np.ndarray:

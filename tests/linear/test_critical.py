@@ -272,8 +272,6 @@ def test_critical_speeds_are_looked_for_from_where_tables_begin(begins, found, i
         result = critical_speeds(model, max_speed=most, nodal_diameters=[1], accuracy=None)
     # forward and backward; scenes are linearised by differences
     np.testing.assert_allclose(result.speeds, 2 * found * [100.0], rtol=1e-6)
-    if in_scene:
-        return
     # beyond the end of a table the rest counts
     with pytest.warns(UserWarning, match=r"critical speeds: none are looked for .* to 110 rad/s"):
         beyond = critical_speeds(model, max_speed=110.0, nodal_diameters=[1], accuracy=None)

@@ -157,6 +157,23 @@ def _static(A: np.ndarray, F: np.ndarray, driven: np.ndarray | None) -> np.ndarr
     return scale * X
 
 
+def static_motion(A: np.ndarray, load: np.ndarray, driven: np.ndarray | None = None) -> np.ndarray:
+    """Return the motion (k,) under a constant load; free motions that it does not act on rest.
+
+    NaN where it acts on a motion that nothing holds.
+
+    Parameters
+    ----------
+    A : ndarray, shape (k, k)
+        Stiffness.
+    load : ndarray, shape (k,)
+    driven : ndarray, shape (k, d), optional
+        Momenta of motions that a drive keeps at zero.
+    """
+    driven = None if driven is None or not driven.shape[1] else driven
+    return _static(A[None], load[None, :, None], driven)[0, :, 0]
+
+
 def _beside_free(A: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Return motions (k, c) without those that nothing resists; NaN of loads on these."""
     U, values, Vh = np.linalg.svd(A)

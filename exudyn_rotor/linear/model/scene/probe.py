@@ -18,7 +18,7 @@ from exudyn_rotor.bearings.held_law import (
     TangentFilm,
     TangentShortFilm,
 )
-from exudyn_rotor.bearings.support import BelowTableError
+from exudyn_rotor.bearings.support import NoCoefficientsError
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.differences import (
     CURVATURE,
@@ -235,7 +235,7 @@ class Probe:
         try:  # the rotor's own object has none while it is probed
             self.solver.ComputeODE2RHS(self.mbs)
         except ValueError as error:  # Exudyn's, from what a support's function raised
-            if isinstance(error.__cause__, BelowTableError | MovingJournalError):
+            if isinstance(error.__cause__, NoCoefficientsError | MovingJournalError):
                 raise error.__cause__ from None
             raise
         total = np.array(self.solver.GetSystemResidual())[: len(q)]
