@@ -22,6 +22,8 @@ from valid_calls import CALLS, MADE, RETURNED, SCENES, SHARED, USUAL
 
 import exudyn_rotor as er
 
+pytestmark = pytest.mark.filterwarnings("ignore")
+
 ALL = os.environ.get("EXUDYN_ROTOR_BAD_CALLS") == "all"
 SAMPLE = {"valid": 20, "wrong": 250}  # of some hundreds, and some thousands
 
