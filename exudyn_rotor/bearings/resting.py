@@ -17,8 +17,7 @@ from typing import ClassVar
 import numpy as np
 
 from exudyn_rotor.bearings.bearing import Bearing
-from exudyn_rotor.bearings.held_law import tangent_of
-from exudyn_rotor.bearings.journal_bearing import JournalBearing
+from exudyn_rotor.bearings.journal_bearing import JournalBearing, tangent_of
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.rolling import RollingBearing, contacts
 from exudyn_rotor.bearings.short_journal import ShortJournalBearing

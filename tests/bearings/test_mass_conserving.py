@@ -75,7 +75,7 @@ def test_small_motion_in_a_scene_decays_as_the_linear_film_says():
     """Exponent of the film's Z(s) with voids by steps; the integrator slows by (sh)²/12."""
     reduced = rotor()
     supports = bearings(reduced)
-    mbs, body, (sensor, *_) = scene(reduced, supports, spin=SPEED)
+    mbs, body, sensor = scene(reduced, supports, spin=SPEED)
     body.start_from(steady_state(body).state())
     state = supports[0]._state(SPEED, None)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -16,7 +15,6 @@ from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.callers import user_level
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.basis_error import NOT_KNOWN, in_table, is_known, points
@@ -31,6 +29,7 @@ from exudyn_rotor.linear.modal.resonance import NO_EQUATIONS, Search, Stiffness
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, Content
 from exudyn_rotor.linear.model.build import linear_model, warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
+from exudyn_rotor.linear.over import warn_of_refused
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.solid_rotor import SolidRotor
@@ -285,7 +284,7 @@ def critical_speed_map(
     search = Search(Stiffness(first, unit), Content.of(first), *given, tolerance, error)
     judged = set() if accuracy is None else set(points(len(values)).tolist())
     solved: list[CriticalSpeeds | None] = []
-    failed: dict[float, Exception] = {}
+    failed: list[tuple[str, Exception]] = []
     for row, stiffness in enumerate(tqdm(values, "critical speed map", disable=not progress)):
         model = first
         if row in judged:
@@ -293,18 +292,10 @@ def critical_speed_map(
         try:
             found = search.resonances(stiffness - values[0])
             solved.append(collected(found, search, model, row in judged))
-        except (*NO_EQUATIONS, np.linalg.LinAlgError) as error:
+        except ValueError as error:  # as of a support whose stiffness is negative
             solved.append(None)
-            failed[float(stiffness)] = error
-    if len(failed) == len(values):
-        raise next(iter(failed.values()))
-    if failed:
-        shown = ", ".join(f"{stiffness:.4g}" for stiffness in failed)
-        warnings.warn(
-            f"no values at {shown} N/m, which are NaN: {next(iter(failed.values()))}",
-            UserWarning,
-            stacklevel=user_level(),
-        )
+            failed.append((f"{stiffness:.4g} N/m", error))
+    warn_of_refused(failed, len(values))
     search.warn()
     result = _collected(values, solved, curve, max_speed, is_known(first, accuracy))
     if np.any(result.speeds > 0.0):

@@ -19,7 +19,7 @@ from exudyn_rotor.bearings.controlled_support import (
     PadSupport,
 )
 from exudyn_rotor.bearings.given import linear_supports
-from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.bearings.support import OutsideTableError, Support
 from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.linear.equations import (
     Terms,
@@ -180,7 +180,14 @@ def support_element(
     """
 
     def matrices(speed: float) -> tuple[np.ndarray, np.ndarray]:
-        support.check_range(rate * speed)
+        try:
+            support.check_range(rate * speed)
+        except OutsideTableError as error:
+            if rate == 1.0:
+                raise
+            raise OutsideTableError(
+                f"{error}; it turns with {rate:g} times the speed of the analysis, {speed:g} rad/s"
+            ) from None
         return support.matrices(rate * speed)
 
     speeds = support.table_speeds / rate if rate else np.zeros(0)
