@@ -45,7 +45,11 @@ def rotor(attached: bool) -> ReducedRotor:
     return replace(
         made,
         invariants=replace(
-            made.invariants, K2=square + square.T, B=square @ square.T, H=0.1 * made.invariants.K
+            made.invariants,
+            K2=square + square.T,
+            B=square @ square.T,
+            H=0.1 * made.invariants.K,
+            K0=square + square.T,
         ),
         shapes=replace(made.shapes, stress=RNG.normal(size=(count, 6, size))),
         centrifugal=Centrifugal(
