@@ -37,6 +37,7 @@ from exudyn_rotor import (
     select_modes,
     separation_margins,
     stability_level_one,
+    static_response,
     steady_state,
     stress_history,
     unbalance_response,
