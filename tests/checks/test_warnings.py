@@ -312,7 +312,7 @@ PLACES = {
     "linear/modal/resonance.py:warn": (
         critical_speeds_below_a_table, UserWarning, "none are looked for"),
     "linear/response/steady_response.py:_warn_of_missing": (
-        response_below_a_table, UserWarning, "no steady motion at .* NaN there"),
+        response_below_a_table, UserWarning, "no values at 10 rad/s, which are NaN"),
     "solid/units.py:check_model_units": (
         small_rotor_in_millimetres, UserWarning, "few rotors are that heavy; lengths in mm"),
     "solid/ngsolve_model.py:_prepare_mesh": (
