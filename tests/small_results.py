@@ -15,7 +15,6 @@ from exudyn_rotor import (
     MotionShapes,
     PeriodicResponse,
     ReducedRotor,
-    RollingBearingResponse,
     Sensitivity,
     SeparationMargins,
     Spectra,
@@ -24,6 +23,7 @@ from exudyn_rotor import (
     StabilityLevelOne,
     StabilityMap,
     StabilityThresholds,
+    StaticResponse,
     StressField,
     StressHistory,
     UnbalanceResponse,
@@ -45,7 +45,11 @@ def rotor(attached: bool) -> ReducedRotor:
     return replace(
         made,
         invariants=replace(
-            made.invariants, K2=square + square.T, B=square @ square.T, H=0.1 * made.invariants.K
+            made.invariants,
+            K2=square + square.T,
+            B=square @ square.T,
+            H=0.1 * made.invariants.K,
+            K0=square + square.T,
         ),
         shapes=replace(made.shapes, stress=RNG.normal(size=(count, 6, size))),
         centrifugal=Centrifugal(
@@ -66,14 +70,10 @@ def results() -> list:
                  np.array([[0, 1], [1, 0], [0, 1]]), codes < 2,
                  ("spin",), "full"),
         CriticalSpeeds(1.0, speeds, speeds, ("forward", "backward", "mixed"), np.array([1, 1, -1]),
-                       RNG.normal(size=(4, 3)) + 0j, "tilt"),
-        CriticalSpeedMap(speeds, table, codes, 1.0, "none"),
+                       RNG.normal(size=(4, 3)) + 0j, stiffening="tilt"),
+        CriticalSpeedMap(speeds, table, codes, 1.0, stiffening="none"),
         UnbalanceResponse(("left", "node 2"), np.array([1]), motion, "inertial", speeds),
         HarmonicResponse(("left", "node 2"), np.array([0]), motion, "rotor", speeds, 90.0),
-        RollingBearingResponse(
-            ("left", "node 2"), speeds, np.array([[0, 0], [1, -1]]), np.repeat(motion, 2, axis=2),
-            3.3, ("left", "right"), table, table - 1.0, *[speeds] * 4, np.array([[0, 1], [2, -3]]),
-            coordinates=RNG.normal(size=(3, 2, 5)) + 1j, basis="rotor"),
         PeriodicResponse(
             ("left", "node 2"), speeds, [0, 0, 1], ("value", "fold", "computed"), speeds,
             np.column_stack([speeds, 0.5 * speeds]), [[0, 0], [1, -1]],
@@ -92,6 +92,12 @@ def results() -> list:
         MotionShapes(RNG.normal(size=(4, 3)), np.array(TRIANGLES), [0.0, 0.0, 1.0], np.zeros(3),
                      speeds, ("a", "b", "c"), speeds, speeds, np.array([-2, 0]),
                      RNG.normal(size=(3, 2, 12)) + 1j),
+        StaticResponse(
+            ("left", "node 2"), motion[:2, 0, 0].real, ("left", "right"),
+            *RNG.normal(size=(2, 2, 6)), *RNG.normal(size=(2, 2)), np.eye(3), 90.0,
+            basis_errors=np.zeros(2), nodes=RNG.normal(size=(4, 3)),
+            displacement=RNG.normal(size=(4, 3)), along=np.arange(4.0),
+            triangles=np.array(TRIANGLES), stress=RNG.normal(size=(4, 6))),
         Sensitivity(("left, 1", "left, 2"), speeds, table.T + 1j, 90.0),
         Spectra(speeds, speeds, speeds[:2], table),
         StressField(RNG.normal(size=(4, 3)), np.array(TRIANGLES), RNG.normal(size=(4, 6, 2)),

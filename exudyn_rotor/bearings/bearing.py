@@ -161,15 +161,15 @@ class Bearing(LoadedBearing):
         force, slopes = np.empty((len(motion), 2)), np.empty((len(motion), 2, 4))
         for row, (state, angle) in enumerate(zip(motion, angles.tolist(), strict=True)):
             force[row] = law(*state.tolist(), angle, speed)
-            for column, step in enumerate(steps):
-                less, more = state.copy(), state.copy()
-                less[column] -= step
-                more[column] += step
-                change = np.subtract(
-                    law(*less.tolist(), angle, speed), law(*more.tolist(), angle, speed)
-                )
-                slopes[row, :, column] = change / (2.0 * step)
+            slopes[row] = differenced(law, state, steps, angle, speed)
         return force, slopes
+
+    def slopes(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """For scenes: less the derivatives (2, 2) of :attr:`law` by place and by velocity."""
+        found = self._along(np.array([[x, y, vx, vy]]), np.array([angle]), speed)[1][0]
+        return found[:, :2], found[:, 2:]
 
     @abstractmethod
     def coefficients(
@@ -267,3 +267,18 @@ def by_tangent(
     inside = force((most - step) * ex, (most - step) * ey)
     beyond = (eccentricity - most) / step
     return tuple(f + beyond * (f - g) for f, g in zip(edge, inside, strict=True))
+
+
+def differenced(
+    law: Callable[..., tuple[float, ...]],
+    motion: np.ndarray,
+    steps: np.ndarray,
+    angle: float,
+    speed: float,
+) -> np.ndarray:
+    """Return less the central differences (2, 4) of a law's force by place and velocity (4,)."""
+    ends = [
+        [law(*(motion + move).tolist(), angle, speed)[:2] for move in (-each, each)]
+        for each in np.diag(steps)
+    ]
+    return np.array([np.subtract(*pair) for pair in ends]).T / (2.0 * steps)

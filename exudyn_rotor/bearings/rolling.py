@@ -48,9 +48,8 @@ class RollingBearing(Bearing):
     """Radial bearing with balls or rollers.
 
     Linear analyses take the mean of its stiffness, in the equilibria under the load, over the
-    passage of one element; :func:`rolling_bearing_response` takes the contacts as they are, and
-    gives the error of linear equations. A scene with it does not repeat with every revolution:
-    :func:`steady_state` holds the cage where it starts.
+    passage of one element; :func:`periodic_response` takes the contacts as they are. A scene with
+    it does not repeat with every revolution: :func:`steady_state` holds the cage where it starts.
 
     Parameters
     ----------

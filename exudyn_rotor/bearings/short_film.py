@@ -31,7 +31,6 @@ F. W. Ocvirk, NACA TN 2808 (1952); G. Capone, L'Energia Elettrica 68 (1991).
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from dataclasses import dataclass
 from math import atan, hypot, pi, sqrt
 
@@ -208,18 +207,3 @@ class ShortFilmBearing(Bearing):
             out = ~inside
             force[out], slopes[out] = super()._along(motion[out], angles[out], speed)
         return force, slopes
-
-    @abstractmethod
-    def _law_tangent(self, motion: np.ndarray, speed: float) -> Tangent | None:
-        """Return stiffness [N/m] and damping [N s/m] of the law, each (2, 2).
-
-        None outside the film. `motion` (4,) is displacement and velocity [m], [m/s].
-        """
-
-    def _film_tangent(self, motion: np.ndarray, speed: float, spin: float) -> Tangent | None:
-        """Return the tangent of a film that turns with `speed`, of a rotor with that of `spin`."""
-        x, y, vx, vy = motion / self.clearance
-        if hypot(x, y) > THINNEST:
-            return None
-        found = self._size / self.clearance * film_tangent(x, y, vx, vy, speed, _REST * abs(spin))
-        return found[:, :2], found[:, 2:]

@@ -22,6 +22,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy.linalg
 
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.rolling import RollingBearing
@@ -32,6 +33,7 @@ _PER_WAVE = 8  # points of the grid in the shortest wave
 _FEWEST = 32  # points over a phase
 _MOST_ITERATIONS = 30
 _LEAST_SHARE = 1.0 / 64.0  # of a step of Newton's method
+_FREE = 1e-9  # share of the springs k₀ that counts as no stiffness
 _STILL = 1e-12  # of the size of a motion: none
 
 
@@ -225,6 +227,15 @@ class Balance:
         """Return the harmonics (k,) of all coordinates of the rest, of both signs."""
         g = self.spectrum(self.forces(c)[0])[self._places]
         return self.rest.coordinates(g, self.orders)
+
+    def holds(self, c: np.ndarray) -> bool:
+        """Return whether laws and rest hold the mean place of a motion: not in a clearance."""
+        slopes = self.forces(c)[1].mean(axis=0)[..., :2]
+        mean = scipy.linalg.block_diag(*slopes)
+        K, N = self.reach
+        rows, _, H = self.receptances[0]
+        H = H[list(rows).index(K * (2 * N + 1) + N)]
+        return bool(np.linalg.norm(np.eye(len(mean)) - H @ mean, -2) > _FREE)
 
     # ------------------------------------------------------------ errors
 

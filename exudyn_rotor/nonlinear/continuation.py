@@ -212,15 +212,24 @@ class Family:
 
     # ------------------------------------------------------------ a branch
 
-    def followed(self, start: Point, values: np.ndarray, sense: float) -> Iterator[Point]:
-        """Yield the points of a branch from a solution on, until it leaves the range of values."""
+    def followed(
+        self,
+        start: Point,
+        values: np.ndarray,
+        sense: float = 1.0,
+        limits: tuple[float, float] | None = None,
+    ) -> Iterator[Point]:
+        """Yield the points of a branch from a solution on, until it leaves its limits.
+
+        These are the first and the last value by default.
+        """
         c = start.c
         if start.tangent is None:
             up = np.zeros_like(c), np.eye(len(start.p))[-1] * sense / self.spans
             start = self.with_tangent(start, up)
         point, step = self.measure(start), _FIRST
         yield point
-        low, high = values[0], values[-1]
+        low, high = limits or (values[0], values[-1])
         for _ in range(_MOST_POINTS):
             try:
                 after, step = self._next(point, step)
@@ -245,7 +254,8 @@ class Family:
             except (UnconvergedError, np.linalg.LinAlgError, ArithmeticError, ValueError):
                 step *= 0.5
                 continue
-            row = self._row(point.tangent, point.c)
+            like = self.widened(point, after.balance.reach).tangent
+            row = self._row(like, point.c)
             turn = np.vdot(row[0], after.tangent[0]).real + row[1] @ after.tangent[1]
             if turn < _TURN and step > _SMOOTH:
                 step *= 0.5
@@ -268,14 +278,18 @@ class Family:
 
     # ------------------------------------------------------------ between two points
 
-    def _between(self, first: Point, second: Point, share: float) -> Point:
-        """Return the solution at a share of the way between two."""
+    def _chord(self, first: Point, second: Point, share: float) -> tuple[Point, tuple]:
+        """Return the point at a share of the way between two, no solution yet, and that way."""
         reach = tuple(map(max, zip(first.balance.reach, second.balance.reach, strict=True)))
         a, b = self.widened(first, reach), self.widened(second, reach)
         chord = b.c - a.c, b.p - a.p
         p = a.p + share * chord[1]
         start = replace(b, c=a.c + share * chord[0], p=p, balance=self.balance(p, reach))
-        row = self._row(chord, a.c)
+        return start, self._row(chord, a.c)
+
+    def _between(self, first: Point, second: Point, share: float) -> Point:
+        """Return the solution at a share of the way between two."""
+        start, row = self._chord(first, second, share)
         return self.with_tangent(self.corrected(start, row)[0], row)
 
     def _changes(self, first: Point, second: Point) -> list[Point]:
@@ -308,8 +322,7 @@ class Family:
         up = values[(values > a) & (values <= b)]
         for value in up if a < b else values[(values < a) & (values >= b)][::-1]:
             try:
-                share = (value - a) / (b - a)
-                near = self._between(first, second, share) if share < 1.0 else second
+                near = self._chord(first, second, (value - a) / (b - a))[0]
                 found = self.refined(self.at_value(near, value))
                 found = self.measure(replace(found, kind="value"))
             except (UnconvergedError, ValueError, ArithmeticError, np.linalg.LinAlgError):

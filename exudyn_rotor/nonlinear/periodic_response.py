@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -34,6 +35,10 @@ from exudyn_rotor.threads import one_thread
 _LABELS = {"speed": "spin speed [rad/s]", "unbalance": "unbalance"}
 _MOST = (24, 48)  # harmonics of the second phase, and of the spin in a revolution
 _MOST_WITH_PASSES = 24  # harmonics of the spin beside the ball pass
+_NOT_HELD = (
+    "in its clearance nothing holds the rotor, which may stand anywhere there; give a load across "
+    "the axis, or an unbalance"
+)
 _FAILS = (UnconvergedError, NoCoefficientsError, ArithmeticError, np.linalg.LinAlgError)
 Over = str | Callable[[float], Sequence[Given] | Given]
 
@@ -159,11 +164,12 @@ def periodic_response(
             if value not in known:
                 if len(known) > 3:
                     known.pop(next(iter(known)))
-                known[value] = make(given_supports(over(value)), speed=speed)
+                known[value] = make(given_supports(over(value)), speed=speed, highest=speed)
             return known[value]
     else:
         highest = values[-1] if over == "speed" else speed
-        one = make(given_supports(supports), speed=highest)
+        lowest = next(iter(values[values > 0.0]), 0.0) if over == "speed" else speed
+        one = make(given_supports(supports), speed=lowest, highest=highest)
         if not one.laws.bearings:
             raise ValueError(
                 "supports: none has a nonlinear law; unbalance_response takes linear ones"
@@ -182,8 +188,9 @@ def periodic_response(
         return problem_at(value).balance(speed, reach, **changes)
 
     first = problem_at(float(values[0]))
+    span = np.array([np.ptp(values) or abs(values[0]) or 1.0])
     family = Family(
-        balance, np.array([np.ptp(values) or abs(values[0])]), _size(first), _measured, tolerance,
+        balance, span, size_of(first), _measured, tolerance,
         (_MOST[0], _MOST_WITH_PASSES if first.laws.passes else _MOST[1] * revolutions),
     )  # fmt: skip
     with one_thread():
@@ -191,7 +198,7 @@ def periodic_response(
         if branches is None:
             branches = [_one_by_one(family, problem_at, values)]
         found = [point for branch in branches for point in branch]
-        _warn(family, found)
+        warn_of(family, found, follow)
         numbers = np.repeat(np.arange(len(branches)), [len(each) for each in branches])
         label = _LABELS.get(over, "parameter") if isinstance(over, str) else "parameter"
         return collected(found, numbers, label, asked)
@@ -211,7 +218,7 @@ def _checked_parameter(
     return checks.ascending(values, "values"), checks.number(speed, "speed", "rad/s", least=0.0)
 
 
-def _size(problem: Problem) -> float:
+def size_of(problem: Problem) -> float:
     """Return the size of a motion that matters [m]: a clearance, or that of the loads."""
     gaps = [one.clearance_along() for one in problem.laws.bearings]
     gaps = [gap for gap in gaps if np.isfinite(gap)]
@@ -220,8 +227,6 @@ def _size(problem: Problem) -> float:
 
 def _measured(point: Point) -> Point:
     """Return a point with what motions beside it do."""
-    from dataclasses import replace
-
     growth, multiplier = Beside(point.balance, point.c).growth()
     return replace(point, growth=growth, multiplier=multiplier)
 
@@ -238,7 +243,10 @@ def _first(family: Family, problem: Problem, value: float) -> Point:
     for balance, c in problem.starts(lambda reach, **more: family.balance(p, reach, **more)):
         try:
             start = Point(balance.solved(c), p, family.balance(p, balance.reach), kind="value")
-            return family.refined(start)
+            start = family.refined(start)
+            if start.balance.holds(start.c):
+                return start
+            lost = UnconvergedError(_NOT_HELD)
         except _FAILS as failed:
             lost = failed
     raise lost
@@ -289,8 +297,16 @@ def _one_by_one(
     return found
 
 
-def _warn(family: Family, found: Sequence[Point]) -> None:
+def warn_of(family: Family, found: Sequence[Point], follow: bool = True) -> None:
+    """Tell what is lost, lacking, or, unless branches are followed, unstable."""
     told = []
+    unstable = [f"{one.value:g}" for one in found if one.growth > 0.0]
+    if unstable and not follow:
+        shown = ", ".join(unstable[:5]) + ", …" * (len(unstable) > 5)
+        told.append(
+            f"at {len(unstable)} of {len(found)} values ({shown}) the motion is unstable; the "
+            "rotor moves otherwise, which a run shows"
+        )
     if family.lost:
         shown = ", ".join(family.lost[:5]) + ", …" * (len(family.lost) > 5)
         told.append(f"no steady motion was found at, or a branch is lost beyond, {shown}")

@@ -35,6 +35,7 @@ _INSIDE = 0.5  # of a clearance, where a film has that of k₀
 _SAME_PASS = 1e-9  # relative distance of ball pass frequencies that is rounding
 _DAMPING = (1.0, 0.1)  # of k₀ over the frequency, with which a search begins
 _SHARES = np.linspace(0.1, 1.0, 10)  # of the loads, by which they grow
+_MORE_UNBALANCE = 2.0 ** np.arange(6.0, -0.5, -0.5)
 _ROUGH = 1e-3
 _RESTS = 4  # speeds
 _SMALL = 1e-9  # share of the largest load that counts as none along the axis
@@ -102,6 +103,8 @@ class Problem:
     ----------
     model : LinearModel
         With springs and dampers in place of the laws.
+    standing : LinearModel or None
+        The same in axes that stand still.
     laws : Laws
     static : mapping of int to ndarray (k,)
         Harmonics of θ, both signs, of gravity and constant forces.
@@ -111,6 +114,7 @@ class Problem:
     """
 
     model: LinearModel
+    standing: LinearModel | None
     laws: Laws
     static: Mapping[int, np.ndarray]
     unbalance: Mapping[int, np.ndarray]
@@ -130,27 +134,27 @@ class Problem:
         foundation: Foundation | None,
         stiffening: str,
         speed: float,
+        highest: float,
         revolutions: int = 1,
-        stands: bool = False,
     ) -> Problem:
-        """Return the equations of a rotor; `speed` is the highest.
+        """Return the equations of a rotor at speeds from a lowest one on that is not 0, if any.
 
         In axes in which the rest is constant: those of the rotor, in which nothing is averaged, if
-        it can be; axes that stand still if `stands`.
+        it can be.
 
         Raises
         ------
         ValueError
         """
         bearings, linear = parted(given)
-        springs, dampers = springs_of(bearings, speed)
+        springs, dampers = springs_of(bearings, highest)
         stand_ins = [
             Support(one.interface, k, d)
             for one, k, d in zip(bearings, springs[::2], dampers[::2], strict=True)
         ]
         options = {"foundation": foundation, "stiffening": stiffening}
         model = linear_model(target, supports=[*stand_ins, *linear], **options)
-        model = _constant(model, speed or 1.0, stands)
+        model, standing = _constant(model, speed or 1.0)
         _check_held(model, given)
         weight = parts_across(axes_of(next(iter(model.rotors.values())).axis), gravity)
         steady = [*([BaseAcceleration(-weight)] if np.any(weight) else []), *loads]
@@ -163,8 +167,13 @@ class Problem:
                 raise
             unbalance = {}
         unbalance = {n: F for n, F in of_both_signs(unbalance).items() if np.any(F)}
+        if passes_of(bearings) and not unbalance and not any(map(np.any, static.values())):
+            raise ValueError(
+                "gravity, loads, unbalances: need one across the axis that is not zero: without a "
+                "load no element carries, and preloaded ones do not move"
+            )
         laws = Laws(bearings, springs, dampers, passes_of(bearings))
-        return cls(model, laws, static, unbalance, revolutions)
+        return cls(model, standing, laws, static, unbalance, revolutions)
 
     @property
     def reach(self) -> tuple[int, int]:
@@ -179,17 +188,18 @@ class Problem:
         *,
         unbalance: float = 1.0,
         share: float = 1.0,
+        more: float = 1.0,
         whirl: float | None = None,
         damper: float = 0.0,
     ) -> Balance:
         """Return the equations at a speed.
 
-        With so much of the unbalance, with a share of all loads, and with a frequency of the
-        second phase other than that of the ball pass [rad/s].
+        With a factor of the unbalance, times `more`, with a share of all loads, and with a
+        frequency of the second phase other than that of the ball pass [rad/s].
         """
         loads = {n: share * F for n, F in self.static.items()}
         for n, F in self.unbalance.items():
-            loads[n] = loads.get(n, 0.0) + share * unbalance * speed**2 * F
+            loads[n] = loads.get(n, 0.0) + share * more * unbalance * speed**2 * F
         first = self.laws.passes * speed if whirl is None else whirl
         rates = first, speed / self.revolutions
         rest = Rest(self._unloaded(speed), rates, self.revolutions, loads)
@@ -201,7 +211,7 @@ class Problem:
             while len(self._rests) >= _RESTS:
                 self._rests.pop(next(iter(self._rests)))
             names = [one.interface for one in self.laws.bearings]
-            self._rests[speed] = Unloaded(self.model, names, speed)
+            self._rests[speed] = Unloaded(self.model, names, speed, self.standing)
         return self._rests[speed]
 
     # ------------------------------------------------------------ where a search begins
@@ -233,20 +243,36 @@ class Problem:
             yield balance, c
         except (UnconvergedError, np.linalg.LinAlgError):
             pass
-        fastest = max(np.abs(balance.nu).max(), 1.0)
-        for most in (_SHARES, ()):
+        for way in (self._by_more_loads, self._by_less_damping, self._by_less_unbalance):
             try:
-                c = 0.0 * balance.given
-                for share in most:  # loads that grow
-                    c = of(self.reach, share=share).solved(c, _ROUGH)
-                if not len(most):  # damping that is taken away
-                    c = self._pressed(balance)
-                    for part in _DAMPING:
-                        more = part * self.laws.springs.max() / fastest
-                        c = of(self.reach, damper=more).solved(c, _ROUGH)
+                c = way(of)
             except UnconvergedError:
                 continue
-            yield balance, c
+            yield of(self.reach), c
+
+    def _by_more_loads(self, of: Callable[..., Balance]) -> np.ndarray:
+        c = 0.0 * of(self.reach).given
+        for share in _SHARES:
+            c = of(self.reach, share=share).solved(c, _ROUGH)
+        return c
+
+    def _by_less_damping(self, of: Callable[..., Balance]) -> np.ndarray:
+        balance = of(self.reach)
+        c, fastest = self._pressed(balance), max(np.abs(balance.nu).max(), 1.0)
+        for part in _DAMPING:
+            more = part * self.laws.springs.max() / fastest
+            c = of(self.reach, damper=more).solved(c, _ROUGH)
+        return c
+
+    def _by_less_unbalance(self, of: Callable[..., Balance]) -> np.ndarray:
+        """Return the whirl that a larger one becomes: of rotors that unbalance alone presses."""
+        if not self.unbalance:
+            raise UnconvergedError("no unbalance")
+        c = None
+        for more in _MORE_UNBALANCE:
+            balance = of(self.reach, more=more)
+            c = balance.solved(self._pressed(balance) if c is None else c, _ROUGH)
+        return c
 
     def _pressed(self, balance: Balance) -> np.ndarray:
         """Return harmonics of a motion in which each load is on one element, wherever it is."""
@@ -282,24 +308,27 @@ def _resting(one: Bearing, speed: float, load: np.ndarray) -> np.ndarray:
         return np.zeros(2)
 
 
-def _constant(model: LinearModel, speed: float, stands: bool) -> LinearModel:
-    """Return a model whose equations are constant."""
-    for one in () if stands else (model.for_responses,):
-        if one.at(speed).is_constant:
-            return one
-    if not model.at(speed).is_constant or (stands and model.turns):
+def _constant(model: LinearModel, speed: float) -> tuple[LinearModel, LinearModel | None]:
+    """Return a model whose equations are constant, and one in axes that stand still."""
+    constant = model.at(speed).is_constant
+    standing = model if constant and not model.turns else None
+    turning = model.for_responses
+    if turning.at(speed).is_constant:
+        return turning, standing
+    if not constant:
         raise ValueError(
-            "target, supports: an uneven rotor on uneven linear supports, or with a whirl of its "
-            "own frequency, has equations that repeat every revolution; give a finer mesh, or "
-            "supports that are alike in all directions"
+            "target, supports: an uneven rotor on uneven linear supports has equations that repeat "
+            "every revolution; give a finer mesh, or supports that are alike in all directions"
         )
-    return model
+    return model, standing
 
 
 def _check_held(model: LinearModel, given: Sequence[Given]) -> None:
     """Refuse a rotor that supports leave free across its axis."""
-    across = [name for name in model.free_motions if name not in _NOT_ACROSS]
-    if across:
+    free = model.free_motions
+    across = [name for name in free if name not in _NOT_ACROSS]
+    # an eccentric rotor spins about its bearings, which is a combination of motions
+    if across and len(free) > model.neutral_motions.shape[1]:
         ends = ", ".join(dict.fromkeys(repr(one.interface) for one in given))
         motion = "tilting" if any("tilt" in name for name in across) else "lateral motion"
         raise ValueError(

@@ -20,6 +20,7 @@ from functools import cached_property
 
 import numpy as np
 
+from exudyn_rotor.cached import kept
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, difference, stacked
 from exudyn_rotor.linear.model.linear_model import ON_FOUNDATION, LinearModel
 
@@ -46,6 +47,16 @@ def resisted(model: LinearModel) -> np.ndarray:
     return np.eye(model.size) if model.moving_basis is None else model.moving_basis
 
 
+@kept
+def _journals(model: LinearModel, names: tuple[str, ...], moves: bool) -> Terms:
+    """Return the motion (d, r) of journals across the axis, by motions that something resists."""
+    moved = journal_motions(model, names, float(moves))
+    across, basis = np.arange(3 * len(names)) % 3 < 2, resisted(model)
+    moved = {n: U[across] @ basis for n, U in moved.items()}
+    largest = max(np.abs(U).max() for U in moved.values())
+    return {n: U for n, U in moved.items() if np.abs(U).max() > _SMALL * largest}
+
+
 @dataclass(frozen=True, eq=False)
 class Unloaded:
     """The rest at one spin speed, without loads.
@@ -58,11 +69,20 @@ class Unloaded:
         Interfaces of the laws.
     speed : float
         Ω [rad/s].
+    standing : LinearModel, optional
+        The same in axes that stand still, of a round rotor: there what laws do to motions beside a
+        steady one changes little, and not at all on a circle.
     """
 
     model: LinearModel
     names: Sequence[str]
     speed: float
+    standing: LinearModel | None = None
+
+    @cached_property
+    def for_stability(self) -> Unloaded:
+        """The rest in axes that stand still, if it can be."""
+        return Unloaded(self.standing, self.names, self.speed) if self.standing else self
 
     @cached_property
     def basis(self) -> np.ndarray:
@@ -77,11 +97,7 @@ class Unloaded:
     @cached_property
     def journals(self) -> Terms:
         """C (d, r)."""
-        moved = journal_motions(self.model, self.names, self.speed)
-        across = np.arange(3 * len(self.names)) % 3 < 2
-        moved = {n: U[across] @ self.basis for n, U in moved.items()}
-        largest = max(np.abs(U).max() for U in moved.values())
-        return {n: U for n, U in moved.items() if np.abs(U).max() > _SMALL * largest}
+        return _journals(self.model, tuple(self.names), bool(self.speed))
 
 
 @dataclass(frozen=True, eq=False)

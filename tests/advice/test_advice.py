@@ -6,19 +6,17 @@ import warnings
 import exudyn as exu
 import numpy as np
 import pytest
-from exudyn.rigidBodyUtilities import InertiaCuboid
 from models import centered_disc
-from run_scenes import scene, solve
+from run_scenes import scene
 
 from exudyn_rotor import (
     AssumptionWarning,
     HarmonicForce,
     PrescribedMotion,
     Support,
-    add_rotor,
     campbell,
-    check_run,
     harmonic_response,
+    keep_modes,
     propose,
     recommended_settings,
     unbalance_response,
@@ -89,63 +87,7 @@ def test_proposed_modes_meet_the_accuracy(reduced, high, axial):
         assert max(errors) < 0.5 * accuracy
 
 
-def test_modes_of_a_scene_with_a_foundation_meet_the_accuracy(solid):
-    """A foundation stands still in space, so it couples harmonics of the speed."""
-    model = solid.reduce(10).without_shapes()
-    mbs, body = _on_foundation(model)
-    proposal = propose(mbs, body=body, speeds=300.0, accuracy=1e-2, axial=False)
-    assert proposal.count < proposal.total
-    responses = []
-    for rotor in (proposal.truncated(model), model):
-        mbs, body = _on_foundation(rotor)
-        load = HarmonicForce("left", [1, 0])
-        responses.append(harmonic_response(mbs, [50.0, 250.0], load, speed=300.0, body=body))
-    assert _difference(*responses) < 0.5e-2
-
-
-def _on_foundation(rotor):
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor, translation="none", spin=300.0)
-    block = InertiaCuboid(density=2500.0, sideLengths=[0.4, 0.3, 0.4])
-    base = mbs.CreateRigidBody(inertia=block, referencePosition=[0, -0.2, 0.25])
-    ground = mbs.CreateGround()
-    options = {"stiffness": [1e7, 2e7, 1e7], "damping": [3e3] * 3}
-    for x, z in ((-0.1, 0.0), (0.1, 0.0), (-0.1, 0.5), (0.1, 0.5)):
-        places = {"localPosition0": [x, -0.25, z], "localPosition1": [x, -0.05, z - 0.25]}
-        mbs.CreateCartesianSpringDamper(itemNumbers=[ground, base], **places, **options)
-    for name, z in (("left", 0.0), ("right", 0.5)):
-        mbs.CreateCartesianSpringDamper(
-            itemNumbers=[base, body.marker(name)],
-            localPosition0=[0, 0.2, z - 0.25],
-            stiffness=[2e7] * 3,
-            damping=[2e4] * 3,
-        )
-    mbs.Assemble()
-    return mbs, body
-
-
 # ------------------------------------------------------------------ step
-
-
-def test_proposed_step_has_the_allowed_period_error(plain):
-    """A free mode at the end of the band: its phase after 20 periods, against cos ωt."""
-    omega = plain.frequencies[6]
-    proposal = propose(plain, speeds=0.0, load_frequencies=omega, accuracy=2e-3)
-    mbs = exu.SystemContainer().AddSystem()
-    start = np.zeros(plain.size - 1)  # without the spin, which is prescribed
-    start[5] = 1e-3
-    options = {"modal_coordinates": start, "marker_body": False, "stiffening": "none"}
-    body = add_rotor(mbs, plain, translation="none", spin=0.0, **options)
-    body.start_recording()
-    mbs.Assemble()
-    steps = round(20.25 * 2 * np.pi / omega / proposal.step)
-    solve(mbs, steps, steps * proposal.step)
-    zeta, rate = (part[0][5] for part in (body.recorded().q[-1:], body.recorded().q_t[-1:]))
-    turned = omega * steps * proposal.step
-    phase = np.arctan2(-rate / omega, zeta)
-    slip = (turned - phase + np.pi) % (2 * np.pi) - np.pi
-    assert slip / turned == pytest.approx(0.5 * 2e-3, rel=0.02)
-    assert check_run(body, accuracy=2e-3)["step"].value == pytest.approx(slip / turned, rel=0.02)
 
 
 def _steady_orbit(rotor, proposal, stiffness, finer=1, translation=None):
@@ -183,15 +125,6 @@ def test_steady_orbit_at_the_proposed_step_meets_the_accuracy(plain, speed, tran
     if translation == "free":
         worse = _steady_orbit(plain, proposal, stiffness, translation="none") - exact
         assert np.linalg.norm(worse, axis=1).max() > 1.3 * error * size
-
-
-def test_reasons_name_what_asks_for_a_small_step(plain):
-    supports = [Support(n, 2e4 * np.eye(3), 500.0 * np.eye(3)) for n in ("left", "right")]
-    options = {"supports": supports, "accuracy": 1e-2}
-    slow = propose(plain, speeds=1000.0, load_frequencies=30.0, **options)
-    assert slow.translation == "free"
-    assert "slow motion in space is fast in the rotor frame" in str(slow)
-    assert "step: ωh" in str(propose(plain, speeds=150.0, **options))
 
 
 # ------------------------------------------------------------------ formulation
@@ -261,3 +194,28 @@ def test_proposal_prints_what_add_rotor_takes(reduced):
 def test_bad_requests_are_refused(plain, options, message):
     with pytest.raises(ValueError, match=message):
         propose(plain, **options)
+
+
+@pytest.mark.parametrize("indices", [[20], [-1], [1, 1], [0.5], [[1]], [True], "ab"])
+def test_bad_indices_are_refused(reduced, indices):
+    with pytest.raises((TypeError, ValueError), match="indices: "):
+        keep_modes(reduced, indices)
+
+
+def test_scene_gives_the_proposal_of_its_supports(plain):
+    mbs, body = scene(plain, "none", spin=300.0)
+    mbs.Assemble()
+    from_scene = propose(mbs, body=body, speeds=300.0, accuracy=1e-2)
+    supports = [Support(n, 2e6 * np.eye(3), 500.0 * np.eye(3)) for n in ("left", "right")]
+    alone = propose(plain, speeds=300.0, supports=supports, accuracy=1e-2)
+    assert from_scene.modes == alone.modes
+    assert from_scene.error == pytest.approx(alone.error, rel=1e-3)
+    assert from_scene.options() == alone.options()
+    assert from_scene.truncated(plain).size == 6 + alone.count
+
+
+def test_grounded_rotor_has_no_moving_frame(solid):
+    held = solid.clamped(["left"]).reduce(5)
+    assert propose(held, speeds=100.0).translation == "none"
+    with pytest.raises(ValueError, match="cannot be free"):
+        propose(held, speeds=(0.0, 100.0))

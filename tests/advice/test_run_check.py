@@ -12,12 +12,10 @@ from run_scenes import scene, solve
 
 from exudyn_rotor import (
     AssumptionWarning,
-    PrescribedMotion,
     add_rotor,
     check_run,
     craig_bampton_modes,
     keep_modes,
-    propose,
 )
 from exudyn_rotor.advice.run_measures import Measures
 
@@ -56,14 +54,6 @@ def _at_rest(reduced, **options):
     body = add_rotor(mbs, reduced, **options)
     mbs.Assemble()
     return body
-
-
-def _modal(body_or_labels, **values):
-    return [values.get(name.split(" (")[0].replace(" ", "_"), 0.0) for name in body_or_labels]
-
-
-def _labels(reduced, **options):
-    return _at_rest(reduced, **options).selection.labels
 
 
 def test_quiet_run_passes_and_says_so(run, recwarn):
@@ -122,19 +112,6 @@ def test_every_formulation_keeps_all_loads(reduced, translation, locking, marker
     assert check["locked"].value < 1e-9
 
 
-def test_deflection_and_top_modes(reduced):
-    mass = reduced.invariants.mass
-    size = np.sqrt(np.trace(reduced.invariants.J) / mass)
-    labels = _labels(reduced, spin=0.0)
-    values = _modal(labels, mode_1=0.1 * size * np.sqrt(mass), mode_6=0.05)
-    check = check_run(_at_rest(reduced, spin=0.0, modal_coordinates=values), warn=False)
-    moved = np.linalg.norm(values[-6:]) / np.sqrt(mass)
-    assert check["deflection"].value == pytest.approx(moved / size, rel=1e-2)
-    energy = (reduced.frequencies[-6:] * np.array(values[-6:])) ** 2
-    assert check["top modes"].value == pytest.approx(energy[-1] / energy.sum(), rel=1e-6)
-    assert {row.name for row in check.failed} == {"deflection", "top modes"}
-
-
 def test_truncated_bending_shows_in_the_highest_modes(reduced):
     """With the lowest pair alone half of its energy is in the highest fifth."""
     few = _finished(keep_modes(reduced, [0, 1]), "none", spin=200.0, gravity=[0, -9.81, 0])
@@ -142,13 +119,6 @@ def test_truncated_bending_shows_in_the_highest_modes(reduced):
     few, many = (check_run(body, warn=False)["top modes"] for body in (few, many))
     assert many.ok
     assert few.value > 3 * many.value
-
-
-@pytest.mark.parametrize(("locking", "ok"), [("mass", False), ("constraints", True)])
-def test_servo_that_lags_leaves_its_place(reduced, locking, ok):
-    options = {"spin": PrescribedMotion.run_up(0.0, 300.0, 0.02), "locking": locking}
-    body = _finished(reduced, "none", steps=100, end_time=0.02, **options)
-    assert check_run(body, warn=False)["locked"].ok == ok
 
 
 def test_steps_too_long_are_found(reduced):
@@ -203,14 +173,6 @@ def test_loads_that_the_frame_does_not_take_are_found(
     check = check_run(body, warn=False)
     assert check["unresisted load"].ok != lost
     assert (check["unresisted load"].value > 0.3) == lost
-
-
-def test_speed_beyond_the_proposal_is_found(reduced, run):
-    fast, slow = (propose(reduced, speeds=s, accuracy=0.2) for s in (200.0, 150.0))
-    assert check_run(run, proposal=fast, warn=False)["speed"].ok
-    row = check_run(run, proposal=slow, warn=False)["speed"]
-    assert row.value == pytest.approx(200.0 / 150.0)
-    assert not row.ok
 
 
 def test_yielding_is_found(solid):

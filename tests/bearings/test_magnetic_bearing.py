@@ -155,39 +155,6 @@ def test_flexible_rotor_with_sensors_elsewhere(sensor):
         np.testing.assert_allclose(result.values[row], expected, rtol=1e-9)
 
 
-def test_sensitivity_of_a_spinning_rotor_is_that_of_both_senses():
-    """Of a fixed direction: the mean of forward and backward whirl, in inertial axes."""
-    m, half = 20.0, 0.15
-    inertia = np.diag([m, m * (0.5 * 0.1**2 + half**2)])
-    places = [np.array([1.0, side * half]) for side in (-1.0, 1.0)]
-    gyroscopic = np.diag([0.0, SPEED * m * 0.1**2])
-    A, drive, seen = closed_loop(inertia, gyroscopic, np.zeros((2, 2)), places, places, DELAYED)
-    frequencies = np.array([60.0, 300.0, 900.0])
-    result = sensitivity(rigid(), frequencies, supports=pair(angle=0.4), speed=SPEED)
-    unit, expected = np.eye(len(A)), []
-    for w in frequencies:
-        sides = [seen @ la.solve(1j * w * unit - X, drive) for X in (A, A.conj())]
-        expected.append(1.0 + 0.5 * sum(sides))
-    at = np.searchsorted(result.frequencies, frequencies)
-    for row in result.values[:, at]:
-        np.testing.assert_allclose(row, expected, rtol=1e-8)
-    assert result.zones == ("A",) * 4
-
-
-def test_realisation_is_the_transfer_function():
-    frequencies = np.array([1.0, 300.0, 5e3, 3e4])
-    for one in (PD, PID, replace(PID, derivative=0.0), DELAYED):
-        M, D, K, b, c, d = one.realisation()
-        found = [
-            (c + 1j * w * d) @ la.solve(-(w**2) * np.diag(M) + 1j * w * D + K, b)
-            for w in frequencies
-        ]
-        error = np.angle(found / one.transfer(frequencies))
-        bound = (frequencies * one.delay) ** 5 / 720.0 + 1e-12
-        assert np.all(np.abs(error) <= 1.01 * bound)
-        np.testing.assert_allclose(np.abs(found), np.abs(one.transfer(frequencies)), rtol=1e-12)
-
-
 # ------------------------------------------------------------------ scenes and lists
 
 
@@ -213,7 +180,6 @@ def test_scene_and_list_have_the_same_exponents(kind, turn, rotation):
     # differences of Exudyn's forces give the slopes of the magnets
     assert distance(found, linear_model(reduced, supports=supports), SPEED) < 1e-7
     assert added[0].uses_python
-    assert len(added[0].objects) == 2
 
 
 @pytest.mark.parametrize("controller", ["PD", "PID"])

@@ -22,7 +22,6 @@ from exudyn_rotor import (
     linear_model,
     recommended_settings,
     stability,
-    steady_state,
 )
 from exudyn_rotor.theory.axis import SpinAxis
 
@@ -148,36 +147,12 @@ def test_scene_and_linear_analyses_agree(axis, foundation):
         assert np.abs(theirs - one).min() < 1e-6 * max(abs(one), SPEED)
 
 
-def test_light_pads_follow_at_once():
-    """Their films, the tilts eliminated at the speed, are the coefficients of the whirl."""
-    pads = on_pads(inertia=1e-9)[1][0]
-    linear, total = pads.linearised(), 0.0
-    for film, t, mass in zip(linear.films, linear.tangents, linear.masses, strict=True):
-        K, C = (X[:2, :2] for X in film.matrices(SPEED))
-        Z = K + 1j * SPEED * C
-        total = total + Z - np.outer(Z @ t, t @ Z) / (t @ Z @ t - mass * SPEED**2)
-    stiffness, damping = pads.coefficients(SPEED)
-    expected = stiffness + 1j * SPEED * damping
-    np.testing.assert_allclose(total, expected, rtol=0.0, atol=1e-7 * np.abs(expected).max())
-
-
 def run(mbs, end_time, step):
     settings = recommended_settings(end_time, step)
     settings.timeIntegration.verboseMode = 0
     settings.solution.file.write = False
     mbs.SolveDynamic(settings)
     return mbs.systemData.GetODE2Coordinates()
-
-
-def test_a_run_stays_in_the_equilibrium():
-    rotor, supports, gravity = on_pads()
-    mbs, body, added = scene(rotor, supports, gravity, spin=SPEED)
-    places = mbs.systemData.GetObjectLTGODE2(added[0].objects[-1])
-    start, tilts = steady_state(body).state(), supports[0].tilts(SPEED)
-    np.testing.assert_allclose(start.q[places], tilts, rtol=1e-6)
-    body.start_from(start)
-    # the run's own tolerance
-    np.testing.assert_allclose(run(mbs, 0.01, 2e-4)[places], tilts, rtol=1e-4)
 
 
 def test_films_brake_a_free_spin():

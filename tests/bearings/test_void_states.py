@@ -11,13 +11,7 @@ from void_films import (
 )
 
 from exudyn_rotor import (
-    HarmonicForce,
-    Support,
-    Unbalance,
-    harmonic_response,
     stability,
-    stability_threshold,
-    unbalance_response,
 )
 
 LOAD = np.array([0.0, -525.0])
@@ -90,40 +84,6 @@ def test_exponents_are_those_of_the_film(nodes):
         assert error < 1e-3
         assert np.abs(motions - s).min() < (error + 1e-7) * abs(s)
     assert found.stable[0] == (nodes == 24)
-
-
-def fixed(supports, ratio):
-    """Return supports with the coefficients of one whirl."""
-    return [
-        Support(one.interface, *one._state(SPEED, None).coefficients(ratio)) for one in supports
-    ]
-
-
-def test_responses_have_the_coefficients_of_their_frequency():
-    """To the error of Z times the condition of the dynamic stiffness, near a resonance."""
-    reduced, load = rotor(), Unbalance("left", 1e-4)
-    supports = bearings(reduced)
-    found, expected = (
-        unbalance_response(reduced, [SPEED], load, supports=each, accuracy=None).motion
-        for each in (supports, fixed(supports, 1.0))
-    )
-    assert np.abs(found - expected).max() < 1e-4 * np.abs(expected).max()
-    options = {"loads": HarmonicForce("left", [1.0, 0.5, 0.0]), "speed": SPEED, "accuracy": None}
-    found, expected = (
-        harmonic_response(reduced, [0.4 * SPEED], supports=each, **options).motion
-        for each in (supports, fixed(supports, 0.4))
-    )
-    assert np.abs(found - expected).max() < 1e-4 * np.abs(expected).max()
-
-
-def test_a_limit_of_stability_is_that_of_the_film():
-    reduced = rotor()
-    supports = bearings(reduced)
-    found = stability_threshold(reduced, 640.0, 656.0, supports=supports, samples=3, accuracy=None)
-    state = supports[0]._state(found.values[0], None)
-    s = exponent(state, 0.5 * reduced.invariants.mass, 0.5j * found.values[0])
-    assert abs(s.real) < 1e-5 * abs(s)
-    assert s.imag == pytest.approx(found.frequencies_inertial[0], rel=1e-5)
 
 
 # ------------------------------------------------------------------ scenes

@@ -7,17 +7,12 @@ import numpy as np
 import pytest
 from exudyn.itemInterface import (
     CartesianSpringDamper,
-    CoordinateSpringDamper,
-    CoordinateVectorConstraint,
     Force,
     LoadCoordinate,
     MarkerBodyMass,
     MarkerBodyRigid,
     MarkerNodeCoordinate,
-    MarkerNodeCoordinates,
     MarkerNodeRigid,
-    MarkerNodeRotationCoordinate,
-    NodePointGround,
     Torque,
 )
 from exudyn.utilities import (
@@ -33,6 +28,8 @@ from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import SolidRotor, add_rotor, check_run
 
+pytestmark = pytest.mark.filterwarnings("ignore::exudyn_rotor.ConnectionWarning")
+
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
 TO_X = Rotation.from_euler("y", np.pi / 2).as_matrix()
 # z axis to the mesh's spin axis, and mesh to space
@@ -43,11 +40,6 @@ MOUNTED = {
     "-y along z": (Rotation.from_euler("x", 90, degrees=True).as_matrix(), TO_X @ TO_X.T),
     "skew": (SKEW, SKEW),
 }
-
-
-def hanging():
-    """Return the rings of :func:`rotor`, 0.3 m off their spin axis z."""
-    return rings(np.eye(3), np.array([0.3, 0.0, 0.0]), "z")
 
 
 @cache
@@ -152,38 +144,6 @@ def test_only_what_the_node_cannot_carry_is_found(mount):
     assert "damping of tilts, 2 N m s/rad, comes with a false cross stiffness" in found
 
 
-@pytest.mark.parametrize("mount", ["z", "-y along z"])
-def test_coordinates_of_the_node(mount):
-    """Markers on the node's coordinates: tilts are locked, spin and translations are not."""
-    for index in range(6):
-        s = Scene(mount)
-        marker = s.mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=s.node, coordinate=index))
-        s.mbs.AddLoad(LoadCoordinate(markerNumber=marker, load=1.0))
-        assert len(s.found()) == (index in s.body.locks.tilts)
-    for axis in range(3):
-        s = Scene(mount)
-        turning = MarkerNodeRotationCoordinate(nodeNumber=s.node, rotationCoordinate=axis)
-        zero = MarkerNodeCoordinate(nodeNumber=s.mbs.AddNode(NodePointGround()), coordinate=0)
-        markers = [s.mbs.AddMarker(item) for item in (zero, turning)]
-        s.mbs.AddObject(CoordinateSpringDamper(markerNumbers=markers, stiffness=1.0))
-        assert len(s.found()) == (abs(s.n[axis]) < 0.5)
-    for index in range(6):
-        s = Scene(mount)
-        ground = s.mbs.AddNode(NodePointGround())
-        markers = [
-            s.mbs.AddMarker(MarkerNodeCoordinates(nodeNumber=node)) for node in (ground, s.node)
-        ]
-        s.mbs.AddObject(
-            CoordinateVectorConstraint(
-                markerNumbers=markers,
-                scalingMarker0=np.zeros((1, 0)),
-                scalingMarker1=np.eye(6)[[index]],
-                offset=[0.0],
-            )
-        )
-        assert len(s.found()) == (index in s.body.locks.tilts)
-
-
 def test_run_check_counts_them_and_a_warning_names_them():
     s = Scene("z along x")
     marker = s.mbs.AddMarker(
@@ -196,32 +156,3 @@ def test_run_check_counts_them_and_a_warning_names_them():
     row = check_run(s.body, warn=False)["connections"]
     assert row.value == 1
     assert not row.ok
-
-
-@pytest.mark.parametrize("spin", ["free", 5.0])
-def test_weight_of_a_pendulum_is_no_lost_load(spin):
-    """Its centre of mass is far off the axis, so that its weight acts on modes and spin together.
-
-    All equations are linear here but for 1e-5 of deflection; Newton's method stops at 1e-7.
-    """
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, hanging(), translation="none", spin=spin)
-    mass = mbs.AddMarker(MarkerBodyMass(bodyNumber=body.objects["marker_body"]))
-    mbs.AddLoad(Gravity(markerNumber=mass, loadVector=[3.0, -9.0, 2.0]))
-    bolt = body.add_marker("left", [-0.3, 0.0, 0.1])
-    base = mbs.AddMarker(MarkerBodyRigid(bodyNumber=mbs.CreateGround()))
-    mbs.AddObject(GenericJoint(markerNumbers=[base, bolt], constrainedAxes=[1, 1, 1, 1, 1, 0]))
-    assert unresisted(mbs, body) < 1e-5
-
-
-def unresisted(mbs, body):
-    """Run the scene for a short time, and return the check's share of lost loads."""
-    body.start_recording()
-    mbs.Assemble()
-    settings = exu.SimulationSettings()
-    settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 60, 0.06
-    settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write = False
-    settings.solution.sensors.writePeriod = 1e-3
-    mbs.SolveDynamic(settings)
-    return check_run(body, warn=False)["unresisted load"].value

@@ -158,39 +158,6 @@ def test_cardan_joint_turns_unevenly(direction):
     np.testing.assert_allclose(speed, expected, rtol=2e-3)
 
 
-@pytest.mark.parametrize(
-    ("make", "match"),
-    [
-        (lambda: FlexibleCoupling(torsion=0.0), "torsion: needs a finite number"),
-        (lambda: FlexibleCoupling(torsion=1.0, lateral=[1.0, -1.0]), "lateral: needs numbers ≥ 0"),
-        (lambda: FlexibleCoupling(torsion=1.0, angular=[1.0] * 3), "angular: needs a number or"),
-        (lambda: FlexibleCoupling(torsion=1.0, damping=[-1.0, 0, 0, 0]), "damping: needs four"),
-        (lambda: CardanJoint(joint_angle=1.6, stiffness=1.0), "joint_angle: needs"),
-    ],
-)
-def test_bad_numbers_are_refused(make, match):
-    with pytest.raises(ValueError, match=match):
-        make()
-
-
-def test_shafts_elsewhere_are_refused():
-    mbs = exu.SystemContainer().AddSystem()
-    rotor = rings().reduce(0)
-    one = add_rotor(mbs, rotor, name="one")
-    two = add_rotor(mbs, rotor, name="two", position=[0.0, 0.0, 0.3])
-    before = mbs.systemData.NumberOfObjects()
-    flexible, cardan = COUPLINGS.values()
-    shaft = ConstantSpeed(1.0)
-    for match, arguments in (
-        ("other: the interface of the second rotor is 0.3 m", (flexible, one, "left", two, "left")),
-        ("other: its axis is", (cardan, one, "right", two, "left")),
-        ("other_at: a shaft has no interface", (flexible, one, "right", shaft, "left")),
-    ):
-        with pytest.raises(ValueError, match=match):
-            connect_rotors(*arguments)
-        assert mbs.systemData.NumberOfObjects() == before
-
-
 def test_linear_analyses_of_a_rotor_on_a_shaft():
     """The scene is refused with what to give instead, which they take."""
     mbs, rotor = exu.SystemContainer().AddSystem(), rings().reduce(0)

@@ -100,31 +100,6 @@ def test_frequencies_at_rest_are_those_of_masses_and_springs(helix_angle):
     np.testing.assert_allclose(found, expected[1:], rtol=1e-5)
 
 
-def first_order(M, G, K):
-    """Return A of d(x, ẋ)/dt = A (x, ẋ)."""
-    below = np.hstack([-np.linalg.solve(M, K), -np.linalg.solve(M, G)])
-    return np.vstack([np.eye(12, 24, 12), below])
-
-
-def test_a_kick_goes_through_gears_and_gyroscopes():
-    """Against the linear equations by hand; the phase errs by ω³h²t/12."""
-    gears, speed = mesh(helix_angle=0.3), 400.0
-    mbs, _, connection = pair(
-        gears,
-        first={"initial_speed": speed, "initial_velocity": [0.02, 0.01, 0.0]},
-        second={"initial_speed": -speed * RADII[0] / RADII[1]},
-    )
-    sensor = connection.add_sensor()
-    run(mbs, 0.02, 800, accuracy=1e-7)
-    A, start, side = first_order(*closed_form(gears, 2e6, speed)), np.zeros(24), np.eye(6)
-    start[12:14] = 0.02, 0.01
-    side[0, 4], side[1, 3] = -0.15, 0.15  # φ × (−0.15 e)
-    row = gears.stiffness * gears.direction @ np.kron(np.eye(2), side)
-    time, found = mbs.GetSensorStoredData(sensor)[::40, :2].T
-    expected = np.array([row @ (scipy.linalg.expm(t * A) @ start)[:12] for t in time])
-    np.testing.assert_allclose(found, expected, atol=5e-3 * np.abs(expected).max())
-
-
 MOTOR = DirectCurrentMotor(stall_torque=9.0, no_load_speed=60.0)
 
 
@@ -219,39 +194,3 @@ def test_mesh_frequency_is_that_of_the_teeth():
     share = np.abs(np.fft.rfft((late - late.mean()) * np.hanning(len(late))))
     frequencies = 2.0 * np.pi * np.fft.rfftfreq(len(late), time[1] - time[0])
     assert frequencies[share.argmax()] == pytest.approx(gears.mesh_frequency(30.0), rel=0.02)
-
-
-def test_refused_calls_leave_the_scene_as_it_was():
-    mbs = exu.SystemContainer().AddSystem()
-    gears = mesh(line_angle=0.0)
-    rotor, apart = rings().with_interface("point", [0]).reduce(0), [gears.center_distance, 0.0, 0.0]
-    one = add_rotor(mbs, rotor, name="one")
-    two = add_rotor(mbs, rotor, name="two", position=apart)
-    tilted = Rotation.from_euler("x", 0.1).as_matrix()
-    skew = add_rotor(mbs, rotor, name="skew", position=apart, rotation=tilted)
-    bare = add_rotor(mbs, rotor, name="bare", marker_body=False)
-    elsewhere = add_rotor(exu.SystemContainer().AddSystem(), rotor)
-
-    def counts():
-        data = mbs.systemData
-        return data.NumberOfObjects(), data.NumberOfMarkers(), data.NumberOfNodes()
-
-    before = counts()
-    for error, match, arguments in (
-        (TypeError, "connection: needs Connection", (MOTOR, one, "left", two, "left")),
-        (TypeError, "body: needs RotorBody", (gears, mbs, "left", two, "left")),
-        (TypeError, "other: needs RotorBody", (gears, one, "left", "two", "left")),
-        (ValueError, "at: 'top' is unknown", (gears, one, "top", two, "left")),
-        (ValueError, "other_at: 'point' is a single node", (gears, one, "left", two, "point")),
-        (TypeError, "other_at: needs a name", (gears, one, "left", two)),
-        (ValueError, "other: rotor 'bare' was added with", (gears, one, "left", bare, "left")),
-        (ValueError, "other: needs another rotor", (gears, one, "left", one, "right")),
-        (ValueError, "other: needs another rotor", (gears, one, "left", elsewhere, "left")),
-        (ValueError, "other: gears need parallel axes", (gears, one, "left", skew, "left")),
-        (ValueError, "other: its gear is 0.3 m along", (gears, one, "left", two, "right")),
-        (ValueError, "other: its axis is 0.1596", (mesh(), one, "left", two, "left")),
-    ):
-        with pytest.raises(error, match=match):
-            connect_rotors(*arguments)
-        assert counts() == before
-        assert one.drives == []

@@ -8,7 +8,6 @@ from point_rotors import ring_rotor
 
 from exudyn_rotor import (
     BaseAcceleration,
-    SeparationMargins,
     SolidRotor,
     StabilityLevelOne,
     Support,
@@ -18,7 +17,6 @@ from exudyn_rotor import (
     bearing_loads,
     bearing_masses,
     campbell,
-    critical_speed_map,
     harmonic_response,
     separation_margins,
     stability,
@@ -276,34 +274,22 @@ def test_several_stages_share_the_coupling_and_beyond_ten_times_there_is_no_thre
     assert not none.needs_level_two
 
 
-def test_wrong_input_is_refused():
-    rotor, bearing = point().reduce(0), Support("disc", 1e4)
-    for given, message in (
-        ({"cross_coupling": [1.0, 2.0]}, "cross_coupling: needs a positive number"),
-        ({"cross_coupling": -1.0}, "cross_coupling: needs a positive number"),
-        ({"at": "nowhere"}, "at: 'nowhere' is unknown"),
-        ({"machine": "steam"}, "machine: 'steam' is unknown"),
-        ({"supports": Support("x", 1.0)}, "support at 'x': no such interface"),
-    ):
-        values = {"speed": 9.0, "cross_coupling": 1.0, "at": "disc", "supports": bearing} | given
-        with pytest.raises(ValueError, match=message):
-            stability_level_one(rotor, **values)
-    with pytest.raises(TypeError, match=r"target: .* SolidRotor\.reduce makes one"):
-        stability_level_one(point(), 9.0, 1.0, "disc", supports=bearing)
-    with pytest.raises(ValueError, match=r"at: the mode 'conical' takes 2 place\(s\)"):
-        standard_unbalances("conical", ["a"], [1.0, 2.0], 100.0)
-    with pytest.raises(ValueError, match="masses: needs two positive masses"):
-        standard_unbalances("conical", ["a", "b"], 3.0, 100.0)
-    with pytest.raises(ValueError, match="at: the mode 'conical' takes two places, got 'a' twice"):
-        standard_unbalances("conical", ["a", "a"], [1.0, 2.0], 100.0)
-    with pytest.raises(ValueError, match="at: 'disc' is given twice"):
-        stability_level_one(rotor, 9.0, [1.0, 2.0], ["disc", "disc"], supports=bearing)
-    with pytest.raises(ValueError, match="interfaces: 'disc' is given twice"):
-        critical_speed_map(rotor, ["disc", "disc"], [1e4])
-    with pytest.raises(ValueError, match="places: 'a' is given twice"):
-        separation_margins(sized([1.0, 2.0], [1.0, 2.0]), (1.0, 2.0), places=["a", "a"])
-    with pytest.raises(TypeError, match="response: needs UnbalanceResponse"):
-        separation_margins(3.0, (1.0, 2.0))
-    with pytest.raises(TypeError, match=r"operating_range: .* got None"):
-        separation_margins(sized([1.0, 2.0], [1.0, 2.0]), None)
-    assert SeparationMargins.__doc__
+def test_the_picture_shows_range_margin_and_factor():
+    ax = separation_margins(jeffcott(0.05), (120.0, 150.0)).plot(units="SI")
+    assert [text.get_text() for text in ax.texts] == ["AF 9.9"]
+    assert ax.patches[0].get_x() == pytest.approx(120.0)
+    assert ax.patches[1].get_width() == pytest.approx(0.15 * 120.0, rel=0.01)
+    pyplot.close(ax.figure)
+
+
+@pytest.mark.parametrize("damping", [2.0, 20.0])
+def test_picture_of_level_one_has_threshold_and_limit_in_it(damping):
+    """Q₀ on the line, also where it is a part of the first step; the limit not on the frame."""
+    found = level_one(5e3, damping)
+    ax = found.plot()
+    line = ax.lines[0]
+    assert np.interp(1e-6 * found.threshold, *line.get_data()) == pytest.approx(0.0, abs=1e-12)
+    low, high = ax.get_ylim()
+    assert low < -0.01 * (high - low)
+    assert high > 0.1 + 0.01 * (high - low)
+    pyplot.close(ax.figure)

@@ -160,31 +160,6 @@ def test_scene_and_linear_model_have_the_same_exponents(kind):
     assert compared([KINDS[kind], HELD], **held) < 1e-7
 
 
-def test_unbalance_moves_scene_and_linear_model_alike():
-    """Anisotropic supports in both frames and a table; amplitudes of all harmonics."""
-    rotor = rings(heavy=0.0)
-    supports = [KINDS["table"], replace(KINDS["2 x 2"], frame="rotor"), HELD]
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor, spin=SPEED)
-    add_supports(body, supports, add_foundation(mbs, BLOCK))
-    mbs.Assemble()
-    model = linear_model(rotor, supports=supports, foundation=BLOCK)
-    responses = [
-        unbalance_response(each, [150.0, SPEED], Unbalance("left", 1e-4), at=list(POINTS),
-                           accuracy=None)
-        for each in (model, linear_model(mbs, body=body, about="given"))
-    ]  # fmt: skip
-    assert {0, 1, 2} <= set(responses[0].orders.tolist())
-    # but for the twist: the frame of a scene holds the mean rotation, here a drive does
-    ours, theirs = (
-        dict(zip(each.orders.tolist(), np.moveaxis(each.motion[..., :5], 2, 0), strict=True))
-        for each in responses
-    )
-    limit = 1e-9 * np.abs(ours[1]).max()  # a smaller harmonic may be in one of them alone
-    for n in ours | theirs:
-        np.testing.assert_allclose(ours.get(n, 0.0), theirs.get(n, 0.0), rtol=0.0, atol=limit)
-
-
 def test_a_block_is_exudyns_rigid_body():
     """The same mass, inertia and springs as plain items of Exudyn."""
     mbs = exu.SystemContainer().AddSystem()

@@ -15,7 +15,6 @@ from exudyn_rotor import (
     critical_speeds,
     harmonic_response,
     stability,
-    unbalance_response,
 )
 from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
 
@@ -101,15 +100,6 @@ def test_critical_speed_is_that_at_constant_speed(rotor, route):
     target = on_route(rotor, route)
     found = critical_speeds(target, supports=carrier(), max_speed=2.0 * CRITICAL)
     assert np.abs(found.speeds / CRITICAL - 1.0).min() < 1e-7
-
-
-def test_whirl_is_that_at_constant_speed(rotor, route):
-    """``(k − mΩ² + icΩ) u = m e Ω²`` in the rotor frame."""
-    target, speeds = on_route(rotor, route), SPEEDS[1:]
-    found = unbalance_response(target, speeds, supports=carrier(1e5), frame="rotor")
-    u = found.motion[:, 0, 0, :2].real @ [1.0, 1j]
-    stiffness = STIFFNESS - MASS * speeds**2 + 1j * DAMPING * speeds
-    np.testing.assert_allclose(u, MASS * ECCENTRICITY * speeds**2 / stiffness, rtol=1e-6)
 
 
 # ------------------------------------------------------------------ meshes, flexible

@@ -15,13 +15,11 @@ from exudyn_rotor import (
     campbell,
     permissible_unbalance,
     stability_map,
-    unbalance_response,
 )
 
 ROTOR = (
     ring_rotor(0.1, 0.2, 3.0).with_interface("left", range(5)).with_interface("right", range(5, 10))
 )
-SUPPORTS = [Support("left", 1e6, 10.0), Support("right", 1e6, 10.0)]
 MASKED = np.ma.array([1.0, 2.0], mask=[False, True])
 
 FORCE = HarmonicForce("left", (1.0, 0.0))
@@ -141,61 +139,7 @@ def test_tables_and_matrices_are_told_apart():
         Support("left", lambda speed: "x").matrices(5.0)
 
 
-def test_coefficients_stand_in_their_blocks():
-    """Displacements first, rotations after them; a table in the middle of two speeds."""
-    tilting = ([0.0, 10.0], [[[3.0, 1.0], [0.0, 4.0]], [[5.0, 1.0], [0.0, 8.0]]])
-    stiffness, damping = Support("left", 2.0, 7.0, 9.0, tilting).matrices(5.0)
-    np.testing.assert_allclose(stiffness, np.diag([2.0, 2.0, 0.0, 9.0, 9.0, 0.0]))
-    expected = np.diag([7.0, 7.0, 0.0, 4.0, 6.0, 0.0])
-    expected[3, 4] = 1.0
-    np.testing.assert_allclose(damping, expected)
-
-
-@pytest.mark.parametrize("kind", ["matrix", "table", "function"])
-def test_an_undamped_support_keeps_what_stores_energy(kind):
-    """The symmetric part of its stiffness, at every speed."""
-    K = np.array([[3.0, 2.0, 0.0], [-1.0, 5.0, 4.0], [0.0, 0.0, 7.0]])
-    given = {
-        "matrix": K,
-        "table": ([0.0, 20.0], [K, 3.0 * K]),
-        "function": lambda speed: (1.0 + 0.1 * speed) * K,
-    }[kind]
-    support = Support("left", given, 9.0, given, 9.0).undamped()
-    stiffness, damping = support.matrices(10.0)
-    expected = (1.0 if kind == "matrix" else 2.0) * 0.5 * (K + K.T)
-    np.testing.assert_allclose(stiffness, np.kron(np.eye(2), expected))
-    assert not damping.any()
-
-
 def test_scenes_need_their_body():
     mbs = exu.SystemContainer().AddSystem()
     with pytest.raises(TypeError, match=r"^body: needs RotorBody, got None"):
         campbell(mbs, [1.0])
-
-
-@pytest.mark.parametrize(
-    ("use", "name"),
-    [
-        (lambda r: r.orbit("x"), "value"),
-        (lambda r: r.orbit(np.nan), "value"),
-        (lambda r: r.orbit(10.0, points=0), "points"),
-        (lambda r: r.phasor(3), "place"),
-        (lambda r: r.phasor(["left"]), "place"),
-        (lambda r: r.phasor(direction=[1]), "direction"),
-        (lambda r: r.whirl(order="x"), "order"),
-        (lambda r: r.whirl(order=0.5), "order"),
-        (lambda r: r.plot(directions=3), "directions"),
-        (lambda r: r.plot(directions=["up"]), "directions"),
-        (lambda r: r.plot(log="no"), "log"),
-        (lambda r: r.plot(ax=3), "ax"),
-        (lambda r: r.plot_polar(direction="up"), "direction"),
-        (lambda r: r.plot_polar(marks=-1), "marks"),
-        (lambda r: r.plot_polar(ax="x"), "ax"),
-        (lambda r: r.plot_orbit(None), "value"),
-        (lambda r: r.plot_orbit(10.0, places=["top"]), "places"),
-    ],
-)
-def test_methods_of_a_response_refuse(use, name):
-    response = unbalance_response(ROTOR, [10.0], UNBALANCE, supports=SUPPORTS)
-    with pytest.raises((TypeError, ValueError), match=rf"^{name}\b"):
-        use(response)

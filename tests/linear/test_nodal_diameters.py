@@ -1,14 +1,11 @@
 """Nodal diameters of discs and slender shafts, beside those counted at the rim."""
 
-import ngsolve
 import numpy as np
 import pytest
-from netgen import occ
 
-from exudyn_rotor import SolidRotor, campbell
+from exudyn_rotor import campbell
 from validation.stiffening.disc import PLATE, disc_rotor
 
-STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
 AROUND = 30  # bricks around the axis
 
 
@@ -45,20 +42,3 @@ def test_modes_of_a_disc_have_the_nodal_diameters_that_the_rim_shows(plate):
         checked.append(n)
     assert {0, 1, 2, 3, 4, 5, 6} <= set(checked)
     assert checked.count(0) == 2  # without and with a nodal circle
-
-
-def test_bending_in_many_waves_has_one_nodal_diameter():
-    """A rod bends, twists and stretches only far below the waves around it, at 40 kHz and above.
-
-    Five pairs of bending, on a mesh with so few nodes around the axis that waves look alike.
-    """
-    rod = occ.Cylinder(occ.Pnt(0, 0, 0), occ.Z, 0.02, 1.5)
-    mesh = ngsolve.Mesh(occ.OCCGeometry(rod).GenerateMesh(maxh=0.1, curvaturesafety=0.5))
-    rotor = SolidRotor.from_ngsolve(mesh, STEEL, axis="z")
-    found = campbell(rotor.reduce(11), [100.0], accuracy=None)
-    straight = np.isin(found.whirl[0], ("torsional", "axial"))
-    assert np.count_nonzero(~straight) == 4 + 2 * 5
-    assert np.all(found.nodal_diameters[0, ~straight] == 1)
-    assert np.all(found.nodal_diameters[0, straight] == 0)
-    more = campbell(rotor.reduce(20), [100.0], accuracy=None)
-    assert set(more.nodal_diameters.ravel()) <= {-1, 0, 1}  # rather none than a wrong one

@@ -16,8 +16,12 @@ from exudyn_rotor import (
 )
 from exudyn_rotor.theory.rotating_axes import axes_of
 
+pytestmark = pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn")
+
 MASS, RADIUS, ARM, HEAVY = 10.0, 0.1, 0.15, 5e-4
 COUNTS, CLEARANCES = {"left": 7, "right": 12}, {"left": 3e-6, "right": 1e-5}
+pytestmark = pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn")
+
 STIFFNESS = {"balls": 7e9, "rollers": 2e9}
 UPRIGHT = (0.0, 0.0, 1.0)
 

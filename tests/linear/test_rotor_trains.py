@@ -18,10 +18,8 @@ from train_models import (
 )
 
 from exudyn_rotor import (
-    GearMesh,
     Link,
     RotorTrain,
-    ShortJournalBearing,
     SolidRotor,
     Support,
     campbell,
@@ -145,49 +143,8 @@ def test_table_of_a_link_is_over_the_difference_of_speeds():
         RotorTrain(rotors, ratios, links=[Link(*ends, table)])
         for ends in (("A:a", "B:a"), ("B:a", "A:a"))
     )
-    with pytest.raises(ValueError, match="not -50 rad/s"):
+    with pytest.raises(
+        ValueError, match=r"not -50 rad/s.* -0.5 times the speed of the analysis, 100 rad/s"
+    ):
         linear_model(there).at(100.0)
     linear_model(back).at(100.0)
-
-
-def test_what_is_not_linear_or_of_a_bore_at_rest_is_no_link():
-    """Shafts of Ω and −Ω drag no oil, but a bore at rest has the film of 2 Ω."""
-    given = {"radius": 0.02, "length": 0.02, "clearance": 5e-5, "viscosity": 0.01}
-    film = ShortJournalBearing(interface="a", load=[0.0, -90.0], **given)
-    with pytest.raises(ValueError, match=r"ShortJournalBearing .* at the speed Ω1 \+ Ω2"):
-        Link("A:a", "B:a", film.linearised())
-    gears = {"radii": [0.05, 0.1], "stiffness": 1e8}
-    for more in ({"backlash": 1e-5}, {"teeth": [20, 40], "variation": [0.1]}):
-        with pytest.raises(ValueError, match="is not linear; give one without backlash="):
-            Link("A:a", "B:a", GearMesh(**gears, **more))
-
-
-def test_links_are_where_their_ends_are():
-    """Two links put the second rotor at two places; given positions are checked along every axis.
-
-    A third rotor closes the circle.
-    """
-    rotor, ratios = rigid(*FIRST), {"A": 1.0, "B": 1.5}
-    both, half = {"A": rotor, "B": rotor}, FIRST[1]
-    straight, crossed = (
-        [Link("A:a", f"B:{first}", Support("a", 1e5)), Link("A:b", f"B:{last}", Support("b", 1e5))]
-        for first, last in ("ab", "ba")
-    )
-    RotorTrain(both, ratios, links=straight)
-    with pytest.raises(ValueError, match=rf"A:b – B:a is off .* {-4.0 * half:g} m along"):
-        RotorTrain(both, ratios, links=crossed)
-    RotorTrain(
-        both, ratios, links=crossed[:1], positions={"A": [0, 0, 1], "B": [0, 0, 1 - 2 * half]}
-    )
-    for off, words in (([0.01, 0, 0], "0.01 m across"), ([0, 0, 0.02], "0.02 m along")):
-        with pytest.raises(ValueError, match=words):
-            RotorTrain(both, ratios, links=straight, positions={"A": np.zeros(3), "B": off})
-    with pytest.raises(ValueError, match="'C' is unknown"):
-        RotorTrain(both, ratios, positions={"C": np.zeros(3)})
-    three = {name: rigid(*FIRST, axis=axis) for name, axis in zip("ABC", "zxz", strict=True)}
-    circle = [("A:a", "B:b"), ("C:a", "B:b"), ("C:b", "A:b")]
-    links = [Link(one, other, Support(one[-1], 1e5)) for one, other in circle]
-    RotorTrain(three, {**ratios, "C": 2.0}, links=links)
-    links[2] = Link("C:b", "A:a", Support("b", 1e5))
-    with pytest.raises(ValueError, match="C:b – A:a is off by 0 m across"):
-        RotorTrain(three, {**ratios, "C": 2.0}, links=links)

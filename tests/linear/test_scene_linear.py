@@ -7,13 +7,11 @@ from apart import distance
 from asymmetric import LENGTH, asymmetric_shaft
 from exudyn.itemInterface import SensorNode
 from exudyn.rigidBodyUtilities import InertiaCuboid
-from models import centered_disc
 from point_rotors import ring_rotor
 
 from exudyn_rotor import PrescribedMotion, add_rotor, linear_model
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.over import motions_over
-from exudyn_rotor.linear.solve.forced import forced_motions
 
 BEARING = np.array([2.0e6, 1.2e6, 3e6]), np.array([300.0, 200.0, 100.0])
 SPEED = 200.0
@@ -87,22 +85,6 @@ def test_interface_motion_and_unbalance_agree_with_the_list(modes):
     found, load = model.unbalance(), expected.unbalance()
     assert all(np.allclose(found[n], load[n], rtol=0.0, atol=1e-15) for n in load)
     assert max(np.abs(each).max() for each in load.values()) > 1e-6
-
-
-def test_unbalance_response_with_a_moving_frame():
-    mbs, body = on_springs("rigid", spin=SPEED, law=isotropic)
-    supports = [Support(name, 2e6 * np.eye(3)) for name in ("left", "right")]
-    motions = []
-    for model in (linear_model(mbs, body=body), linear_model(rings(), supports=supports)):
-        model = model.for_responses
-        load = {n: SPEED**2 * each for n, each in model.unbalance().items()}
-        [x] = forced_motions([model.at(SPEED)], [load], [0.0], held=model.held_basis)
-        motions.append(model.seen("right")[1] @ x[0])
-    np.testing.assert_allclose(motions[0], motions[1], atol=1e-7 * np.abs(motions[1]).max())
-
-
-def isotropic(mbs, t, item, displacement, velocity, stiffness, damping, offset):
-    return [2e6 * x for x in displacement]
 
 
 def foundation_scene(speed, node=exu.NodeType.RotationRxyz):
@@ -251,25 +233,3 @@ def test_refused_scenes():
     mbs.Assemble()
     with pytest.raises(ValueError, match="second rotor"):
         linear_model(mbs, body=body)
-
-
-@pytest.mark.parametrize("translation", ["free", "none"])
-def test_free_axial_motion_without_a_load_stays_at_rest(translation):
-    """Bearings without axial stiffness: the axial motion is free, and nothing pushes it."""
-    rotor = centered_disc()
-    reduced = rotor.add_point_mass([0.1, 0.0, 0.25], 0.005).reduce(2)
-    SC = exu.SystemContainer()
-    mbs = SC.AddSystem()
-    body = add_rotor(mbs, reduced, translation=translation, spin=100.0)
-    ground = mbs.CreateGround()
-    for name, interface in reduced.interfaces.items():
-        mbs.CreateCartesianSpringDamper(
-            itemNumbers=[ground, body.marker(name)],
-            localPosition0=list(interface.reference),
-            stiffness=[1e6, 2e6, 0.0],
-            damping=[100.0, 100.0, 0.0],
-        )
-    mbs.Assemble()
-    for speed in (50.0, 100.0, 150.0):
-        scene = linear_model(mbs, body=body).at(speed)
-        assert all(np.all(np.isfinite(term)) for term in scene.K.values())

@@ -9,7 +9,6 @@ from scipy.optimize import brentq
 
 from exudyn_rotor import (
     SqueezeFilmDamper,
-    StartState,
     Support,
     add_rotor,
     add_supports,
@@ -131,33 +130,6 @@ def test_run_from_the_steady_state_stays_on_it(reduced, translation):
     assert fine == pytest.approx(coarse / 4.0, rel=0.2)
 
 
-def test_other_bodies_start_from_the_steady_state_too(reduced):
-    """A foundation of 20 kg on springs carries the bearings."""
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(
-        mbs, reduced, spin=40.0, translation="none", markers="position", gravity=[0, -GRAVITY, 0]
-    )
-    base = mbs.CreateMassPoint(mass=20.0, gravity=[0.0, -GRAVITY, 0.0])
-    mbs.CreateCartesianSpringDamper(
-        itemNumbers=[mbs.CreateGround(), base], stiffness=[1e6] * 3, damping=[100.0] * 3
-    )
-    for name, z in ENDS.items():
-        mbs.CreateCartesianSpringDamper(
-            itemNumbers=[base, body.marker(name)],
-            offset=[0.0, 0.0, z],
-            stiffness=[STIFFNESS] * 3,
-            damping=[DAMPING] * 3,
-        )
-    mbs.Assemble()
-    body.start_from(steady_state(body).state())
-    node = mbs.GetObject(base)["nodeNumber"]
-    start = mbs.GetNodeOutput(node, DISPLACEMENT)
-    # k/(k − 20 Ω²) bounds how much its own whirl may differ from a rigid base: below 4 % of 25 µm
-    assert start[1] == pytest.approx(-(TOTAL + 20.0) * GRAVITY / 1e6, abs=1e-5)
-    simulated(mbs, 2 * np.pi / 40.0, 2 * np.pi / 40.0 / 400)
-    assert mbs.GetNodeOutput(node, DISPLACEMENT) == pytest.approx(start, abs=1e-3 * abs(start[1]))
-
-
 # ------------------------------------------------------------------ refusals
 
 
@@ -188,22 +160,6 @@ def test_load_that_nothing_holds_is_refused(reduced, held, monkeypatch):
     assert len(angles) <= 3 * 12 + 2 * 48
 
 
-def test_states_that_do_not_belong_are_refused(reduced):
-    mbs, body = build(reduced, 40.0)
-    mbs.Assemble()
-    steady = steady_state(body)
-    with pytest.raises(ValueError, match="spin starts at 0 rad and 40 rad/s"):
-        body.start_from(steady.state(0.3))
-    with pytest.raises(ValueError, match="spin starts at 0 rad and 40 rad/s"):
-        body.start_from(steady_state(body, 41.0).state())
-    with pytest.raises(ValueError, match="has 2 coordinates"):
-        body.start_from(StartState([0.0, 0.0], [0.0, 0.0], 0.0, 40.0))
-    with pytest.raises(TypeError, match="state: needs"):
-        body.start_from(steady)
-    with pytest.raises(ValueError, match="one velocity for each"):
-        StartState([0.0, 0.0], [0.0], 0.0, 40.0)
-
-
 # ------------------------------------------------------------------ static solutions
 
 
@@ -222,18 +178,6 @@ def test_static_solution_under_gravity_across_the_axis_is_refused(reduced, trans
     with pytest.raises(ValueError, match=r"steady_state\(body\) finds the motion"):
         static(mbs)
     assert np.array_equal(mbs.systemData.GetODE2Coordinates(), before)
-
-
-def test_static_solution_that_holds_at_every_angle_stays(reduced):
-    """Gravity along the axis: m g/k there, and the whirl of a Jeffcott rotor across it."""
-    mbs, body = build(reduced, 40.0, gravity=[0.0, 0.0, -GRAVITY])
-    mbs.Assemble()
-    assert static(mbs)
-    whirl = UNBALANCE * 40.0**2 / (2 * STIFFNESS - TOTAL * 40.0**2 + 80.0j * DAMPING)
-    # the weight of the masses at the rim tilts the rotor: their mean is the middle
-    found = np.mean([mbs.GetMarkerOutput(body.marker(name), DISPLACEMENT) for name in ENDS], axis=0)
-    assert np.hypot(*found[:2]) == pytest.approx(abs(whirl), rel=1e-3)
-    assert found[2] == pytest.approx(-TOTAL * GRAVITY / (2 * STIFFNESS), rel=1e-3)
 
 
 # -------------------------------------------------- the own spin of a rotor with an elastic drive
@@ -308,18 +252,6 @@ def test_a_second_branch_is_found_from_a_motion_on_it():
     for start, expected in ((None, small), (near, large), (near.state(), large)):
         motion = steady_state(body, start=start).interface_motion("left", 0.0)
         assert np.hypot(*motion[:2]) / c == pytest.approx(expected, rel=1e-3)
-
-
-def test_a_start_of_another_scene_is_refused(reduced):
-    mbs, body = build(reduced, 50.0)
-    mbs.Assemble()
-    other, another = build(reduced, 50.0, "free")
-    other.Assemble()
-    start = steady_state(another)
-    with pytest.raises(ValueError, match=r"start: has .* it is of another scene"):
-        steady_state(body, start=start)
-    with pytest.raises(TypeError, match="start: needs"):
-        steady_state(body, start=1.0)
 
 
 def test_a_frozen_spin_has_the_steady_motion_of_a_free_one(reduced):

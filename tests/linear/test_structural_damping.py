@@ -7,25 +7,21 @@ import ngsolve as ngs
 import numpy as np
 import pytest
 from models import ALUMINIUM, STEEL, two_material_cylinder
-from point_rotors import random_rotor, ring_rotor
 
 from exudyn_rotor import (
     HarmonicForce,
-    ReducedRotor,
     SolidRotor,
     Support,
     add_rotor,
     campbell,
     critical_speeds,
     harmonic_response,
-    keep_modes,
     linear_model,
-    select_modes,
     stability,
+    stability_map,
     stability_threshold,
     unstable_ranges,
 )
-from exudyn_rotor.theory.formulation import Formulation
 
 MASS, K, ETA = 3.0, 1.2e5, 0.04  # critical speed √(K/MASS) = 200 rad/s
 OMEGA = np.sqrt(K / MASS)
@@ -121,57 +117,7 @@ def test_materials_have_loss_factors_of_their_own(cylinder, damped):
 # ------------------------------------------------------------------ reduced rotors
 
 
-def test_other_bases_and_files_keep_it(tmp_path):
-    rotor = random_rotor(6).with_damping(loss=0.1).reduce(4)
-    H = rotor.invariants.H
-    np.testing.assert_array_equal(
-        keep_modes(rotor, [1, 3]).invariants.H, H[np.ix_([*range(6), 7, 9], [*range(6), 7, 9])]
-    )
-    selection = select_modes(rotor, Formulation("free", 10.0))
-    T = selection.T
-    # sums of 12 products
-    np.testing.assert_allclose(selection.invariants.H, T.T @ H @ T, rtol=0.0, atol=1e-14)
-    rotor.save(tmp_path / "rotor.npz")
-    loaded = ReducedRotor.load(tmp_path / "rotor.npz")
-    np.testing.assert_array_equal(loaded.invariants.H, H)
-    np.testing.assert_array_equal(
-        loaded.with_attachments.invariants.H, rotor.with_attachments.invariants.H
-    )
-
-
 # ------------------------------------------------------------------ scenes and analyses in time
-
-
-@pytest.mark.filterwarnings("ignore:structural damping")
-@pytest.mark.parametrize("translation", ["none", "free"])
-def test_a_scene_has_it_in_the_frequency_domain(translation):
-    """Springs between the ground and markers of a scene are the supports of a linear rotor."""
-    rotor, spring = ring_rotor(0.1, 0.15, 5.0), (2e7, 1.2e7, 3e7)
-    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(9)
-    answers = []
-    for made in (rotor.with_damping(loss=0.2), rotor):
-        mbs = exudyn.SystemContainer().AddSystem()
-        kinds = {"left": "position", "right": "position"}
-        body = add_rotor(mbs, made, spin=200.0, translation=translation, markers=kinds)
-        ground = mbs.CreateGround()
-        for name in kinds:
-            mbs.CreateCartesianSpringDamper(
-                itemNumbers=[ground, body.marker(name)],
-                localPosition0=list(made.interfaces[name].reference),
-                stiffness=list(spring),
-                damping=[300.0] * 3,
-            )
-        mbs.Assemble()
-        supports = [Support(name, np.diag(spring), 300.0) for name in kinds]
-        force = HarmonicForce("right", (1.0, 0.3j))
-        for target, more in ((mbs, {"body": body}), (made, {"supports": supports})):
-            response = harmonic_response(target, [900.0, 3000.0], force, speed=200.0, **more)
-            answers.append(response.phasor("right", "n1", 0))
-    in_scene, on_supports, in_scene_without, on_supports_without = answers
-    # what a scene's locks and differences of forces make differ is there without the damping, too
-    error = np.abs(in_scene_without - on_supports_without)
-    assert np.all(np.abs(in_scene - on_supports) <= 2.0 * error)
-    assert np.all(np.abs(on_supports - on_supports_without) > 100.0 * error)
 
 
 def test_analyses_in_time_say_that_they_leave_it_out():
@@ -187,6 +133,9 @@ def test_analyses_in_time_say_that_they_leave_it_out():
     with pytest.warns(UserWarning, match="stability finds exponents without it"):
         unstable = unstable_ranges(rotor, [10.0, 20.0])
     assert unstable.shape == (0, 2)
+    with pytest.warns(UserWarning, match="stability finds exponents without it") as told:
+        stability_map(lambda x, y: (rotor, y), [0.0, 1.0], [10.0, 20.0])
+    assert len(told) == 1
     with pytest.warns(UserWarning, match="A scene runs without it"):
         add_rotor(exudyn.SystemContainer().AddSystem(), rotor, spin=40.0, translation="none")
     with warnings.catch_warnings():

@@ -204,18 +204,3 @@ def test_several_rotors_do_not_know_each_other(reduced):
 
 
 # ------------------------------------------------------------------ reports
-
-
-def test_report_says_what_was_added(reduced):
-    mbs = exu.SystemContainer().AddSystem()
-    report = add_rotor(
-        mbs, reduced, name="fan", translation="in-plane", initial_speed=1.0, rotation=SKEW
-    ).report()
-    assert "rotor 'fan': Sect. 2.3, stiffening 'tilt'" in report
-    assert "two in the plane of rotation" in report
-    assert "7: translation along axis, tilt 1, tilt 2, mode 1" in report
-    assert "locked         tilt a, tilt b" in report
-    assert "Python user functions" in report
-    bare = add_rotor(mbs, reduced, name="bare", spin=3.0, marker_body=False)
-    assert bare.locked == ()
-    assert "no Python call" in bare.report()

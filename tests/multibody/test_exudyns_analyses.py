@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from point_rotors import free_stiffness, ring_rotor
 
-from exudyn_rotor import SolidRotor, add_rotor
+from exudyn_rotor import SolidRotor, add_rotor, recommended_settings
 
 LOCKED = {"free": 2, "in-plane": 3, "none": 5}
 SPINS = pytest.mark.parametrize("spin", ["free", 100.0])
@@ -85,3 +85,23 @@ def test_user_functions_of_others_are_refused_as_before(reduced):
         assert not exu.special.exceptions.dictionaryNonCopyable
     finally:
         exu.special.exceptions.dictionaryNonCopyable = True
+
+
+@SPINS
+@TRANSLATIONS
+def test_a_scene_can_be_put_into_a_dictionary_and_made_again(reduced, spin, translation):
+    more = {"initial_speed": 100.0} if spin == "free" else {}
+    mbs, _ = scene(reduced, spin=spin, translation=translation, gravity=[0, -9.81, 0], **more)
+    copy = exu.SystemContainer().AddSystem()
+    copy.SetDictionary(mbs.GetDictionary())
+    copy.Assemble()
+    settings = recommended_settings(end_time=0.01, step=1e-4)
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    ends = []
+    for system in (mbs, copy, mbs):
+        system.SolveDynamic(settings)
+        ends.append(np.array(system.systemData.GetODE2Coordinates()))
+    assert np.abs(ends[0]).max() > 1e-6
+    np.testing.assert_array_equal(ends[0], ends[1])
+    np.testing.assert_array_equal(ends[0], ends[2])

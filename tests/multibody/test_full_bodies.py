@@ -16,6 +16,8 @@ from exudyn_rotor import (
     add_supports,
     recommended_settings,
 )
+from exudyn_rotor.multibody.full import full_memory
+from exudyn_rotor.solvers.memory import TooLittleMemoryError
 
 STEP, STEPS, NEWTON = 1e-4, 20, 1e-10
 GRAVITY = [1.0, -9.81, 3.0]
@@ -249,3 +251,25 @@ def test_stress_is_that_of_the_rotation(bar):
     mbs.SolveStatic(settings)
     known = rotor.carried_prestress.stress
     assert np.abs(body.stress() - known).max() < 1e-4 * np.abs(known).max()
+
+
+def test_instants_that_cannot_be_stored_are_refused(bar):
+    mbs, body = scene(bar)
+    for wrong, match in (([1.0, 0.5], "ascending"), ([-1.0], "before the start")):
+        with pytest.raises(ValueError, match=f"instants: .*{match}"):
+            body.start_recording(wrong)
+    mbs.Assemble()
+    with pytest.raises(ValueError, match=r"before mbs\.Assemble"):
+        body.start_recording([0.0])
+    with pytest.raises(ValueError, match=r"call body\.start_recording"):
+        body.recorded()
+
+
+def test_too_little_memory_is_said_before_anything_is_added(bar, monkeypatch):
+    monkeypatch.setattr(full_memory, "available_memory", lambda: 1e5)
+    mbs = exudyn.SystemContainer().AddSystem()
+    with pytest.raises(TooLittleMemoryError, match=r"60 displacements needs .*rotor\.reduce"):
+        add_rotor(mbs, bar, spin=10.0)
+    assert mbs.systemData.NumberOfNodes() == 0
+    monkeypatch.setattr(full_memory, "available_memory", lambda: 1e9)
+    add_rotor(mbs, bar, spin=10.0)

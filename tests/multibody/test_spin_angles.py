@@ -141,22 +141,3 @@ def test_force_at_an_added_marker_has_its_lever(skew_scene):
     for end in ends[1:]:
         # levers change with the deflection, 1e-6 here
         np.testing.assert_allclose(end, ends[0], atol=1e-5 * abs(ends[0]).max())
-
-
-@pytest.mark.parametrize(
-    ("where", "change", "message"),
-    [
-        ([0, 1], {}, "where: the nodes"),
-        ([0, 99], {}, "where"),
-        ([0, 0, 1], {}, "different nodes"),
-        ("nowhere", {}, "where: interface"),
-        ("a", {"weights": [1.0]}, "weights: are for mesh nodes"),
-        ([0, 1, 2], {"weights": [1.0, -1.0, 1.0]}, "weights: needs"),
-    ],
-)
-def test_markers_that_cannot_be_are_refused(skew_scene, where, change, message):
-    _, mbs, body = skew_scene
-    before = mbs.systemData.NumberOfMarkers()
-    with pytest.raises(ValueError, match=message):
-        body.add_marker(where, **change)
-    assert mbs.systemData.NumberOfMarkers() == before

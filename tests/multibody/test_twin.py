@@ -1,7 +1,5 @@
 """The twin of Exudyn's own call: one script, the name of the call swapped."""
 
-import inspect
-
 import exudyn as exu
 import exudyn.utilities
 import numpy as np
@@ -9,7 +7,6 @@ import pytest
 import scipy.sparse as sp
 from exudyn.FEM import FEMinterface
 from models import disc_fem
-from run_scenes import item_counts
 from scipy.spatial.transform import Rotation
 
 import exudyn_rotor  # noqa: F401  adds the call to MainSystem
@@ -126,22 +123,6 @@ def run_script(call, fem, mesh, space):
     return {name: mbs.GetSensorStoredData(s)[:, 1:] for name, s in scene["sensors"].items()}
 
 
-def test_signature_is_that_of_exudyn_with_more_at_the_end():
-    own, twin = (
-        inspect.signature(getattr(exu.MainSystem, call)).parameters for call in (OWN, TWIN)
-    )
-    assert list(twin)[: len(own)] == list(own)
-    for name, parameter in own.items():
-        default = twin[name].default
-        if isinstance(parameter.default, (list, np.ndarray)):
-            assert np.array_equal(default, parameter.default), name
-        else:
-            assert default is parameter.default or default == parameter.default, name
-    extra = list(twin.values())[len(own) :]
-    assert extra
-    assert all(parameter.default is not inspect.Parameter.empty for parameter in extra)
-
-
 def test_returned_keys_are_those_of_exudyn(fem):
     given = [
         getattr(exu.SystemContainer().AddSystem(), call)(
@@ -193,60 +174,3 @@ def test_rotor_beside_a_3d_body(fem):
         (alone,) = run(call)
         # both share the tolerance of Newton's method
         assert abs(signal - alone).max() < 1e-7 * abs(alone).max()
-
-
-def bare_interface(fem):
-    model = turned(fem, TO_X)
-    model.modeBasis = {}
-    return model
-
-
-WRONG = {
-    "transverse velocity": (
-        {"axis": "z", "initialAngularVelocity": [1.0, 0.0, 100.0]},
-        "1 rad/s across the spin axis",
-    ),
-    "spin twice": (
-        {"axis": "z", "spin": 100.0, "initialAngularVelocity": [0.0, 0.0, 90.0]},
-        "spin given twice",
-    ),
-    "offsets": (
-        {"axis": "z", "superElementRigidMarkersOffsets": [[0.0, 0.0, 0.0]]},
-        "needs 2 × 3 finite numbers for the interfaces left, right",
-    ),
-    "ragged offsets": (
-        {"axis": "z", "superElementRigidMarkersOffsets": [[0.0], [0.0, 0.0]]},
-        "superElementRigidMarkersOffsets",
-    ),
-    "color": ({"axis": "z", "color": [1.0, 0.0, 0.0]}, r"color: needs finite .* shape \(4,\)"),
-    "reflection": (
-        {"axis": "z", "referenceRotationMatrix": np.diag([1.0, 1.0, -1.0])},
-        "referenceRotationMatrix: needs a rotation matrix",
-    ),
-    "nan": ({"axis": "z", "initialVelocity": [0.0, np.nan, 0.0]}, "initialVelocity"),
-    "held": (
-        {"axis": "z", "translation": "none", "initialVelocity": [1.0, 0.0, 0.0]},
-        "translation='none' holds the rotor",
-    ),
-    "taken name": ({"axis": "z", "name": "taken"}, "give the second rotor another name"),
-    "empty name": ({"axis": "z", "name": ""}, "name: needs a name that is not empty"),
-    "no modes": ({"axis": "z", "femInterface": bare_interface}, "holds no modes"),
-    "nothing imported": (
-        {"axis": "z", "femInterface": lambda fem: FEMinterface()},
-        "fem: massMatrix is missing",
-    ),
-    "no FEMinterface": ({"axis": "z", "femInterface": lambda fem: "rotor.npz"}, "FEMinterface"),
-}
-
-
-@pytest.mark.parametrize("case", WRONG)
-def test_wrong_input_changes_nothing(fem, case):
-    arguments, message = WRONG[case]
-    mbs = exu.SystemContainer().AddSystem()
-    mbs.CreateFixedAxisFFRFReducedOrderObject("taken", fem, axis="z")
-    before = item_counts(mbs)
-    arguments = {"name": "rotor", "femInterface": lambda fem: fem} | arguments
-    arguments["femInterface"] = arguments["femInterface"](fem)
-    with pytest.raises((ValueError, TypeError), match=message):
-        mbs.CreateFixedAxisFFRFReducedOrderObject(**arguments)
-    assert item_counts(mbs) == before

@@ -1,19 +1,15 @@
 """The twin of Exudyn's class ObjectFFRFreducedOrderInterface: one script, one name swapped."""
 
-import inspect
-
 import exudyn as exu
 import exudyn.utilities as eu
 import numpy as np
 import pytest
 from exudyn.FEM import CMSObjectComputeNorm, FEMinterface, ObjectFFRFreducedOrderInterface
 from models import disc_fem
-from run_scenes import item_counts
 
 from exudyn_rotor import ObjectFixedAxisFFRFreducedOrderInterface
 
 CLASSES = ObjectFFRFreducedOrderInterface, ObjectFixedAxisFFRFreducedOrderInterface
-METHODS = "__init__", "AddObjectFFRFreducedOrder", "AddObjectFFRFreducedOrderWithUserFunctions"
 UNIT = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 
 
@@ -100,18 +96,6 @@ def run_script(kind, fem, later=None, **more):
     return motion, np.array(peaks)
 
 
-def test_names_and_defaults_are_those_of_exudyn():
-    for method in METHODS:
-        own, twin = (inspect.signature(getattr(kind, method)).parameters for kind in CLASSES)
-        assert list(twin)[: len(own)] == list(own)
-        for name, parameter in own.items():
-            default = twin[name].default
-            if isinstance(parameter.default, list):
-                assert np.array_equal(default, parameter.default), (method, name)
-            else:
-                assert default == parameter.default, (method, name)
-
-
 def test_returned_keys_and_attributes_are_those_of_exudyn(fem):
     own, twin = (made(kind, fem, axis="z") for kind in CLASSES)
     for name in ("nModes", "nNodes", "dim3D"):
@@ -155,19 +139,6 @@ def bare(fem):
     return model
 
 
-def test_orientation_by_euler_parameters(fem):
-    half = np.sqrt(0.5)
-    mbs = exu.SystemContainer().AddSystem()
-    cms = ObjectFixedAxisFFRFreducedOrderInterface(fem, axis="z")
-    body = cms.AddObjectFFRFreducedOrderWithUserFunctions(
-        exu, mbs, eulerParametersRef=[half, half, 0.0, 0.0], initialAngularVelocity=[0, -30.0, 0]
-    )["rotorBody"]
-    np.testing.assert_allclose(
-        body.plan.setup.placement.rotation @ [0, 0, 1], [0, -1, 0], atol=1e-15
-    )
-    assert body.plan.setup.placement.speed == pytest.approx(30.0, rel=1e-14)
-
-
 def test_a_file_keeps_the_rotor(fem, tmp_path):
     """An empty interface adds what another has saved."""
     cms = ObjectFixedAxisFFRFreducedOrderInterface(fem, axis="z", translation="none", spin=10.0)
@@ -183,32 +154,6 @@ def test_a_file_keeps_the_rotor(fem, tmp_path):
     assert (empty.nModes, empty.nNodes) == (cms.nModes, cms.nNodes)
     with pytest.raises(ValueError, match="spin axis is"):
         ObjectFixedAxisFFRFreducedOrderInterface(axis="x").LoadFromFile(tmp_path / "rotor.npz")
-
-
-WRONG = {
-    "user function": ({"UFforce": lambda *given: 0.0}, "UFforce: needs 0"),
-    "mass function": ({"UFmassMatrix": 3}, "UFmassMatrix: needs 0"),
-    "two orientations": (
-        {"eulerParametersRef": [1.0, 0, 0, 0], "rotationMatrixRef": UNIT},
-        "given twice",
-    ),
-    "norm": ({"eulerParametersRef": [1.0, 1.0, 0, 0]}, "eulerParametersRef: needs 4 numbers"),
-    "position": ({"positionRef": [0.0, np.nan, 0.0]}, "positionRef"),
-    "reflection": ({"rotationMatrixRef": -np.eye(3)}, "rotationMatrixRef: needs a rotation"),
-    "across": ({"initialAngularVelocity": [0.0, 1.0, 9.0]}, "across the spin axis"),
-    "name": ({"name": " "}, "name: needs a name"),
-}
-
-
-@pytest.mark.parametrize("case", WRONG)
-def test_wrong_input_changes_nothing(fem, case):
-    arguments, message = WRONG[case]
-    mbs = exu.SystemContainer().AddSystem()
-    cms = ObjectFixedAxisFFRFreducedOrderInterface(fem, axis="z")
-    before = item_counts(mbs)
-    with pytest.raises((ValueError, TypeError), match=message):
-        cms.AddObjectFFRFreducedOrderWithUserFunctions(exu, mbs, **arguments)
-    assert item_counts(mbs) == before
 
 
 def test_an_interface_without_a_model(fem, tmp_path):

@@ -9,12 +9,10 @@ from models import disc_rotor
 
 from exudyn_rotor import (
     ConstantSpeed,
-    Prestress,
     ReducedRotor,
     SolidRotor,
     add_rotor,
     campbell,
-    free_modes,
 )
 from exudyn_rotor.theory.stiffening import stiffening
 
@@ -87,38 +85,6 @@ def test_reduced_rotor_without_prestress_is_told_what_to_do(rotor):
     for field in (plain.static_displacement, plain.static_stress):
         with pytest.raises(ValueError, match="without the static centrifugal field"):
             field(1.0)
-
-
-def test_imported_matrix_gives_the_same_rotor(rotor, reduced):
-    nodes, axis = rotor.nodes, rotor.axis
-    imported = SolidRotor.from_matrices(rotor.mass, rotor.stiffness, nodes, axis)
-    given = Prestress.from_matrix(rotor.prestress().matrix, nodes)
-    found = imported.reduce(free_modes(rotor, 12), prestress=given)
-    # a mode's sign is free
-    np.testing.assert_allclose(
-        np.abs(found.invariants.K2), np.abs(reduced.invariants.K2), rtol=0, atol=1e-6
-    )
-    assert found.centrifugal is None
-
-
-def test_stress_at_rest_is_in_the_frequencies_at_rest(rotor):
-    # radial compression of the rim and tension inside, put into equilibrium
-    stress = np.zeros((rotor.node_count, 6))
-    stress[:, :2] = 2e8 * np.cos(15 * np.linalg.norm(rotor.nodes[:, :2], axis=1))[:, None]
-    with pytest.warns(UserWarning, match="not in equilibrium"):
-        prestress = rotor.prestress(stress=stress)
-    modes = free_modes(rotor, 12)
-    before, after = (rotor.reduce(modes, prestress=p) for p in (None, prestress))
-    expected = rotor.stiffness + prestress.constant
-    Q = after.shapes.matrix
-    np.testing.assert_allclose(
-        np.diag(Q.T @ expected @ Q)[6:], after.frequencies[6:] ** 2, rtol=1e-9
-    )
-    assert np.abs(after.frequencies[6:] / before.frequencies[6:] - 1).max() > 1e-4
-    with pytest.warns(UserWarning, match="not in equilibrium"):
-        buckling = rotor.prestress(stress=-1000 * stress)
-    with pytest.raises(ValueError, match="the rotor buckles"):
-        rotor.reduce(modes, prestress=buckling)
 
 
 # ------------------------------------------------------------------ invariants and storage

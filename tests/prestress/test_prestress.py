@@ -61,16 +61,6 @@ def test_displacement_is_in_equilibrium_with_the_balanced_load(unbalanced):
     assert np.abs(rotations(unbalanced.nodes, (0, 0, 0)).T @ momentum).max() < 1e-20
 
 
-def test_nodal_stress_gives_the_matrix_of_its_displacement(beam):
-    gradient = 1e-3 * np.random.default_rng(1).normal(size=(3, 3))
-    u = (beam.nodes @ gradient.T)[:, :, None].reshape(-1)
-    stress = beam.stress_recovery(u[:, None])[:, :, 0]
-    of_stress = beam.elements.geometric_stiffness_of_stress(stress)
-    of_displacement = beam.elements.geometric_stiffness(u)
-    assert abs(of_stress - of_displacement).max() < 1e-11 * abs(of_stress).max()
-    np.testing.assert_allclose(beam.elements.load_of_stress(stress), beam.stiffness @ u, atol=1e-3)
-
-
 # ------------------------------------------------------------------ closed solutions
 
 
@@ -159,15 +149,6 @@ def test_both_parts_are_the_derivative_of_the_tangent(beam):
 # ------------------------------------------------------------------ stress at rest
 
 
-def test_stress_out_of_balance_is_put_into_equilibrium(disc):
-    stress = 1e8 * np.random.default_rng(5).normal(size=(1, 6)) * np.ones((disc.node_count, 1))
-    stress *= 1 + np.cos(20 * disc.nodes[:, :1])
-    with pytest.warns(UserWarning, match="not in equilibrium"):
-        constant = disc.prestress(stress=stress).constant
-    turned = constant @ rotations(disc.nodes, (0, 0, 0))
-    assert np.abs(turned).max() < 1e-10 * abs(constant).max() * RADIUS
-
-
 # ------------------------------------------------------------------ yielding
 
 
@@ -214,43 +195,3 @@ def test_imported_matrix_is_taken_as_it_is(disc):
     assert abs(more.per_square - 3.0 * computed.matrix).max() < 1e-12 * abs(K_u).max()
     assert abs(more.per_fourth_power - K_uu).max() == 0.0
     assert "initial displacement" in repr(more)
-
-
-def test_initial_displacement_needs_both_matrices(disc):
-    matrix = disc.prestress().matrix
-    for given, error, message in (
-        (matrix, TypeError, r"needs the two matrices \(K_u, K_uu\)"),
-        (True, TypeError, "got True"),
-        ((matrix, np.eye(5)), ValueError, "initial_displacement: K_uu: the shape must be"),
-    ):
-        with pytest.raises(error, match=message):
-            Prestress.from_matrix(matrix, disc.nodes, initial_displacement=given)
-
-
-@pytest.mark.parametrize(
-    ("matrix", "message"),
-    [
-        (np.eye(5), "shape must be"),
-        (np.triu(np.ones((9, 9))), "not symmetric"),
-        (np.full((9, 9), np.nan), "not finite"),
-    ],
-)
-def test_wrong_matrices_are_refused(matrix, message):
-    with pytest.raises(ValueError, match=f"prestress matrix: .*{message}"):
-        Prestress.from_matrix(matrix, np.eye(3))
-
-
-def test_prestress_of_another_mesh_or_kind_is_refused(disc, beam):
-    with pytest.raises(ValueError, match="another mesh"):
-        beam.with_prestress(disc.prestress())
-    with pytest.raises(TypeError, match=r"prestress: needs Prestress, got 1; rotor\.prestress\(\)"):
-        beam.with_prestress(1)
-    carrying = disc.with_prestress(disc.prestress())
-    for change in (
-        carrying.prestress,
-        lambda: carrying.with_prestress(carrying.carried_prestress),
-        lambda: carrying.add_point_mass((0, 0, 0), 0.1),
-        lambda: carrying.clamped("left"),
-    ):
-        with pytest.raises(ValueError, match="carries a prestress already"):
-            change()

@@ -5,7 +5,7 @@ import ngsolve as ngs
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from models import ALUMINIUM, STEEL, block_beam
+from models import STEEL, block_beam
 from netgen.occ import Box, Cylinder, Glue, OCCGeometry, Pnt, X, Z
 
 from exudyn_rotor import (
@@ -55,16 +55,6 @@ def mesh() -> ngs.Mesh:
     return ngs.Mesh(OCCGeometry(solid).GenerateMesh(maxh=0.03))
 
 
-@pytest.fixture(scope="module")
-def bar(mesh) -> SolidRotor:
-    return SolidRotor.from_ngsolve(mesh, STEEL, "z")
-
-
-@pytest.fixture(scope="module")
-def blade(bar) -> SolidRotor:
-    return bar.clamped("root")
-
-
 # ------------------------------------------------------------------ a rigid hub
 
 
@@ -104,36 +94,6 @@ def test_hub_acts_as_a_light_and_stiff_one_in_the_mesh(ring):
 
 
 # ------------------------------------------------------------------ another static state
-
-
-@pytest.mark.parametrize(
-    ("other", "message"),
-    [
-        (lambda bar, mesh: bar, "none of this rotor.*other clamped nodes"),
-        (lambda bar, mesh: bar.clamped("tip"), "none of this rotor.*other clamped nodes"),
-        (
-            lambda bar, mesh: SolidRotor.from_ngsolve(mesh, STEEL, "y").clamped("root"),
-            "another centrifugal load.*axis",
-        ),
-        (
-            lambda bar, mesh: SolidRotor.from_ngsolve(mesh, ALUMINIUM, "z").clamped("root"),
-            "another centrifugal load.*density",
-        ),
-        (
-            lambda bar, mesh: SolidRotor.from_ngsolve(
-                mesh, STEEL | {"youngsModulus": 2.0e11}, "z"
-            ).clamped("root"),
-            "none of this rotor.*elastic modulus",
-        ),
-        (
-            lambda bar, mesh: bar.clamped("root").add_point_mass((0.4, 0, 0), 1e-5),
-            "another centrifugal load.*point masses",
-        ),
-    ],
-)
-def test_prestress_of_another_static_state_is_refused(bar, blade, mesh, other, message):
-    with pytest.raises(ValueError, match=rf"prestress: .*{message}.*rotor\.prestress\(\)"):
-        blade.with_prestress(other(bar, mesh).prestress())
 
 
 # ------------------------------------------------------------------ stress at rest

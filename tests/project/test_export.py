@@ -4,11 +4,22 @@ import csv
 
 import numpy as np
 import pytest
+from matplotlib import pyplot
 from small_results import STORED
 
 from exudyn_rotor import SolidRotor, Support, campbell, critical_speeds
 from exudyn_rotor.results import Result
 from exudyn_rotor.units import Units
+
+
+@pytest.fixture(scope="module")
+def diagram():
+    """A point of 1 kg on 1e4 N/m: ω = 100 rad/s at every speed."""
+    point = SolidRotor.from_matrices(
+        np.eye(3), np.zeros((3, 3)), [[0, 0, 0]], axis="z", interfaces={"at": [0]}
+    )
+    return campbell(point, [0.0, 30.0, 70.0, 110.0], supports=[Support("at", 1e4 * np.eye(3))])
+
 
 RESULTS = {name: kept for name, kept in STORED.items() if isinstance(kept, Result)}
 EVERY = pytest.mark.parametrize("name", RESULTS)
@@ -90,3 +101,20 @@ def test_data_sets_hold_the_fields(name):
     if name == "Campbell":
         assert data["growth"].dims == ("speeds", "modes")
         assert float(data["growth"].sel(speeds=20.0)[0]) == result.growth[1, 0]
+
+
+def test_operating_range_and_margins_are_shaded(diagram):
+    ax = diagram.plot(units="SI", operating_range=(40.0, 80.0), margins=(0.1, 0.25))
+    spans = [(patch.get_x(), patch.get_x() + patch.get_width()) for patch in ax.patches]
+    np.testing.assert_allclose(spans, [(40.0, 80.0), (36.0, 40.0), (80.0, 100.0)])
+    across = STORED["CriticalSpeedMap"].plot(units="SI", operating_range=(12.0, 15.0))
+    assert [patch.get_y() for patch in across.patches] == [12.0]
+    for given, message in (
+        ({"operating_range": (80.0, 40.0)}, "operating_range: needs the lowest and the highest"),
+        ({"margins": (0.1, 0.1)}, "margins: are beside an operating range"),
+        ({"margins": (-0.1, 0.1), "operating_range": (4.0, 8.0)}, "margins: needs shares"),
+        ({"orders": [1.0, 0.0]}, "orders: needs positive numbers"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            diagram.plot(**given)
+    pyplot.close("all")

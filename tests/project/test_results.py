@@ -10,7 +10,7 @@ from point_rotors import ring_rotor
 from small_results import STORED
 
 import exudyn_rotor
-from exudyn_rotor import plotting, results
+from exudyn_rotor import results
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
 from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse
@@ -34,13 +34,6 @@ class Everything(Result):
     marks: np.ndarray = numbers("pairs", dtype=bool)
     titles: tuple[str, ...] = words(2, default=("x", "y"))
     absent: np.ndarray | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class Unstorable(Result):
-    """Not registered."""
-
-    value: float
 
 
 def everything(**changes) -> Everything:
@@ -108,41 +101,6 @@ def test_every_result_has_a_table_a_short_repr_and_a_picture(name):
         assert ax.figure is pyplot.gcf()
 
 
-def test_what_cannot_be_stored_leaves_the_old_file(tmp_path):
-    path = tmp_path / "kept.npz"
-    everything().save(path)
-    with pytest.raises(TypeError, match="a Unstorable cannot be stored"):
-        Unstorable(1.0).save(path)
-    assert Everything.load(path).number == 0.1
-    assert [file.name for file in tmp_path.iterdir()] == ["kept.npz"]
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"name": {"a": 1}}, "name: needs a name"),
-        ({"name": ""}, "name: needs a name that is not empty"),
-        ({"names": (1.0,)}, "names: needs a name"),
-        ({"names": [3]}, "names: needs a name"),
-        ({"reals": np.array([object()])}, "reals: needs numbers"),
-        ({"reals": np.ma.masked_array([1.0, 2.0], [0, 1])}, "reals: .* masked"),
-        ({"counts": None}, "counts: needs"),
-        ({"number": "0.1"}, "number: needs a finite number"),
-        ({"number": np.nan}, "number: needs a finite number"),
-        ({"flag": "no"}, "flag: needs True or False"),
-        ({"pairs": np.zeros((2, 3))}, r"pairs: needs the shape \(2, 2\), got \(2, 3\)"),
-        ({"pairs": np.array([[0.0, np.inf]])}, "pairs: needs finite numbers"),
-        ({"pairs": np.array([[0.0, -1.0]])}, "pairs: needs values ≥ 0.0"),
-        ({"marks": np.ones(2, dtype=bool)}, r"marks: needs the shape \(1,\)"),
-        ({"marks": np.ones(1)}, "marks: needs flags"),
-        ({"titles": ("a",)}, r"titles: needs the shape \(2,\)"),
-    ],
-)
-def test_the_constructor_checks_every_field(changes, message):
-    with pytest.raises((TypeError, ValueError), match=message):
-        everything(**changes)
-
-
 def test_orbit_is_drawn_for_every_place(ellipses):
     axes = ellipses.plot_orbit(240.0)
     drawn = axes.lines[0].get_xdata() + 1j * axes.lines[0].get_ydata()
@@ -174,26 +132,3 @@ def test_pictures_are_figures_of_pyplot(ellipses, shaken, tmp_path):
     pyplot.savefig(tmp_path / "a.png")
     pixels = pyplot.imread(tmp_path / "a.png")
     assert np.ptp(pixels[..., :3]) > 0.5  # not blank
-
-
-@pytest.mark.parametrize("corners", [3, 6])
-def test_surfaces_are_drawn_in_new_and_in_given_axes(corners):
-    nodes = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, 0, 1]], float)
-    triangles = [[0, 1, 3, 2, 4, 5][:corners], [1, 2, 3, 0, 4, 5][:corners]]
-    drawn = plotting.draw_surface(nodes, triangles, np.arange(6.0), "T [K]")
-    assert pyplot.gca() is drawn
-    assert [ax.get_ylabel() for ax in drawn.figure.axes][1] == "T [K]"
-    assert not drawn.figure.texts  # the ticks tell the size
-    across = plotting.draw_surface(nodes * [1, 1, 9], triangles, np.arange(6.0), "T [K]")
-    assert "z from 0 m to " in across.figure.texts[0].get_text()
-    given = pyplot.subplots(subplot_kw={"projection": "3d"})[1]
-    size = given.figure.get_size_inches()
-    assert plotting.draw_surface(nodes, triangles, np.arange(6.0), "T [K]", given) is given
-    assert np.array_equal(given.figure.get_size_inches(), size)
-    flat = pyplot.subplots()[1]
-    with pytest.raises(TypeError, match="ax: needs Axes3D, got"):
-        plotting.draw_surface(nodes, triangles, np.arange(6.0), "T [K]", flat)
-    with pytest.raises(ValueError, match="triangles: needs whole numbers ≥ 0 and ≤ 5, got 6"):
-        plotting.draw_surface(nodes, [[0, 1, 6]], np.arange(6.0), "T [K]")
-    with pytest.raises(ValueError, match="values: needs finite numbers"):
-        plotting.draw_surface(nodes, triangles, np.full(6, np.nan), "T [K]")

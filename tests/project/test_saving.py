@@ -6,31 +6,9 @@ import numpy as np
 import pytest
 from matplotlib import pyplot
 from matplotlib.figure import Figure
-from small_results import STORED
 
 from exudyn_rotor import plotting
 from exudyn_rotor.storage import read_arrays, write_arrays
-
-
-@pytest.mark.parametrize(
-    ("path", "kind", "message"),
-    [
-        ("none/a.npz", FileNotFoundError, r"path: the folder '.*none' does not exist"),
-        (".", IsADirectoryError, "path: needs the name of a file"),
-        ("none/", IsADirectoryError, "path: needs the name of a file, 'none/' is a folder"),
-        (3, TypeError, "path: needs the path of a file"),
-        ("", ValueError, "path: needs the path of a file"),
-        ("pipe", OSError, "path: needs the name of a file, 'pipe' is a device"),
-    ],
-)
-@pytest.mark.skipif(os.name == "nt", reason="pipes of POSIX")
-def test_paths_that_cannot_be_saved_to(path, kind, message, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    os.mkfifo("pipe")
-    for name in ("ReducedRotor", "Campbell"):
-        with pytest.raises(kind, match=message):
-            STORED[name].save(path)
-    assert sorted(os.listdir()) == ["pipe"]
 
 
 @pytest.mark.parametrize("step", [(np, "savez_compressed"), (os, "fsync"), (os, "replace")])

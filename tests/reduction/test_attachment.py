@@ -61,19 +61,6 @@ def test_flexibility_is_complete_with_attachment_modes(beam, count):
     assert np.abs(flexibility(reduced) - exact).max() > 0.01 * np.abs(exact).max()
 
 
-def test_held_rotor_has_responses_to_acceleration(beam):
-    """A rod clamped at one end, hanging: the far end moves by ``ρ g L²/(2E)``, cross strain 0."""
-    material = STEEL | {"poissonsRatio": 0.0}
-    rod = SolidRotor.from_ngsolve(block_beam(0.1), material, "z").clamped("left")
-    reduced = rod.reduce(1).with_attachments
-    along = np.argmax([abs(axis) for axis in rod.axis.direction])
-    load = reduced.invariants.S[along]
-    moved = reduced.interfaces["right"].motion @ (load / reduced.frequencies**2)
-    length = np.ptp(rod.nodes[:, along])
-    expected = STEEL["density"] * length**2 / (2.0 * STEEL["youngsModulus"])
-    assert moved[along] == pytest.approx(expected, rel=1e-9)
-
-
 def test_truncation_and_files_keep_them(rotor, tmp_path):
     reduced = rotor.reduce(6)
     fewer = keep_modes(reduced, [0, 1])
@@ -204,12 +191,3 @@ def test_modes_that_are_missing_are_told_before_a_run(rotor):
     assert shares[2] < 0.01
     assert missed(rotor.reduce(craig_bampton_modes(rotor, 0)), **given) > 0.01
     assert missed(rotor.reduce(craig_bampton_modes(rotor, 12)), **given) == 0.0
-
-
-def test_band_beyond_all_modes_is_told(rotor):
-    supports = [Support(name, 1e7, 100.0) for name in ("left", "right")]
-    given = {"speeds": 1.0, "supports": supports}
-    reduced = rotor.reduce(craig_bampton_modes(rotor, 0))
-    highest = reduced.frequencies.max()
-    assert "lie in the band up to" in told(reduced, load_frequencies=1.1 * highest, **given)
-    assert "lie in the band" not in told(reduced, load_frequencies=0.5 * highest, **given)

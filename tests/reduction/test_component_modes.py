@@ -10,7 +10,6 @@ import pytest
 import scipy.linalg as la
 import scipy.sparse as sp
 from exudyn.FEM import FEMinterface, HCBstaticModeSelection, KirchhoffMaterial
-from point_rotors import ring_rotor
 
 from exudyn_rotor.reduction.component import free_modes
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
@@ -182,34 +181,6 @@ def test_craig_bampton_spans_that_of_fem_interface(shaft, coupling):
     np.testing.assert_allclose(modes.frequencies[12:] ** 2, shaft.fem.eigenValues[:6], rtol=1e-9)
 
 
-@pytest.mark.parametrize("coupling", ["RBE2", "RBE3"])
-def test_static_modes_are_unit_motions_and_eigenmodes_have_none(shaft, coupling):
-    modes = craig_bampton_modes(shaft.rotor, 4, coupling=coupling)
-    means = [
-        interface.mean_motion(len(shaft.rotor.nodes)) @ modes.matrix
-        for interface in shaft.rotor.interfaces.values()
-    ]
-    np.testing.assert_allclose(np.vstack(means)[:, :12], np.eye(12), atol=1e-9)
-    # eigenmodes are of size 1/sqrt(kg); their rotations are larger by 1/radius
-    np.testing.assert_allclose(np.vstack(means)[:, 12:], 0.0, atol=1e-7)
-    assert modes.labels[:4] == (
-        "left translation x",
-        "left translation y",
-        "left translation z",
-        "left rotation x",
-    )
-    assert np.all(np.isnan(modes.frequencies[:12]))
-    assert np.all(modes.frequencies[12:] > 0.0)
-
-
-def test_the_mean_motion_of_all_nodes_holds_no_deformation():
-    """Of equal masses it is the rigid motion: what is left are the free modes."""
-    rotor = ring_rotor(0.1, 0.05, 2.0).with_interface("all", range(10))
-    modes = craig_bampton_modes(rotor, 3, coupling="RBE3")
-    assert largest_angle(modes.matrix[:, :6], rigid_columns(rotor.nodes)) < 1e-8
-    np.testing.assert_allclose(modes.frequencies[6:], np.sqrt(1e8 / 0.2), rtol=1e-9)
-
-
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -224,15 +195,6 @@ def test_the_mean_motion_of_all_nodes_holds_no_deformation():
 def test_wrong_requests_are_refused(shaft, change, message):
     with pytest.raises(ValueError, match=message):
         craig_bampton_modes(shaft.rotor, **{"count": 2, **change})
-
-
-def test_shared_nodes_need_rbe3(shaft):
-    left = shaft.rotor.interfaces["left"]
-    rotor = with_interfaces(shaft.rotor, {"left": left, "again": left})
-    with pytest.raises(ValueError, match="use coupling='RBE3'"):
-        craig_bampton_modes(rotor, 2)
-    with pytest.raises(ValueError, match="depend on each other"):
-        craig_bampton_modes(rotor, 2, coupling="RBE3")
 
 
 @pytest.mark.parametrize("coupling", ["RBE2", "RBE3"])
@@ -261,27 +223,6 @@ def test_fem_interface_modes_with_stress(shaft):
     stored = shaft.fem.postProcessingModes["matrix"]
     np.testing.assert_array_equal(modes.stress[:, 4, 2], stored[:, 6 * 2 + 4])
     assert modes.labels[-1] == "FEMinterface mode 3"
-
-
-def test_unfit_fem_interface_modes_are_refused(shaft):
-    with pytest.raises(ValueError, match="ComputeEigenmodes"):
-        fem_interface_modes(shaft.rotor, FEMinterface())
-    nodes = shaft.rotor.nodes
-    fem = FEMinterface()
-    fem.modeBasis = {"matrix": np.ones((nodes.size, 2))}
-    fem.nodes = {"Position": nodes + 1e-6}
-    with pytest.raises(ValueError, match="modal basis from another mesh: node positions"):
-        fem_interface_modes(shaft.rotor, fem)
-    fem.nodes = {"Position": nodes[1:]}
-    with pytest.raises(ValueError, match="modal basis from another mesh: the rotor has"):
-        fem_interface_modes(shaft.rotor, fem)
-    fem.nodes = {"Position": nodes}
-    fem.postProcessingModes = {
-        "matrix": np.ones((len(nodes), 6)),
-        "outputVariableType": "OutputVariableType.StressLocal",
-    }
-    with pytest.raises(ValueError, match="after the modes"):
-        fem_interface_modes(shaft.rotor, fem)
 
 
 # ---- factorisation

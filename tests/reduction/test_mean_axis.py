@@ -7,12 +7,6 @@ import numpy as np
 import pytest
 import scipy.linalg
 from exudyn.FEM import FEMinterface, HCBstaticModeSelection
-from exudyn.itemInterface import (
-    Force,
-    MarkerNodeRigid,
-    SensorNode,
-    Torque,
-)
 from models import disc_fem
 
 from exudyn_rotor import (
@@ -71,31 +65,6 @@ def test_modes_lose_their_momentum_and_nothing_else(held, solid):
         before.T @ (solid.stiffness @ before),
         atol=1e-9 * np.abs(before.T @ (solid.stiffness @ before)).max(),
     )
-
-
-@pytest.mark.filterwarnings("ignore:the modes of the FEMinterface hold")
-def test_force_and_sensor_at_the_node_are_on_exudyns_frame(held):
-    """At rest, where its body does not soften; the tilt is 1e-4."""
-    found = []
-    for call in (OWN, TWIN):
-        mbs = exu.SystemContainer().AddSystem()
-        axis = {"axis": "z"} if call == TWIN else {}
-        made = getattr(mbs, call)(name="rotor", femInterface=held, **axis)
-        node = made["FFRFReducedOrderObjectDict"]["nRigidBody"]
-        marker = mbs.AddMarker(MarkerNodeRigid(nodeNumber=node))
-        mbs.AddLoad(Force(markerNumber=marker, loadVector=[900.0, 300.0, 200.0]))
-        mbs.AddLoad(Torque(markerNumber=marker, loadVector=[0.0, 20.0, 30.0]))
-        kind = exu.OutputVariableType.Displacement
-        sensor = SensorNode(nodeNumber=node, outputVariableType=kind, storeInternal=True)
-        sensor = mbs.AddSensor(sensor)
-        mbs.Assemble()
-        settings = exu.SimulationSettings()
-        settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 40, 2e-3
-        settings.timeIntegration.verboseMode = 0
-        settings.solution.file.write = False
-        mbs.SolveDynamic(settings)
-        found.append(mbs.GetSensorStoredData(sensor)[:, 1:])
-    assert abs(found[1] - found[0]).max() < 1e-3 * abs(found[0]).max()
 
 
 def whirl(call, fem, **more):
@@ -167,16 +136,3 @@ def test_the_speed_of_the_warning_is_that_of_the_missing_stiffness(held, solid):
         warnings.simplefilter("error")
         cms = ObjectFixedAxisFFRFreducedOrderInterface(mean, axis="z")
         cms.AddObjectFFRFreducedOrder(exu.SystemContainer().AddSystem())
-
-
-def test_bad_input_is_refused_and_changes_nothing(held):
-    with pytest.raises(TypeError, match="fem: needs FEMinterface"):
-        use_mean_axis_modes("rotor")
-    fem = copy(held)
-    before = fem.modeBasis["matrix"]
-    with pytest.raises(ValueError, match="rank_tolerance"):
-        use_mean_axis_modes(fem, rank_tolerance=0.0)
-    assert fem.modeBasis["matrix"] is before
-    fem.modeBasis = {}
-    with pytest.raises(ValueError, match="fem: it holds no modes"):
-        use_mean_axis_modes(fem)

@@ -36,13 +36,6 @@ def reduced(rotor) -> ReducedRotor:
     return rotor.reduce(5)
 
 
-def grounded_rotor(springs: np.ndarray) -> SolidRotor:
-    """Return a random rotor with springs (3,) to the ground on every node."""
-    arrays = random_arrays(12)
-    arrays["stiffness"] = arrays["stiffness"] + np.diag(np.tile(springs, 6))
-    return SolidRotor.from_matrices(**arrays, axis=SKEW_AXIS)
-
-
 # ------------------------------------------------------------------ basis
 
 
@@ -88,13 +81,6 @@ def test_nodes_on_the_axis_have_no_spin():
     with pytest.raises(ValueError, match="no moment of inertia about its axis"):
         select_modes(reduced, Formulation("none", "free"))
     assert "spin" not in select_modes(reduced, Formulation("none", 10.0)).labels
-
-
-def test_no_modes_make_a_rigid_rotor(rotor):
-    rigid = rotor.reduce(0)
-    assert rigid.labels == RIGID
-    with pytest.raises(ValueError, match="reduced basis is empty"):
-        grounded_rotor(np.ones(3)).reduce(0)
 
 
 # ------------------------------------------------------------------ selection
@@ -155,25 +141,7 @@ def test_each_formulation_has_the_rigid_modes_that_its_frame_lacks(reduced, form
     assert selection.invariants.size == len(selection.labels)
 
 
-def test_origin_of_the_frame(rotor, reduced):
-    free, fixed = (select_modes(reduced, Formulation(name)) for name in ("free", "none"))
-    np.testing.assert_array_equal(free.origin, reduced.center_of_mass)
-    foot = rotor.axis.project(rotor.center_of_mass)
-    np.testing.assert_allclose(fixed.origin, foot, rtol=1e-15)
-    np.testing.assert_allclose(fixed.invariants.center, rotor.center_of_mass - foot, atol=EXACT)
-    assert np.linalg.norm(fixed.invariants.center) > 0.1
-
-
 # ------------------------------------------------------------------ grounded rotors
-
-
-@pytest.mark.parametrize(
-    "formulation", [Formulation("free", 1.0), Formulation("in-plane", 1.0), Formulation("none")]
-)
-def test_grounded_rotor_refuses_a_moving_frame(formulation):
-    reduced = grounded_rotor(np.ones(3)).reduce(3)
-    with pytest.raises(ValueError, match="holds this rotor in its own frame"):
-        select_modes(reduced, formulation)
 
 
 # ------------------------------------------------------------------ size, immutability

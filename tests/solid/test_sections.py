@@ -9,7 +9,7 @@ import pytest
 from models import ALUMINIUM, STEEL, two_material_cylinder
 from netgen.occ import Cylinder, Glue, OCCGeometry, Pnt, Z
 
-from exudyn_rotor import SolidRotor, SpinAxis, Support, campbell
+from exudyn_rotor import SolidRotor, Support, campbell
 
 HARD = {"youngsModulus": 2.1e15, "poissonsRatio": 0.3, "density": 7850.0}
 RADIUS, LENGTH = 0.02, 0.4
@@ -40,34 +40,6 @@ def wheel() -> tuple[float, tuple[float, float]]:
     mass = STEEL["density"] * np.pi * (OUTER**2 - RADIUS**2) * BAND[1]
     polar = 0.5 * mass * (OUTER**2 + RADIUS**2)
     return mass, (polar, 0.5 * polar + mass * BAND[1] ** 2 / 12.0)
-
-
-@pytest.mark.parametrize("axis", ["z", SpinAxis([1.0, 2.0, -0.5], [0.3, -0.1, 0.2])])
-def test_interface_at_takes_the_outer_surface_of_a_band(axis):
-    """Neither the bore nor the face between sleeve and shaft; any axis."""
-    inner = Cylinder(Pnt(0, 0, 0), Z, 0.04, 0.2) - Cylinder(Pnt(0, 0, 0), Z, 0.02, 0.2)
-    sleeve = Cylinder(Pnt(0, 0, 0), Z, 0.06, 0.2) - Cylinder(Pnt(0, 0, 0), Z, 0.04, 0.2)
-    inner.mat("a")
-    sleeve.mat("b")
-    mesh = ngs.Mesh(OCCGeometry(Glue([inner, sleeve])).GenerateMesh(maxh=0.08, curvaturesafety=0.7))
-    made = SolidRotor.from_ngsolve(mesh, {"a": STEEL, "b": STEEL}, "z")
-    axis = SpinAxis.of(axis)
-    turn = np.column_stack([axis.plane, axis.direction])
-    rotor = SolidRotor(
-        made.nodes @ turn.T + axis.point, made.mass, made.stiffness, axis,
-        triangles=made.triangles,
-    ).interface_at("seat", 0.08, 0.08)  # fmt: skip
-    seat = rotor.interfaces["seat"]
-    np.testing.assert_allclose(np.linalg.norm(axis.radial(seat.positions), axis=1), 0.06, rtol=1e-9)
-    np.testing.assert_allclose(seat.reference, axis.point + 0.08 * axis.direction, atol=1e-12)
-    along = made.nodes[:, 2]
-    outer = np.hypot(*made.nodes[:, :2].T) > 0.0599
-    expected = np.flatnonzero(outer & (along > 0.04 - 1e-9) & (along < 0.12 + 1e-9))
-    assert seat.nodes.tolist() == expected.tolist()
-    assert seat.nodes.size > 20
-    # a band at the end takes the edge of the end face, and not the face
-    end = rotor.interface_at("end", 0.0, 0.08).interfaces["end"]
-    np.testing.assert_allclose(np.linalg.norm(axis.radial(end.positions), axis=1), 0.06, rtol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -168,12 +140,3 @@ def test_summary_names_materials_and_discs():
     assert "aluminium: 8.48" in text
     assert "E 7e+10 Pa, ν 0.33, ρ 2700 kg/m³" in text
     assert "rigid disc       3 kg at [0, 0, 0.2] m, polar 0.02, transverse 0.01 kg m²" in text
-
-
-def test_curved_elements_are_replaced_with_a_word():
-    mesh = two_material_cylinder()
-    mesh.Curve(2)
-    materials = {"steel": STEEL, "aluminium": ALUMINIUM}
-    with pytest.warns(UserWarning, match=r"Curve\(2\)\) are replaced by mid nodes"):
-        SolidRotor.from_ngsolve(mesh, materials, "z")
-    SolidRotor.from_ngsolve(mesh, materials, "z")  # no second word: the mid nodes are there

@@ -9,7 +9,7 @@ from exudyn_rotor.solid.point_mass import PointMass
 from exudyn_rotor.solid.surface import area_weights
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.nodal import rotations, translations
+from exudyn_rotor.theory.nodal import rotations
 
 MATERIALS = {"steel": STEEL, "aluminium": ALUMINIUM}
 
@@ -115,27 +115,6 @@ def test_a_point_mass_moves_the_centre_of_mass(beam):
 # ------------------------------------------------------------------ arrays and immutability
 
 
-def test_from_matrices_takes_dense_sparse_damping_and_interfaces(beam):
-    damping = 1e-5 * beam.stiffness.toarray()
-    nodes = beam.interfaces["left"].nodes
-    rotor = SolidRotor.from_matrices(
-        beam.mass.tocsc(),
-        beam.stiffness.toarray(),
-        beam.nodes.tolist(),
-        SpinAxis([0, 0, 2.0]),
-        damping,
-        interfaces={"even": nodes, "weighted": (nodes, beam.interfaces["left"].weights)},
-        triangles=beam.triangles,
-    )
-    assert relative_difference(rotor.mass, beam.mass) == 0.0
-    assert relative_difference(rotor.damping, damping) == 0.0
-    assert np.ptp(rotor.interfaces["even"].weights) == 0.0
-    np.testing.assert_allclose(
-        rotor.interfaces["weighted"].center, beam.interfaces["left"].center, atol=1e-16
-    )
-    assert rotor.stress_recovery is None
-
-
 # ------------------------------------------------------------------ interfaces
 
 
@@ -146,19 +125,6 @@ def test_area_weights_are_the_exact_areas_of_a_triangle():
     nodes, weights = area_weights(np.vstack([corners, mids]), np.arange(6)[None, :])
     assert nodes.tolist() == [0, 1, 2, 3, 4, 5]
     np.testing.assert_allclose(weights, [1 / 12] * 3 + [1 / 4] * 3, rtol=1e-14)
-
-
-def test_mean_motion_is_exact_for_a_rigid_motion(disc):
-    shift, turn = np.array([1e-4, -2e-4, 3e-4]), np.array([2e-3, 1e-3, -3e-3])
-    motion = translations(disc.node_count) @ shift + rotations(disc.nodes, np.zeros(3)) @ turn
-    for interface in disc.center_interfaces().interfaces.values():
-        measured = interface.mean_motion(disc.node_count) @ motion
-        expected = shift + np.cross(turn, interface.reference)
-        # eps of the displacement for each node in each of three sums, those of the centre, of W and
-        # of the motion; rotations are those over the radius
-        rounding = 3.0 * np.finfo(float).eps * len(interface.nodes) * np.abs(motion).max()
-        np.testing.assert_allclose(measured[:3], expected, rtol=0, atol=rounding)
-        np.testing.assert_allclose(measured[3:], turn, rtol=0, atol=rounding / interface.radius)
 
 
 def test_interfaces_are_centred_on_the_axis(disc):
@@ -213,19 +179,6 @@ def test_stress_of_linear_displacements_is_hookes_law(order):
             expected = hooke(gradient, material)
             error = np.abs(stress[inside, :, column] - expected).max()
             assert error < 1e-9 * np.abs(expected).max()
-
-
-def test_stress_of_quadratic_displacements_is_exact_inside_one_material(beam):
-    # pure bending, Euler-Bernoulli: u_z = −κ x z, u_x = κ (z² + ν(x² − y²))/2, u_y = κ ν x y
-    curvature, ratio = 1e-3, STEEL["poissonsRatio"]
-    x, y, z = beam.nodes.T
-    motion = curvature * np.stack(
-        [(z**2 + ratio * (x**2 - y**2)) / 2, ratio * x * y, -x * z], axis=1
-    )
-    stress = beam.stress_recovery(motion.reshape(-1, 1))[:, :, 0]
-    expected = np.zeros_like(stress)
-    expected[:, 2] = -STEEL["youngsModulus"] * curvature * x
-    np.testing.assert_allclose(stress, expected, rtol=0, atol=1e-9 * np.abs(expected).max())
 
 
 # ------------------------------------------------------------------ texts and units

@@ -28,23 +28,6 @@ def test_run_up_has_the_rates_that_it_says():
 
 
 @pytest.mark.parametrize(
-    ("formulation", "section", "count"),
-    [
-        (Formulation(), "2.2", 3),
-        (Formulation("in-plane"), "2.3", 2),
-        (Formulation("none"), "2.4", 0),
-        (Formulation("none", 5), "2.5", 0),
-        (Formulation("free", 5.0), "2.2", 3),
-    ],
-)
-def test_section_and_unknowns(formulation, section, count):
-    assert formulation.section == section
-    assert formulation.translation_count == count
-    assert formulation.has_spin == (formulation.spin == "free")
-    assert formulation.is_constant_speed != formulation.has_spin
-
-
-@pytest.mark.parametrize(
     ("arguments", "message"),
     [
         ({"translation": "plane"}, "translation.*: 'plane' is unknown"),

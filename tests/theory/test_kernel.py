@@ -134,24 +134,6 @@ def test_jacobian_for_the_solver_is_the_derivative_of_its_forces(formulation):
     assert found == pytest.approx(expected, abs=1e-8 * np.abs(expected).max())
 
 
-@pytest.mark.parametrize(
-    "name", ["free spin", "free spin, in-plane", "constant speed, free", "prescribed spin, free"]
-)
-def test_mass_matrix_for_the_solver(name):
-    """The whole matrix, among coordinates that are locked by mass."""
-    motion = motion_of(FORMULATIONS[name], 6, 0.0)
-    size = motion.size + 2
-    unknowns = np.array([*range(1, motion.size - 2), *range(size - 3, size)])
-    locked = np.setdiff1d(np.arange(size), unknowns)
-    layout = Layout(size, unknowns, np.isin(np.arange(size), locked) * 1e6, *np.zeros((2, size)))
-    scene = user_function_object(motion, layout, [0], None)
-    for q in np.random.default_rng(3).normal(size=(2, size)):
-        found = scene.massMatrixUserFunction(None, 0.4, 0, q.tolist(), None).Convert2DenseMatrix()
-        expected = layout.spread(motion.mass_matrix(0.4, q[unknowns]), layout.lock_mass)
-        assert found == pytest.approx(expected, abs=1e-12 * np.abs(expected[1:-1, 1:-1]).max())
-        assert np.count_nonzero(found[locked]) == 2
-
-
 def test_recommended_settings_follow_the_accuracy():
     given = exudyn.SimulationSettings()
     made = recommended_settings(0.1, 3e-4, accuracy=1e-6, settings=given)
@@ -160,20 +142,6 @@ def test_recommended_settings_follow_the_accuracy():
     assert made.timeIntegration.endTime == 0.1
     assert made.timeIntegration.newton.relativeTolerance == pytest.approx(1e-7)
     assert recommended_settings(0.1, 1e-3).timeIntegration.numberOfSteps == 100
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ((0.0, 1e-3), r"end_time: needs a finite number \[s\] > 0"),
-        ((1.0, -1e-3), r"step: needs a finite number \[s\] > 0"),
-        ((1.0, float("nan")), "step"),
-        ((1e-3, 1.0), "longer than end_time"),
-    ],
-)
-def test_bad_settings_are_refused(arguments, message):
-    with pytest.raises(ValueError, match=message):
-        recommended_settings(*arguments)
 
 
 def test_negligible_decides_what_is_evaluated():

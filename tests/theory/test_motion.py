@@ -245,22 +245,3 @@ def test_equations_with_stiffening_follow_from_their_energy(translation):
 
 
 # ------------------------------------------------------------------ power
-
-
-def test_drive_torque_supplies_the_power():
-    formulation = Formulation("none", SWING)
-    motion, modes, arrays = motion_of(formulation, "none", gravity=np.zeros(3))
-    nodal = NodalEnergy(formulation, modes, arrays)
-    t = 0.7
-    q, v = random_state(MODES, 2)
-    a = np.linalg.solve(motion.mass_matrix(t, q), motion.forces(t, q, v))
-
-    def energy(s: float) -> float:
-        place = q + s * v + 0.5 * s**2 * a
-        speed = nodal.velocities(t + s, place, v + s * a)
-        elastic = 0.5 * place @ nodal.stiffness @ place
-        return 0.5 * np.sum(speed * (nodal.mass @ speed)) + elastic
-
-    supplied = motion.drive_torque(t, q, v, a) * SWING.rate(t)
-    lost = v @ nodal.damping @ v
-    assert first_derivative(energy, 2e-3) == pytest.approx(supplied - lost, rel=1e-9)

@@ -1,7 +1,5 @@
 """Laws that hold for every rotor: random masses, springs, axes, states and formulations."""
 
-from dataclasses import dataclass, replace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,12 +7,8 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
-    Formulation,
-    Invariants,
-    Motion,
     SolidRotor,
     SpinAxis,
-    select_modes,
     stability,
 )
 from exudyn_rotor.theory.stiffening import stiffening
@@ -27,7 +21,6 @@ seeds = st.integers(0, 2**32 - 1)
 counts = st.integers(4, 8)
 factors = st.floats(0.05, 20.0)
 examples = settings(max_examples=15, deadline=None, derandomize=True)
-FREE_SPIN = pytest.mark.parametrize("translation", ["free", "in-plane", "none"])
 LEVELS = pytest.mark.parametrize("level", ["none", "tilt"])
 
 
@@ -58,53 +51,6 @@ def arrays_of(seed: int, count: int) -> dict:
         "axis": SpinAxis(rng.normal(size=3), rng.normal(size=3)),
         "check_units": False,
     }
-
-
-@dataclass(frozen=True, eq=False)
-class Skewed:
-    """A rotor in a basis and about an origin that decouple nothing.
-
-    Every column of the formulation's own basis gets shares of all rigid motions, and the frame's
-    origin is anywhere: S, g, h and mχ* are all different from zero.
-    """
-
-    invariants: Invariants
-    modes: np.ndarray  # (3n, k)
-    nodes: np.ndarray  # (n, 3), from the origin
-    masses: np.ndarray  # (n,)
-
-    @classmethod
-    def of(cls, seed: int, count: int, formulation: Formulation) -> "Skewed":
-        arrays, rng = arrays_of(seed, count), np.random.default_rng([seed, 1])
-        reduced = SolidRotor.from_matrices(**arrays).reduce(FLEXIBLE)
-        T = np.array(select_modes(reduced, formulation).T)
-        T[: len(reduced.rigid)] += 0.1 * rng.normal(size=(len(reduced.rigid), T.shape[1]))
-        shift = rng.normal(size=3)
-        return cls(
-            reduced.invariants.in_basis(T).moved(shift),
-            reduced.shapes.matrix @ T,
-            arrays["nodes"] - reduced.center_of_mass - shift,
-            np.diag(arrays["mass"])[::3],
-        )
-
-
-def motion_of(
-    seed: int, count: int, formulation: Formulation, level: str, gravity=(0.0, 0.0, 0.0)
-) -> Motion:
-    """Return the motion of a random rotor in a random orientation."""
-    invariants = Skewed.of(seed, count, formulation).invariants
-    turn = Rotation.random(rng=np.random.default_rng([seed, 4])).as_matrix()
-    terms = stiffening(invariants, level)
-    return Motion(invariants, formulation, terms, orientation=turn, gravity=np.asarray(gravity))
-
-
-def state_of(motion: Motion, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return coordinates and rates of order 1 and small modal coordinates, and forces."""
-    rng = np.random.default_rng([seed, 2])
-    q, v, force = rng.normal(size=(3, motion.size))
-    # the second-order terms of 'tilt' leave the mass matrix positive for small deformations only
-    q[-motion.invariants.size :] *= 0.02
-    return q, v, force
 
 
 def assert_small(value, scale, tolerance=EXACT):
@@ -178,48 +124,6 @@ def test_units_do_not_matter(seed, count, length, mass, time):
 
 
 # ------------------------------------------------------------------ power and momentum
-
-
-def rate(function, step: float = 2e-3) -> np.ndarray:
-    """Return d/ds at s = 0: central differences of order six, with an error near 1e-13."""
-    weights = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))
-    return sum(w * (function(k * step) - function(-k * step)) for k, w in weights) / step
-
-
-def along(q, v, a):
-    """Return the state after a time s on the path with acceleration a."""
-    return lambda s: (q + s * v + 0.5 * s**2 * a, v + s * a)
-
-
-def momenta_about_axis(motion: Motion, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Return linear momentum and angular momentum about the inertial axis through the origin."""
-    count = motion.formulation.translation_count
-    p, N = motion.momentum(0.0, q, v), motion.free_directions
-    axis = motion.orientation @ motion.invariants.direction
-    turning = p[count] + axis @ np.cross(N @ q[:count], N @ p[:count])
-    return np.append(p[:count], turning)
-
-
-@LEVELS
-@FREE_SPIN
-@examples
-@given(seeds, counts)
-def test_momenta_stay_without_forces(translation, level, seed, count):
-    """The frame's origin on the axis may carry a reaction, but never a torque about it."""
-    motion = motion_of(seed, count, Formulation(translation), level)
-    undamped = replace(motion.invariants, D=np.zeros_like(motion.invariants.D))
-    motion = Motion(
-        undamped,
-        motion.formulation,
-        stiffening(undamped, level),
-        orientation=motion.orientation,
-    )
-    q, v, _ = state_of(motion, seed)
-    a = np.linalg.solve(motion.mass_matrix(0.0, q), motion.forces(0.0, q, v))
-    path = along(q, v, a)
-    change = rate(lambda s: momenta_about_axis(motion, *path(s)))
-    scale = np.abs(motion.mass_matrix(0.0, q)) @ np.abs(a)
-    assert_small(change, scale.sum() * (1.0 + np.linalg.norm(q)), 1e-9)
 
 
 # ------------------------------------------------------------------ Jacobian

@@ -101,40 +101,6 @@ def test_blocks_of_the_nodes(rotor, translation):
         assert terms[name].equation.endswith(numbers)
 
 
-def test_constant_blocks(rotor):
-    """Sums over pairs of nodes, with the axis as a cross product."""
-    terms, e = rotor.terms(Formulation("free")), SKEW_AXIS
-    m = rotor.mass.toarray()[::3, ::3]
-    modes = dense(rotor.basis).T.reshape(-1, len(rotor.nodes), 3)
-    x, turned, x_turned = rotor.nodes, np.cross(e, modes), np.cross(e, rotor.nodes)
-
-    def sums(a, b):
-        return np.einsum("kic,ij,ljc->kl", a, m, b)
-
-    center = np.einsum("ij,jc->c", m, x) / m.sum()
-    first = np.einsum("ij,kjc->ck", m, modes)
-    expected = {
-        31: m.sum(),
-        32: center,
-        34: sums(modes, modes),
-        37: first,
-        67: np.cross(e, center),
-        68: np.cross(e, np.cross(e, center)),
-        69: np.cross(e, first.T).T,
-        70: np.cross(e, np.cross(e, first.T)).T,
-        79: sums(x_turned[None], x_turned[None])[0, 0],
-        80: sums(modes, turned),
-        81: sums(turned, turned),
-        82: -sums(modes, x_turned[None])[:, 0],
-        83: sums(turned, x_turned[None])[:, 0],
-    }
-    for number, value in expected.items():
-        assert_same(terms[number].value, value)
-    basis = dense(rotor.basis)
-    for number, name in ((19, "stiffness"), (20, "damping")):
-        assert_same(terms[number].value, basis.T @ rotor.arrays[name].toarray() @ basis)
-
-
 @SPINS
 def test_gravity_is_the_virtual_power_of_the_weights(rotor, spin):
     terms = rotor.terms(Formulation("none", spin))

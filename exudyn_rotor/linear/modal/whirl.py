@@ -162,7 +162,7 @@ class Content:
         counts = [len(R) for R in self.rows]
         return np.vstack(self.rows), np.r_[0, np.cumsum(counts)[:-1]]
 
-    def _energies(self, vectors: np.ndarray) -> np.ndarray:
+    def energies(self, vectors: np.ndarray) -> np.ndarray:
         """Return the energies (s, h, w + 5, k) of harmonics (s, h, c, k)."""
         rows, begins = self._stacked
         moved = rows @ vectors
@@ -178,7 +178,7 @@ class Content:
         mirrored = values.imag < 0.0
         if np.any(mirrored):
             vectors = np.where(mirrored[:, None, None], vectors[:, ::-1].conj(), vectors)
-        energy = self._energies(vectors)
+        energy = self.energies(vectors)
         directions = energy[:, :, -5:].sum(axis=1).transpose(1, 0, 2)  # (5, s, k)
         whole, standing = directions[3:]
         # equal but for rounding is equal
@@ -247,18 +247,23 @@ class Content:
         changed = vectors.copy()
         for group, rows in alike.items():
             at = np.ix_(rows, range(vectors.shape[1]), range(vectors.shape[2]), group)
-            changed[at] = self._extremal(vectors[at])
+            changed[at] = self.extremal(vectors[at])
         return replace(motions, vectors=changed)
 
-    def _extremal(self, vectors: np.ndarray) -> np.ndarray:
-        """Return combinations of motions (s, h, c, g) whose mean wave number is extremal."""
+    def extremal(self, vectors: np.ndarray, weights: np.ndarray | None = None) -> np.ndarray:
+        """Return combinations of motions (s, h, c, g) whose mean wave number is extremal.
+
+        Or the mean of other `weights` (h, w) of the waves in each harmonic.
+        """
         flat = vectors.reshape(len(vectors), -1, vectors.shape[3])
         flat = flat / np.abs(flat).max(axis=1, keepdims=True)
         span, lengths, _ = np.linalg.svd(flat, full_matrices=False)
         span = span.reshape(vectors.shape)
         across = np.swapaxes(span.conj(), 2, 3)
-        every = self.whole + self.standing
-        form, whole = (np.sum(across @ F @ span, axis=1) for F in (self._mean, every))
+        every, mean = self.whole + self.standing, self._mean
+        if weights is not None:
+            mean = np.tensordot(weights, self.forms, 1) + 0.4 * self.axial
+        form, whole = (np.sum(across @ F @ span, axis=1) for F in (mean, every))
         # what moves nothing that has waves has the mean zero
         floor = 1e-9 * np.abs(whole).max(axis=(1, 2), keepdims=True)
         floor = floor + 1e-12 * np.abs(every).max() + 1e-200

@@ -14,15 +14,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cached_property
 from math import hypot, inf
+from typing import Any
 
 import exudyn
 import numpy as np
 
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.clearance_stop import ClearanceStop
-from exudyn_rotor.bearings.held_law import HeldLaw
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.multibody.calls.sparse_solver import check_solver
 from exudyn_rotor.multibody.mark import Mark, mark_of
@@ -30,8 +29,6 @@ from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.wrapping import wraps_method
 
 _BEARINGS = "exudyn_rotor: bearings that journals must not leave"  # key in mbs.sys
-_OUTSIDE = "exudyn_rotor: connectors of bearings evaluated outside their clearance"
-_KINDS = exudyn.OutputVariableType
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,64 +37,43 @@ class _Watched:
 
     Attributes
     ----------
-    bearing : Bearing or MagneticBearing
-    number : ObjectIndex
+    connector : BearingConnector or MagneticConnector
     physics : ObjectIndex
     mark : tuple or None
         By which the rotor, whose object `physics` is, is known again.
     rotor : str or None
         Its name.
-    across : ndarray, shape (3, 2), or None
-        n1 and n2 in the scene; None where the connector has axes of its own.
     """
 
-    bearing: Bearing | MagneticBearing
-    number: exudyn.ObjectIndex
+    connector: Any
     physics: exudyn.ObjectIndex
     mark: Mark | None
     rotor: str | None
-    across: np.ndarray | None
 
-    @cached_property
+    @property
+    def interface(self) -> str:
+        """Name of the journal's interface."""
+        return self.connector.bearing.interface
+
+    @property
     def least(self) -> float:
         """Clearance within which the journal touches nowhere [m]."""
-        return self.bearing.clearance_along()
+        return self.connector.parts[0].clearance_along()
 
-    def place(self, mbs: exudyn.MainSystem) -> np.ndarray:
-        """Return the journal's place against the bearing [m], shape (2,)."""
-        if self.across is None:
-            return mbs.GetObjectOutput(self.number, _KINDS.DisplacementLocal)[:2]
-        return mbs.GetObjectOutput(self.number, _KINDS.Displacement) @ self.across
+    def places(
+        self, mbs: exudyn.MainSystem
+    ) -> Iterator[tuple[np.ndarray, Bearing | MagneticBearing]]:
+        """Yield the journal's place [m], shape (2,), against the bearing, or against each pad."""
+        made = self.connector
+        made.read(*made.state(mbs))
+        for part, motion in zip(made.parts, made.motions(), strict=True):
+            yield np.array(motion[:2]), part
 
 
-def watch_clearance(
-    body: RotorItems, bearing: Bearing | MagneticBearing, number: exudyn.ObjectIndex
-) -> None:
+def watch_clearance(body: RotorItems, connector: Any) -> None:
     """Let runs of the scene stop where the journal of a connector leaves its bearing."""
-    local = body.mbs.GetObject(number)["objectType"] == "ConnectorRigidBodySpringDamper"
-    across = None if local else body.standing_axes[:, :2]
-    physics = body.objects["physics"]
-    watched = _Watched(bearing, number, physics, body.mark, body.name, across)
+    watched = _Watched(connector, body.objects["physics"], body.mark, body.name)
     body.mbs.sys.setdefault(_BEARINGS, []).append(watched)
-
-
-def noting_outside(
-    mbs: exudyn.MainSystem, bearing: Bearing | HeldLaw | MagneticBearing
-) -> Callable[[int, float, float], None]:
-    """Return what a connector calls by its number and place beyond the least clearance."""
-    noted = _outside(mbs)
-
-    def note(item: int, x: float, y: float) -> None:
-        distance = hypot(x, y)
-        if distance >= bearing.clearance_along(np.array([x / distance, y / distance])):
-            noted.add(item)
-
-    return note
-
-
-def _outside(mbs: exudyn.MainSystem) -> set[int]:
-    """Return the connectors that were evaluated outside since the last look."""
-    return mbs.sys.setdefault(_OUTSIDE, set())
 
 
 @contextmanager
@@ -110,13 +86,15 @@ def _stopped_outside(mbs: exudyn.MainSystem) -> Iterator[None]:
     given = mbs.GetPostStepUserFunction()
     own = given["function"] if given else None
     left: list[str] = []
-    noted = _outside(mbs)
-    noted.update(int(each.number) for each in watched)  # the initial state is looked at
+    made = [each.connector for each in watched]
+    for connector in made:
+        connector.outside = True  # the initial state is looked at
 
     def look(mbs: exudyn.MainSystem, t: float) -> bool:
-        if noted:
-            noted.clear()
-            left.extend(filter(None, (_left(mbs, each, t) for each in watched)))
+        if any(connector.outside for connector in made):
+            for connector in made:
+                connector.outside = False
+            left.extend(reason for each in watched for reason in _left(mbs, each, t))
         return not left and (own is None or own(mbs, t))
 
     mbs.SetPostStepUserFunction(look)
@@ -136,32 +114,33 @@ def _in_scene(mbs: exudyn.MainSystem) -> list[_Watched]:
         if each.mark is not None and mark_of(mbs, each.physics) == each.mark
     ]
     stopped = {
-        (each.mark, each.bearing.interface)
+        (each.mark, each.interface)
         for each in present
-        if isinstance(each.bearing, ClearanceStop)
+        if isinstance(each.connector.bearing, ClearanceStop)
     }
     return [
-        each
-        for each in present
-        if (each.mark, each.bearing.interface) not in stopped and each.least < inf
+        each for each in present if (each.mark, each.interface) not in stopped and each.least < inf
     ]
 
 
-def _left(mbs: exudyn.MainSystem, watched: _Watched, t: float) -> str | None:
-    """Return what is wrong with a journal outside its clearance; None for one inside."""
-    place = watched.place(mbs)
-    distance = hypot(*place.tolist())
-    if distance < watched.least:
-        return None
-    gap = watched.bearing.clearance_along(place / distance)
-    if distance < gap:
-        return None
-    return (
-        f"rotor {watched.rotor!r} left its bearing at {watched.bearing.interface!r} at t = {t:g} s:"
-        f" its journal is {distance:.3g} m from the centre, {distance - gap:.2g} m beyond the "
-        "clearance that way; take smaller steps, begin from steady_state(body), reduce the load, "
-        "or add a ClearanceStop at that interface for a rub"
-    )
+def _left(mbs: exudyn.MainSystem, watched: _Watched, t: float) -> Iterator[str]:
+    """Yield what is wrong with journals outside their clearance."""
+    for place, part in watched.places(mbs):
+        distance = hypot(*place.tolist())
+        gap = part.clearance_along(place / distance) if distance else inf
+        if distance < gap:
+            continue
+        advice = "take smaller steps, begin from steady_state(body), reduce the load, or add a"
+        if isinstance(part, MagneticBearing):
+            advice = (
+                "is the loop of controller and magnets unstable? stability(reduced, speeds, "
+                "supports=…) tells; else reduce the load, or add a"
+            )
+        yield (
+            f"rotor {watched.rotor!r} left its bearing at {watched.interface!r} at t = {t:g} s: "
+            f"its journal is {distance:.3g} m from the centre, {distance - gap:.2g} m beyond the "
+            f"clearance that way; {advice} ClearanceStop at that interface for a rub"
+        )
 
 
 @wraps_method("SolveDynamic")

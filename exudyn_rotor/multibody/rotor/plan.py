@@ -71,7 +71,10 @@ def make_plan(reduced: ReducedRotor, setup: inputs.Setup) -> Plan:
     def motion(
         formulation: Formulation, plane: np.ndarray | None, gravity: np.ndarray | None, sign: int
     ) -> Motion:
-        invariants = selection.invariants if sign > 0 else selection.invariants.reversed()
+        invariants = selection.invariants
+        if setup.stiffening != "none":
+            invariants = invariants.loaded
+        invariants = invariants if sign > 0 else invariants.reversed()
         return Motion(
             invariants,
             formulation,
