@@ -234,11 +234,6 @@ class Invariants:
         """The invariants without viscous and structural damping."""
         return replace(self, D=0.0 * self.D, H=None)
 
-    def reversed(self) -> Invariants:
-        """Return the invariants for the opposite axis ``−e``: G, B and g change their sign."""
-        B = None if self.B is None else -self.B
-        return replace(self, direction=-self.direction, G=-self.G, B=B)
-
     def in_basis(self, T: np.ndarray) -> Invariants:
         """Return the invariants for the basis ``Ψ T``, T of shape (k, l)."""
         T = checks.matrix(T, "T", shape=(self.size, None))

@@ -31,7 +31,7 @@ SCENES = {
     "run-up": {"translation": "none", "spin": RUN_UP, "stiffening": "none"},
     "free": {"translation": "free", "spin": "free", "initial_speed": 300.0, "stiffening": "tilt"},
     "frozen": {
-        "translation": "none",
+        "translation": "free",
         "spin": "free",
         "initial_speed": 300.0,
         "spin_coupling": "frozen",

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from exudyn.itemInterface import LoadForceVector
 from exudyn.utilities import InertiaCuboid
+from exudyn_rotor.multibody.supports import clearances
 from point_rotors import ring_rotor
 
 from exudyn_rotor import (
@@ -27,7 +28,6 @@ from exudyn_rotor import (
     grooved_pads,
     recommended_settings,
 )
-from exudyn_rotor.multibody.calls import clearances
 
 CLEARANCE, SPEED = 1e-4, 300.0
 TO_X = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
@@ -172,7 +172,7 @@ def test_a_run_ends_at_the_first_step_outside(case, monkeypatch):
         return distances[t] < CLEARANCE
 
     with monkeypatch.context() as patch:
-        patch.setattr(clearances, "_in_scene", lambda mbs: [])
+        patch.setattr(clearances, "entry", lambda mbs: {})
         mbs.SetPostStepUserFunction(own)
         run(mbs, **how)
     mbs.SetPostStepUserFunction(0)

@@ -65,11 +65,11 @@ class SceneDrive:
         TypeError, ValueError
             For other options.
         """
-        law, sign = self.drive.law, self.body.locks.sign
+        law = self.drive.law
 
         def output(mbs, t, sensors, factors, configuration):
             if self.at is None:
-                speed = sign * float(mbs.GetObjectOutput(self.object, _KINDS.Velocity))
+                speed = float(mbs.GetObjectOutput(self.object, _KINDS.Velocity))
             else:
                 speed = float(mbs.GetObjectOutput(self.object, _KINDS.AngularVelocityLocal)[2])
             torque = float(law(speed, t))
@@ -187,13 +187,13 @@ def check_turning_interface(body: RotorBody | FullRotorBody, name: str, argument
 
 
 def _on_the_spin(body: RotorBody | FullRotorBody, drive: Drive) -> tuple[exudyn.ObjectIndex, str]:
-    mbs, law, sign = body.mbs, drive.law, body.locks.sign
+    mbs, law = body.mbs, drive.law
     ground = MarkerNodeCoordinate(nodeNumber=mbs.AddNode(NodePointGround()), coordinate=0)
     spin = MarkerNodeCoordinate(nodeNumber=body.nodes["rigid"], coordinate=body.locks.spin)
     item = CoordinateSpringDamper(markerNumbers=[mbs.AddMarker(ground), mbs.AddMarker(spin)])
 
     def force(mbs, t, item, u, v, stiffness, damping, offset):
-        return -sign * law(sign * v, t)
+        return -law(v, t)
 
     return _added(body, drive, item, force, "springForceUserFunction")
 

@@ -41,7 +41,6 @@ class InterfaceCoordinates:
     point: np.ndarray
     modes: np.ndarray
     spin: int
-    sign: int
     start: float
     tilts: list[int]
     tilt_axes: np.ndarray
@@ -66,7 +65,7 @@ class InterfaceCoordinates:
         tilt_axes = seat.axes.T @ body.frame.axes_of_angles().T[:, [tilt - 3 for tilt in tilts]]
         turning = np.array(tilts) > spin  # the node's angles follow each other
         held = tilts, tilt_axes, turning
-        return cls(nodes, seat.axes, point, modes, spin, body.locks.sign, start, *held)
+        return cls(nodes, seat.axes, point, modes, spin, start, *held)
 
     @property
     def size(self) -> int:
@@ -78,7 +77,7 @@ class InterfaceCoordinates:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return motion (6,), rate (6,) and the derivative of the motion (6, size)."""
         q, q_t = np.asarray(q), np.asarray(q_t)
-        theta = self.sign * q[self.spin]
+        theta = q[self.spin]
         R, skew = axial_rotation(theta), axial_skew(3)
         own = self.modes @ q[_RIGID:]
         arm, turned = R @ (self.point + own[:3]), R @ own[3:]
@@ -86,9 +85,9 @@ class InterfaceCoordinates:
         x[5] += theta - self.start
         J = np.zeros((6, self.size))
         J[:3, :3] = self.axes.T
-        J[:3, self.spin] = self.sign * (skew @ arm)
-        J[3:, self.spin] = self.sign * (skew @ turned)
-        J[5, self.spin] += self.sign
+        J[:3, self.spin] = skew @ arm
+        J[3:, self.spin] = skew @ turned
+        J[5, self.spin] += 1.0
         tilting = np.where(self.turning, R @ self.tilt_axes, self.tilt_axes)
         J[:3, self.tilts], J[3:, self.tilts] = -skew_matrix(arm) @ tilting, tilting
         J[:3, _RIGID:], J[3:, _RIGID:] = R @ self.modes[:3], R @ self.modes[3:]

@@ -22,7 +22,7 @@ from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.support import Support, acts, varies
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
-from exudyn_rotor.multibody.rotor.carrying_rotor import carrying_rotor
+from exudyn_rotor.multibody.rotor.known_rotor import carrying_rotor
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.supports.magnetic_connectors import add_magnetic
 from exudyn_rotor.multibody.supports.seats import Base, Seat

@@ -23,9 +23,9 @@ from exudyn.itemInterface import (
 
 from exudyn_rotor.bearings.actuator import Actuator, SaturatingActuator
 from exudyn_rotor.bearings.magnetic import MagneticBearing
-from exudyn_rotor.multibody.calls.clearances import noting_outside, watch_clearance
+from exudyn_rotor.multibody.rotor.plan import generic_node
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
-from exudyn_rotor.multibody.rotor.rotor_nodes import generic_node
+from exudyn_rotor.multibody.supports.clearances import noting_outside, watch_clearance
 from exudyn_rotor.multibody.supports.seats import Seat, point_marker
 
 _KINDS = exudyn.OutputVariableType

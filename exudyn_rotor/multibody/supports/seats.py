@@ -19,7 +19,6 @@ from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.full.full_markers import interface_carrier
 from exudyn_rotor.multibody.rotor.marker_body import append_nodes, virtual_nodes
 from exudyn_rotor.multibody.rotor.more_markers import interface_motion
-from exudyn_rotor.multibody.rotor.node_markers import CopiedMarker
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation, foundation_marker
 from exudyn_rotor.solid.places import SAME_PLACE, leeway, off_place
@@ -96,7 +95,7 @@ class Seat:
         shift = self.orientation.T @ (self.place - self.origin)
         shift[np.abs(shift) <= _ROUNDING * np.abs([self.place, self.origin]).max()] = 0.0
         if isinstance(self.base, exudyn.MarkerIndex):
-            item = CopiedMarker(mbs.GetMarker(self.base))
+            item = dict(mbs.GetMarker(self.base))
             item["localHT"] = item["localHT"] @ _frame(turn, shift)
             for given in ("name", "localPosition", "offset"):  # the place is in localHT
                 item.pop(given, None)

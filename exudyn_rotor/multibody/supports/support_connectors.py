@@ -27,9 +27,9 @@ from exudyn_rotor.bearings.bearing import Bearing, LawWithTorque
 from exudyn_rotor.bearings.held_law import HeldLaw
 from exudyn_rotor.bearings.journal_bearing import FilmLaw, JournalBearing, RememberingLaw
 from exudyn_rotor.bearings.support import Support, varies
-from exudyn_rotor.multibody.calls.clearances import noting_outside, watch_clearance
-from exudyn_rotor.multibody.rotor.carrying_rotor import CarryingRotor, carrying_rotor
+from exudyn_rotor.multibody.rotor.known_rotor import KnownRotor, carrying_rotor
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
+from exudyn_rotor.multibody.supports.clearances import noting_outside, watch_clearance
 from exudyn_rotor.multibody.supports.differenced_law import DifferencedLaw
 from exudyn_rotor.multibody.supports.differences import differences_of
 from exudyn_rotor.multibody.supports.seats import Seat, point_marker, rigid_marker
@@ -40,11 +40,12 @@ from exudyn_rotor.multibody.supports.turning_base import (
     on_turning_rotor,
     seen_from_rotor,
 )
+from exudyn_rotor.multibody.wrapping import entry
 from exudyn_rotor.theory.rotating_axes import axial_rotation
 
 NATIVE, SYMBOLIC, PYTHON = "Exudyn", "symbolic function", "Python function"
 _ROUNDING = 1e-13  # of the largest entry of a turned matrix
-_FUNCTIONS = "exudyn_rotor: symbolic functions of supports"  # key in mbs.sys
+_FUNCTIONS = "symbolic functions of supports"
 _KINDS = exudyn.OutputVariableType
 _ANGLES, _RATES = _KINDS.Coordinates, _KINDS.Coordinates_t
 _START = exudyn.ConfigurationType.StartOfStep
@@ -198,7 +199,7 @@ def _no_memory(mbs: exudyn.MainSystem, t: float, item: int) -> None:
 
 
 def _beginning(
-    body: RotorItems, law: RememberingLaw, axes: np.ndarray, rotor: CarryingRotor | None
+    body: RotorItems, law: RememberingLaw, axes: np.ndarray, rotor: KnownRotor | None
 ) -> Beginning:
     """Return what gives a film with a memory the state at the beginning of the step.
 
@@ -338,22 +339,22 @@ def spin_reader(
     body: RotorItems, state: exudyn.ConfigurationType = exudyn.ConfigurationType.Current
 ) -> SpinReader:
     """Return a function that reads spin angle [rad] and speed [rad/s] from the frame's node."""
-    node, place, sign = int(body.nodes["rigid"]), body.locks.spin, body.locks.sign
+    node, place = int(body.nodes["rigid"]), body.locks.spin
 
     def spin(mbs: exudyn.MainSystem) -> tuple[float, float]:  # called at every force
         read = mbs.GetNodeOutput
         angle, rate = read(node, _ANGLES, state)[place], read(node, _RATES, state)[place]
-        return sign * float(angle), sign * float(rate)
+        return float(angle), float(rate)
 
     return spin
 
 
 def _speed_reader(body: RotorItems) -> SpinReader:
     """Return as :func:`spin_reader`, with 0 in place of the angle, in half the time."""
-    node, place, sign = int(body.nodes["rigid"]), body.locks.spin, body.locks.sign
+    node, place = int(body.nodes["rigid"]), body.locks.spin
 
     def spin(mbs: exudyn.MainSystem) -> tuple[float, float]:
-        return 0.0, sign * float(mbs.GetNodeOutput(node, _RATES)[place])
+        return 0.0, float(mbs.GetNodeOutput(node, _RATES)[place])
 
     return spin
 
@@ -383,5 +384,5 @@ def symbolic_function(
     """Return a function as Exudyn's symbolic one, kept alive by the system."""
     kind = type(item).__name__
     made = CreateSymbolicUserFunction(mbs, function, name, itemTypeName=kind)
-    mbs.sys.setdefault(_FUNCTIONS, []).append(made)
+    entry(mbs).setdefault(_FUNCTIONS, []).append(made)
     return made

@@ -25,8 +25,8 @@ from exudyn.itemInterface import (
 )
 
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
+from exudyn_rotor.multibody.rotor.plan import generic_node
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
-from exudyn_rotor.multibody.rotor.rotor_nodes import generic_node
 from exudyn_rotor.multibody.supports.foundation_body import hold, massless_body, virtual_marker
 from exudyn_rotor.multibody.supports.seats import Seat
 from exudyn_rotor.multibody.supports.support_connectors import NATIVE, PYTHON, bearing_connector

@@ -23,7 +23,7 @@ from math import cos, sin
 import exudyn
 import numpy as np
 
-from exudyn_rotor.multibody.rotor.carrying_rotor import CarryingRotor
+from exudyn_rotor.multibody.rotor.known_rotor import KnownRotor
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 
 _ANGULAR_VELOCITY = exudyn.OutputVariableType.AngularVelocity
@@ -66,7 +66,7 @@ def on_turning_base(
 
 
 def on_turning_rotor(
-    law: Callable, mbs: exudyn.MainSystem, rotor: CarryingRotor, axes: np.ndarray
+    law: Callable, mbs: exudyn.MainSystem, rotor: KnownRotor, axes: np.ndarray
 ) -> Callable:
     """Return a law as it is on another rotor; `axes` are (n1, n2, e) as columns."""
     seen = seen_from_rotor(mbs, rotor, axes)
@@ -81,7 +81,7 @@ def on_turning_rotor(
 
 def seen_from_rotor(
     mbs: exudyn.MainSystem,
-    rotor: CarryingRotor,
+    rotor: KnownRotor,
     axes: np.ndarray,
     state: exudyn.ConfigurationType = _CURRENT,
 ) -> Callable:

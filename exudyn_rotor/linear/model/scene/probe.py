@@ -63,7 +63,7 @@ class Probe:
         self.films = [law for law in self.laws if isinstance(law, TangentFilm)]
         self.carriers = _carriers_of_pads(scene)
         self._held, self._carried = False, None
-        self.spin, self.spin_sign = scene.spin_coordinate, scene.spin_sign
+        self.spin = scene.spin_coordinate
         self.is_constrained = bool(solver.GetAEsize())
         self.rotor = np.arange(scene.modal.stop)
         self.step = self.velocity_step = None
@@ -259,7 +259,7 @@ class Probe:
         q[self.scene.free] += x
         q_t[self.scene.free] = v
         if self.spin is not None:
-            q[self.spin], q_t[self.spin] = self.spin_sign * theta, self.spin_sign * self.speed
+            q[self.spin], q_t[self.spin] = theta, self.speed
         if self._carried is not None:
             q[self.carriers], q_t[self.carriers], _ = self._carried
         data.SetODE2Coordinates(q)
