@@ -120,9 +120,10 @@ def add_rotor(
         lever for tilts. See :mod:`exudyn_rotor.multibody.rotor.assembly`.
     locking : {'auto', 'constraints', 'mass'}
         How coordinates of the marker body's node that the formulation does not have are held.
-        ``'constraints'``, which ``'auto'`` is, serves implicit and static solvers, and Exudyn's analyses of the scene;
-        explicit solvers (RK44, DOPRI5, …) end with an error, "contains constraints that cannot be
-        solved", and need ``'mass'``; see :mod:`exudyn_rotor.multibody.rotor.locking`.
+        ``'constraints'``, which ``'auto'`` is, serves implicit and static solvers, and Exudyn's
+        analyses of the scene; explicit solvers (RK44, DOPRI5, …) end with an error, "contains
+        constraints that cannot be solved", and need ``'mass'``; see
+        :mod:`exudyn_rotor.multibody.rotor.locking`.
     frame_node : {'centre_of_mass', 'mesh_origin'}
         Where the node of the frame is, ``body.nodes["rigid"]``: markers and sensors that a script
         adds there move with the mean rigid motion of the rotor at this place, tilts included. The
@@ -156,8 +157,8 @@ def add_rotor(
     The flexible body and its node have mesh axes, as with Exudyn's own body, if the spin axis is
     mesh z (any mounting), is mounted along inertial x (any mesh axis), or lies across mesh z and is
     mounted across inertial x. For any other axis they have the mesh axes turned by
-    ``body.frame.B``, with z along the spin axis; local output, and rotations about single axes of the node, are in
-    those. Markers have mesh axes always.
+    ``body.frame.B``, with z along the spin axis; local output, and rotations about single axes of
+    the node, are in those. Markers have mesh axes always.
 
     The node itself carries the frame's coordinates, which do not tilt: its translation is that of
     the centre of mass, its angle the rotor's mean rotation about the axis. What a script attaches

@@ -5,7 +5,8 @@ Kinetic energy with the mean translation τ, from the velocities ``τ̇ + A (ω 
     T = ½ m τ̇² + τ̇ᵀA (Sζ̇ + ω (mχ* + S*ζ))
         + ½ ω² (Θ + 2hᵀζ + ζᵀĈζ) + ω (g + Wζ)ᵀζ̇ + ½ ζ̇ᵀM_ψψζ̇
 
-less ``(3/2)ω⁴ζᵀK4ζ`` with a stiffness per ω⁴; its mass matrix is (41–43, 65, 84, 85); θ and τ may be unknowns or prescribed.
+less ``(3/2)ω⁴ζᵀK4ζ`` with a stiffness per ω⁴; its mass matrix is (41–43, 65, 84, 85); θ and τ may
+be unknowns or prescribed.
 """
 
 from __future__ import annotations

@@ -208,7 +208,9 @@ class Motion:
             blocks["f", "t"] = blocks["t", "f"].T
         if self.formulation.has_spin:
             zeta = 0.0 * now.zeta if self.formulation.has_frozen_spin else now.zeta
-            blocks["r", "r"] = [[self._spin_inertia(zeta) - 6.0 * now.omega**2 * self._fourth(zeta)]]
+            blocks["r", "r"] = [
+                [self._spin_inertia(zeta) - 6.0 * now.omega**2 * self._fourth(zeta)]
+            ]
             blocks["r", "f"] = (inv.g + self.spin_terms.W @ zeta)[None, :]
             blocks["f", "r"] = blocks["r", "f"].T
             if self.is_coupled:

@@ -25,7 +25,6 @@ from exudyn_rotor.multibody.load_places import LoadPlace
 from exudyn_rotor.solid.tensor import von_mises
 from exudyn_rotor.theory.nodal import rotations, translations
 
-pytestmark = pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 RUN_UP = PrescribedMotion.run_up(0.0, 300.0, 1e-2)
 FAST = PrescribedMotion.run_up(0.0, 800.0, STEPS * STEP)
 

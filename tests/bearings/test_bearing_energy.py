@@ -162,7 +162,6 @@ def test_what_is_left_with_damping_of_the_integrator_falls_with_the_square_of_th
     assert left[1] == pytest.approx(left[0] / 4.0, rel=0.2)
 
 
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 @pytest.mark.parametrize("axis", [(0.0, 0.0, 1.0), tuple(SKEW_AXIS), (-1.0, 0.0, 0.0)])
 @pytest.mark.parametrize("kind", ["short film", "finite film"])
 def test_films_brake_a_free_spin_as_petroff_says(kind, axis):
@@ -178,7 +177,6 @@ def test_films_brake_a_free_spin_as_petroff_says(kind, axis):
     assert expected < 0.99 * speed
 
 
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 @pytest.mark.parametrize("axis", [(0.0, 0.0, 1.0), tuple(SKEW_AXIS)])
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_a_stop_brakes_a_free_spin_by_coulombs_friction(axis, sense):

@@ -106,7 +106,6 @@ def measured(case, steps):
     return np.polyfit(path[:, 0], np.log(sizes), 1, w=weights)[0], modes.values[chosen]
 
 
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 @pytest.mark.parametrize("case", CASES)
 def test_a_run_grows_as_stability_says(case):
     """Within 1 % of the list of supports.

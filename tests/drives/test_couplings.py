@@ -166,14 +166,12 @@ def test_energy_is_kept_but_for_the_loss(name):
     ],
     ids=["x", "skew"],
 )
-@pytest.mark.filterwarnings("ignore:rotor '.*'. no node of Exudyn turns")
 def test_axes_change_nothing(places, name):
     np.testing.assert_allclose(swing(name, **places)[0], swing(name)[0], rtol=1e-6)
 
 
 @pytest.mark.parametrize("axis", [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [2, -1, 2]])
 @pytest.mark.parametrize("name", COUPLINGS)
-@pytest.mark.filterwarnings("ignore:rotor '.*'. no node of Exudyn turns")
 def test_what_holds_the_frame_has_the_reaction(name, axis):
     """As of a load at any marker, whichever angle of the node spins.
 

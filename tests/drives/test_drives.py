@@ -90,7 +90,6 @@ def upright():
 
 
 @pytest.mark.parametrize("name", AXES)
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 def test_axes_change_nothing(upright, name):
     mbs, body, sensors = eccentric(*AXES[name])
     assert speed_of(body) == pytest.approx(speed_of(upright[1]), rel=1e-8)

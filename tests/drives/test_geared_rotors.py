@@ -238,7 +238,6 @@ PLACES = {
 
 
 @pytest.mark.parametrize("name", PLACES)
-@pytest.mark.filterwarnings("ignore:rotor '.*'. no node of Exudyn turns")
 def test_axes_and_senses_change_nothing(name):
     gears, heavy = mesh(helix_angle=0.2, damping=300.0), 0.0 if "turned" in name else 0.02
     first = driven(gears=gears, heavy=heavy)

@@ -149,7 +149,6 @@ def run(step, turn=None, rotation=None, moved=False, block=BLOCK, end_time=0.04)
 
 
 @pytest.mark.parametrize("rotation", [None, SKEW], ids=["upright", "skew"])
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 def test_scene_and_linear_response_agree(rotation):
     """By the integrator's second order: two steps, and what they lead to."""
     model = linear_model(rigid(), supports=SUPPORTS, foundation=BLOCK)
@@ -206,7 +205,6 @@ def shaken(rotor, record=SHAKEN, **options):
     ],
     ids=["no translation", "free, skew", "free spin", "free spin, no translation"],
 )
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 def test_a_full_body_is_shaken_as_a_reduced_one(options, loads):
     """In a complete basis; three times under a load that Exudyn puts on its mass."""
     (full, angle, forces), (reduced, other, load) = (shaken(one, **options) for one in whole())

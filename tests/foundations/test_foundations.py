@@ -226,7 +226,6 @@ def test_scene_and_linear_model_have_the_same_exponents(kind):
     ],
     ids=["x", "y", "skew"],
 )
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 def test_axes_change_nothing(turn, rotation, options):
     supports = [KINDS["tilt, damped"], replace(KINDS["3 x 3"], frame="rotor"), HELD]
     assert compared(supports, turn, rotation, **options) < 1e-7

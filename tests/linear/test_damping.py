@@ -54,7 +54,6 @@ def test_factors_add_up_and_reach_the_attachment_modes(reduced):
     assert not np.any(reduced.invariants.D)
 
 
-@pytest.mark.filterwarnings("ignore:.*no node of Exudyn turns about mesh direction")
 @pytest.mark.parametrize("spin", ["free", 40.0])
 def test_a_body_with_factors_is_that_of_a_damped_rotor(reduced, spin):
     """The twelve products of each entry round alike, but in another order: 12 ε of the largest."""

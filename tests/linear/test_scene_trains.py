@@ -128,7 +128,6 @@ def forces(mbs, bodies, model, rates, motion):
     return np.array([inertia, force]), np.concatenate(looked_at)
 
 
-@pytest.mark.filterwarnings("ignore:rotor '.P'. no node of Exudyn turns")
 @pytest.mark.parametrize(
     ("ratio", "axis", "rotation"),
     [(1.7, "z", None), (-1.3, "x", None), (1.7, "z", SKEW)],
@@ -171,7 +170,6 @@ COUPLING = FlexibleCoupling(
 )
 
 
-@pytest.mark.filterwarnings("ignore:rotor '.'. no node of Exudyn turns")
 @pytest.mark.parametrize("driven", ["", "A", "B", "AB"])
 @pytest.mark.parametrize(
     ("connection", "turned"), [(GEARS, None), (GEARS, SKEW), (COUPLING, None)],
@@ -186,7 +184,6 @@ def test_spins_of_a_scene_that_a_drive_holds_are_held_in_its_train(connection, t
     assert accelerations_left(mbs, bodies, model, [*model.ratios.values()]) < 1e-8
 
 
-@pytest.mark.filterwarnings("ignore:rotor '.'. no node of Exudyn turns")
 def test_a_coupling_to_a_shaft_of_constant_speed_holds_torsion():
     """A's, through gears B's, too; damping across the axis turns with the shaft."""
     mbs, bodies = geared(GEARS)

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from exudyn.itemInterface import LoadForceVector
 from exudyn.utilities import InertiaCuboid
-from exudyn_rotor.multibody.supports import clearances
 from point_rotors import ring_rotor
 
 from exudyn_rotor import (
@@ -28,6 +27,7 @@ from exudyn_rotor import (
     grooved_pads,
     recommended_settings,
 )
+from exudyn_rotor.multibody.supports import clearances
 
 CLEARANCE, SPEED = 1e-4, 300.0
 TO_X = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
@@ -185,26 +185,6 @@ def test_a_run_ends_at_the_first_step_outside(case, monkeypatch):
         assert f" at t = {time:g} s: its journal is {distance:.3g} m from" in str(error.value)
 
 
-@pytest.mark.parametrize(
-    ("kind", "options", "motion"),
-    [
-        ("short journal", {"spin": SPEED}, {}),
-        ("short journal", {"initial_speed": SPEED}, {}),
-        ("short journal", {"base": sled}, {"rate": 2.0}),
-        ("upright lemon bore", {"spin": SPEED}, {"place": -0.6 * CLEARANCE}),
-    ],
-)
-def test_steps_inside_are_not_looked_at(kind, options, motion, monkeypatch):
-    """But the initial state is; where all moves, and beyond the least clearance of a bore, too."""
-    looks = []
-    monkeypatch.setattr(clearances, "_left", lambda mbs, watched, t: looks.append(t))
-    mbs, body, _ = scene([KINDS[kind]], -100.0, **options)
-    start(mbs, body, **motion)
-    assert run(mbs, 1e-3)
-    assert run(mbs, 1e-3)
-    assert looks == [0.0, 0.0]
-
-
 def test_trial_states_outside_do_not_end_a_run(monkeypatch):
     """The first trial of a step takes the velocity of its beginning, 1.5 clearances a step."""
     law, tried = SqueezeFilmDamper._law, []
@@ -218,24 +198,6 @@ def test_trial_states_outside_do_not_end_a_run(monkeypatch):
     start(mbs, body, 1.5)
     assert run(mbs, 5e-4)
     assert max(tried) > 1.2 * CLEARANCE
-
-
-def test_a_scripts_own_function_goes_on():
-    """It is called at every step, its False ends the run, and it is there afterwards."""
-    mbs, _, _ = scene([KINDS["short journal"]])
-    times = []
-
-    def own(mbs, t):
-        times.append(t)
-        return t < 2.5e-4
-
-    mbs.SetPostStepUserFunction(own)
-    run(mbs)
-    np.testing.assert_allclose(times, [0.0, 1e-4, 2e-4, 3e-4])
-    assert mbs.GetPostStepUserFunction()["function"] is own
-    mbs.SetPostStepUserFunction(0)
-    assert run(mbs, 3e-4)
-    assert mbs.GetPostStepUserFunction() == 0
 
 
 def test_a_rub_is_meant_where_there_is_a_stop():

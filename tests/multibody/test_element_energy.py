@@ -122,7 +122,6 @@ def left_over(kind, step, steps):
     return remainder(ends[0], energy + stored, lost, fed)
 
 
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 @pytest.mark.parametrize("name", KINDS)
 def test_balance_errs_by_the_square_of_the_step(name):
     kind = KINDS[name]
@@ -143,7 +142,6 @@ def driven(kind, step, steps):
     return remainder(ends[0], energy + stored, lost, fed + power, 6 * steps // kind.steps)
 
 
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 @pytest.mark.parametrize("name", ["linear", "tilt-springs"])
 def test_drive_of_a_constant_speed_makes_up_for_supports(name):
     """Uneven springs against tilts take from it and give back."""
@@ -218,7 +216,6 @@ def shaken(left, step, steps):
     return remainder(right, energy, lost, fed)
 
 
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 @pytest.mark.parametrize("left", ["squeeze-film", "pads", "magnets", "short-film", "finite-film"])
 def test_a_shaken_block_and_its_mounts(left):
     """The work on the scene is that of −a on its momentum; the block takes all friction."""

@@ -56,7 +56,9 @@ def test_energy_is_conserved(translation):
 
 def test_spin_follows_half_the_change_of_inertia():
     """Θω̇ = −½ωċ without a coupling g, so ω exp(c/2Θ) stays as it is; c = ζᵀĈζ without h."""
-    motion = frozen_motion("in-plane", P=np.zeros((3, 3, 2)), S=np.zeros((3, 2)), center=np.zeros(3))
+    motion = frozen_motion(
+        "in-plane", P=np.zeros((3, 3, 2)), S=np.zeros((3, 2)), center=np.zeros(3)
+    )
     q, v = integrated(motion, [0.05, -0.03], 4.0)
     zeta, omega = q[:, motion.modes], v[:, 2]
     change = np.einsum("si,ij,sj->s", zeta, motion.spin_terms.C_hat, zeta)

@@ -5,7 +5,7 @@ import netgen.occ as occ
 import ngsolve
 import numpy as np
 import pytest
-from exudyn.itemInterface import MarkerSuperElementPosition, SensorNode, SensorSuperElement
+from exudyn.itemInterface import SensorNode
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
@@ -134,7 +134,6 @@ CASES = [(name, "z", "tilt") for name in FAMILY] + [
 ]
 
 
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 @pytest.mark.parametrize(("name", "axis", "level"), CASES)
 def test_full_and_reduced_with_all_modes_agree(bar, name, axis, level):
     """The same equations in two bases: all differences are those of Newton's tolerance.
@@ -176,7 +175,6 @@ SUPPORTS = {
 HELD = "about the axis"
 
 
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 @pytest.mark.parametrize("kind", SUPPORTS)
 def test_full_and_reduced_stand_on_the_same_supports(bar, kind):
     """As above; under a free spin about a skew axis, where the support does not need a held one."""
@@ -221,7 +219,6 @@ def energy_and_momentum(body):
     return 0.5 * energy, e @ np.cross(place, momentum.reshape(-1, 3)).sum(axis=0), rates[count]
 
 
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 @pytest.mark.parametrize(
     ("name", "axis", "damping"),
     [("2.2", "z", 0.0), ("2.3", "skew", 0.0), ("2.4", "off", 0.0), ("2.2", "skew", 2e-5)],
@@ -340,20 +337,6 @@ def test_too_little_memory_is_said_before_anything_is_added(bar, monkeypatch):
     assert mbs.systemData.NumberOfNodes() == 0
     monkeypatch.setattr(full_memory, "available_memory", lambda: 1e9)
     add_rotor(mbs, bar, spin=10.0)
-
-
-def test_numbers_of_mesh_nodes_mean_nothing_to_the_marker_body(bar):
-    mbs, body = scene(bar)
-    flexible = body.objects["marker_body"]
-    marker = MarkerSuperElementPosition(
-        bodyNumber=flexible, meshNodeNumbers=[3], weightingFactors=[1.0]
-    )
-    sensor = SensorSuperElement(
-        bodyNumber=flexible, meshNodeNumber=3, outputVariableType=KINDS.Position
-    )
-    for add, item in ((mbs.AddMarker, marker), (mbs.AddSensor, sensor)):
-        with pytest.raises(ValueError, match=r"not those of the mesh; use body\.add_marker"):
-            add(item)
 
 
 def test_analyses_name_the_reduced_rotor(bar):

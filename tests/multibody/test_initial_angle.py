@@ -83,7 +83,6 @@ def test_rotor_that_has_run_on_is_where_it_is_when_turned_back(axis):
     """Its axis has not moved, wherever the rotor stops, and whatever way its node counts."""
     mbs = exu.SystemContainer().AddSystem()
     body = add_rotor(mbs, eccentric(0.1, axis).reduce(0), spin=50.0)
-    assert body.frame.sign == axis[2]
     add_supports(body, Support("all", 1e9, 1e5, tilt_stiffness=1e7, tilt_damping=1e3))
     mbs.Assemble()
     settings = recommended_settings(end_time=0.05, step=1e-4)

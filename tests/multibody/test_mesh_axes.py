@@ -95,7 +95,7 @@ def run(call, name, joined):
     else:
         add_torque(mbs, parts["nRigidBody"], mesh)
         add_springs(mbs, own, at_rest, mesh)
-        if np.array_equal(space, np.eye(3)):
+        if np.array_equal(space, np.eye(3)) and name != "-x":  # the node has other axes there
             add_rotation_spring(mbs, parts["nRigidBody"], int(np.argmax(np.abs(mesh[:, 2]))))
     rim = int(np.argmin(np.linalg.norm(places - RIM, axis=1)))
     sensors = {

@@ -10,7 +10,6 @@ from exudyn.itemInterface import (
     MarkerNodeRigid,
     NodeRigidBodyRxyz,
     SensorMarker,
-    SensorNode,
     Torque,
 )
 from exudyn.utilities import RigidBodySpringDamper
@@ -27,7 +26,6 @@ TO_X = Rotation.from_euler("y", np.pi / 2).as_matrix()
 TO_Y = Rotation.from_euler("x", -np.pi / 2).as_matrix()
 AXES = {"z": np.eye(3), "x": TO_X, "y": TO_Y, "skew": SKEW}
 SPEED = 50.0
-pytestmark = pytest.mark.filterwarnings("ignore:.*no node of Exudyn turns")
 
 
 def rings(axis="z", above=0.2, aside=0.02, modes=2):
@@ -89,15 +87,19 @@ def test_marker_and_sensors_have_the_mean_rigid_motion(axis, translation, place)
         modal_velocities=1e-4 * random.normal(size=count),
         frame_node=place,
     )
-    node = body.nodes["rigid"]
-    sensors = {
-        kind: mbs.AddSensor(SensorNode(nodeNumber=node, outputVariableType=kind))
-        for kind in (KINDS.Position, KINDS.Displacement, KINDS.Velocity, KINDS.AngularVelocity,
-                     KINDS.RotationMatrix)
-    }  # fmt: skip
     turned = np.eye(4)
     turned[:3, :3], turned[:3, 3] = SKEW, [0.01, 0.03, -0.02]
-    moved = rigid_marker(body, localHT=turned)
+    node, moved = rigid_marker(body), rigid_marker(body, localHT=turned)
+    sensors, there, axes = (
+        {kind: mbs.AddSensor(SensorMarker(markerNumber=marker, outputVariableType=kind))
+         for kind in kinds}
+        for marker, kinds in (
+            (node, (KINDS.Position, KINDS.Displacement, KINDS.Velocity, KINDS.AngularVelocity,
+                    KINDS.RotationMatrix)),
+            (moved, (KINDS.Position,)),
+            (moved, (KINDS.RotationMatrix,)),
+        )
+    )  # fmt: skip
     mbs.Assemble()
 
     point = np.zeros(3) if place == "mesh_origin" else body.selection.origin
@@ -122,10 +124,10 @@ def test_marker_and_sensors_have_the_mean_rigid_motion(axis, translation, place)
     for kind, number in sensors.items():
         scale = {KINDS.AngularVelocity: 1e-9, KINDS.Velocity: 1e-9}.get(kind, size**2 + 1e-12)
         np.testing.assert_allclose(mbs.GetSensorValues(number), expected[kind], atol=scale)
-    there = mbs.GetMarkerOutput(moved, KINDS.Position)
+    there = mbs.GetSensorValues(there[KINDS.Position])
     offset = A @ (turned[:3, 3] + np.cross(tilt, turned[:3, 3]))
     np.testing.assert_allclose(there, expected[KINDS.Position] + offset, atol=1e-12)
-    axes = np.reshape(mbs.GetMarkerOutput(moved, KINDS.RotationMatrix), (3, 3))
+    axes = np.reshape(mbs.GetSensorValues(axes[KINDS.RotationMatrix]), (3, 3))
     wanted = expected[KINDS.RotationMatrix].reshape(3, 3) @ SKEW
     np.testing.assert_allclose(axes, wanted, atol=1e-6 * 0.1)
 
@@ -297,17 +299,25 @@ def test_a_run_starts_from_the_steady_state_of_springs_at_the_node():
     assert abs(found[-1] - found[0]).max() < 1e-3 * abs(found - found[0]).max()
 
 
-def test_nodes_of_others_are_left_alone():
-    container = exu.SystemContainer()
-    number = int(add_rotor(container.AddSystem(), rings()[1]).nodes["rigid"])
-    mbs = container.GetSystem(0)  # nothing but the container holds the system meanwhile
+def test_markers_of_a_script_stay_what_they_are():
+    """What uses them is pointed at others, once; nodes of other bodies are left alone."""
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rings()[1])
     other = mbs.AddNode(NodeRigidBodyRxyz())
-    marker = mbs.AddMarker(MarkerNodeRigid(nodeNumber=other))
-    assert mbs.GetMarker(marker)["markerType"] == "NodeRigid"
-    marker = mbs.AddMarker(MarkerNodeRigid(nodeNumber=number))
-    assert mbs.GetMarker(marker)["markerType"] == "SuperElementRigid"
-    mbs.Reset()
-    while mbs.systemData.NumberOfNodes() <= number:
-        other = mbs.AddNode(NodeRigidBodyRxyz())
-    item = {"markerType": "NodeRigid", "nodeNumber": other}
-    assert mbs.GetMarker(mbs.AddMarker(item))["markerType"] == "NodeRigid"
+    own, foreign = rigid_marker(body), mbs.AddMarker(MarkerNodeRigid(nodeNumber=other))
+    load = mbs.AddLoad(Force(markerNumber=own, loadVector=[1.0, 0.0, 0.0]))
+    elsewhere = mbs.AddLoad(Force(markerNumber=foreign, loadVector=[1.0, 0.0, 0.0]))
+    pair = mbs.AddObject(
+        RigidBodySpringDamper(
+            markerNumbers=[foreign, own], stiffness=np.eye(6), damping=np.zeros((6, 6))
+        )
+    )
+    for _ in range(2):
+        mbs.Assemble()
+        assert [mbs.GetMarker(m)["markerType"] for m in (own, foreign)] == ["NodeRigid"] * 2
+        used = mbs.GetLoad(load)["markerNumber"]
+        assert mbs.GetMarker(used)["markerType"] == "SuperElementRigid"
+        assert mbs.GetLoad(elsewhere)["markerNumber"] == foreign
+        assert mbs.GetObject(pair)["markerNumbers"] == [foreign, used]
+        assert mbs.systemData.NumberOfMarkers() == int(used) + 1
+    assert [key for key in mbs.sys if "exudyn_rotor" in key] == ["exudyn_rotor"]

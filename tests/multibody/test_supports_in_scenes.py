@@ -105,7 +105,6 @@ SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
     ],
     ids=["x", "y", "-y upright", "skew mesh", "skew mounting", "both skew"],
 )
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 def test_axes_and_formulations_change_nothing(kind, turn, rotation, options):
     turn = turn if turn is None or np.linalg.det(turn) > 0 else turn @ np.diag([1.0, 1.0, -1.0])
     assert compared(kind, turn, rotation, **options) < 1e-7

@@ -158,7 +158,6 @@ def test_returned_keys_are_those_of_exudyn(fem):
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
-@pytest.mark.filterwarnings("ignore:.*no node of Exudyn turns")
 def test_swapping_the_name_of_the_call_gives_the_same_motion(fem, direction):
     own, twin = (run_script(call, fem, *DIRECTIONS[direction]) for call in (OWN, TWIN))
     assert list(own) == list(twin)
@@ -168,7 +167,6 @@ def test_swapping_the_name_of_the_call_gives_the_same_motion(fem, direction):
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
-@pytest.mark.filterwarnings("ignore:.*no node of Exudyn turns")
 def test_marker_frames_follow_those_of_the_3d_body(fem, direction):
     """Offsets, positions and orientations of markers at rest and over one full turn."""
     mesh, space = DIRECTIONS[direction]
@@ -318,7 +316,6 @@ def test_wrong_input_changes_nothing(fem, case):
 
 
 @pytest.mark.parametrize("turn", [np.eye(3), TO_X, TO_Y, SKEW], ids=["z", "x", "y", "skew"])
-@pytest.mark.filterwarnings("ignore:.*no node of Exudyn turns")
 def test_rotor_at_rest_turns_about_the_line_through_its_seats(fem, turn):
     """The unevenness of the mesh is left out where the line is a mesh axis, and is small else."""
     mbs = exu.SystemContainer().AddSystem()

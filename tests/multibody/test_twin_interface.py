@@ -6,7 +6,7 @@ import exudyn as exu
 import exudyn.utilities as eu
 import numpy as np
 import pytest
-from exudyn.FEM import CMSObjectComputeNorm, FEMinterface, ObjectFFRFreducedOrderInterface
+from exudyn.FEM import CMSObjectComputeNorm, ObjectFFRFreducedOrderInterface
 from models import disc_fem
 from run_scenes import item_counts
 
@@ -14,7 +14,7 @@ import exudyn_rotor
 from exudyn_rotor import ObjectFixedAxisFFRFreducedOrderInterface
 
 CLASSES = ObjectFFRFreducedOrderInterface, ObjectFixedAxisFFRFreducedOrderInterface
-METHODS = "__init__", "AddObjectFFRFreducedOrder", "AddObjectFFRFreducedOrderWithUserFunctions"
+METHODS = "__init__", "AddObjectFFRFreducedOrder"
 UNIT = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 
 
@@ -28,7 +28,7 @@ def made(kind, fem, **more):
     return kind(fem, **(more if kind is CLASSES[1] else {}))
 
 
-def run_script(kind, fem, later=None, **more):
+def run_script(kind, fem, **more):
     """Run a script as Exudyn's examples are: the markers its own, bodies known by numbers."""
     mbs = exu.SystemContainer().AddSystem()
     cms = made(kind, fem, **more)
@@ -44,14 +44,6 @@ def run_script(kind, fem, later=None, **more):
         color=[0.1, 0.9, 0.1, 1.0],
         name="rotor",
     )
-    if later is not None:
-        number = rotor["oFFRFreducedOrder"]
-        mbs.SetObjectParameter(
-            objectNumber=number, parameterName="outputVariableModeBasis", value=later
-        )
-        mbs.SetObjectParameter(
-            number, "outputVariableTypeModeBasis", exu.OutputVariableType.StressLocal
-        )
     ground = mbs.CreateGround()
     sensors = []
     for z in (0.0, 0.5):
@@ -142,103 +134,24 @@ def test_returned_keys_and_attributes_are_those_of_exudyn(fem):
 
 
 @pytest.mark.parametrize("locking", ["mass", "constraints"])
-@pytest.mark.parametrize("later", [False, True], ids=["stress before", "stress set later"])
-def test_swapping_the_name_of_the_class_gives_motion_and_stress(fem, later, locking):
+def test_swapping_the_name_of_the_class_gives_motion_and_stress(fem, locking):
     """Stress by body number 0, and with one set of columns per mode of the FEMinterface.
 
     The bounds are those of the other call: 2e-3 of the motion, by second-order terms of the tilts.
     """
-    model, stress = fem, None
-    if later:
-        model, stress = bare(fem), fem.postProcessingModes["matrix"]
-    own, twin = (
-        run_script(kind, model, stress, locking=locking, translation="free") for kind in CLASSES
-    )
+    own, twin = (run_script(kind, fem, locking=locking, translation="free") for kind in CLASSES)
     for signal, other in zip(own, twin, strict=True):
         assert abs(signal).max() > 0.0
         assert abs(other - signal).max() < 2e-3 * abs(signal - signal[0]).max()
 
 
-def bare(fem):
-    """Return the FEMinterface without its stress modes."""
-    model = FEMinterface()
-    for name in ("nodes", "massMatrix", "stiffnessMatrix", "modeBasis", "surface", "nodeSets"):
-        setattr(model, name, getattr(fem, name))
-    return model
-
-
-def test_stress_set_later_is_that_given_before(fem):
-    """For modes that are not orthonormal, with dependent ones and a rigid part among them."""
-    mix = np.random.default_rng(3).normal(size=(6, 7)) * 10.0 ** np.arange(-3, 4)
-    model = bare(fem)
-    matrix = fem.modeBasis["matrix"] @ mix
-    matrix[0::3, 2] += 5.0  # translated along x
-    model.modeBasis = {"matrix": matrix, "type": "NormalModes"}
-    stress = fem.postProcessingModes["matrix"].reshape(-1, 6, 6).transpose(0, 2, 1) @ mix
-    stress = stress.transpose(0, 2, 1).reshape(len(stress), -1)
-    found = []
-    for before in (True, False):
-        model.postProcessingModes = (
-            {"matrix": stress, "outputVariableType": exu.OutputVariableType.StressLocal}
-            if before
-            else {}
-        )
-        container = exu.SystemContainer()
-        cms = ObjectFixedAxisFFRFreducedOrderInterface(model, axis="z")
-        rotor = int(cms.AddObjectFFRFreducedOrder(container.AddSystem())["oFFRFreducedOrder"])
-        del cms  # nothing but the container holds the system meanwhile
-        mbs = container.GetSystem(0)
-        if not before:
-            mbs.SetObjectParameter(rotor, "outputVariableModeBasis", stress)
-        found.append(mbs.GetObjectParameter(rotor, "outputVariableModeBasis"))
-    # column by column; the condition of the mixed modes, 1e6 and more, times round-off
-    size = np.abs(found[0]).max(axis=0) + 1e-9 * np.abs(found[0]).max()
-    assert np.all(np.abs(found[1] - found[0]).max(axis=0) < 1e-6 * size)
-    with pytest.raises(
-        ValueError, match=r"outputVariableModeBasis: needs .* got an array of shape"
-    ):
-        mbs.SetObjectParameter(rotor, "outputVariableModeBasis", stress[:, 6:])
-
-
-@pytest.mark.parametrize("call", ["class", "function"])
-def test_strain_modes_are_taken_as_stress_modes_are(fem, call):
-    model = bare(fem)
-    strain = fem.postProcessingModes["matrix"] / 1e11
-    kind = exu.OutputVariableType.StrainLocal
-    model.postProcessingModes = {"matrix": strain, "outputVariableType": kind}
+def test_stress_modes_of_a_fem_interface_come_before_the_rotor(fem):
     mbs = exu.SystemContainer().AddSystem()
-    if call == "class":
-        made = ObjectFixedAxisFFRFreducedOrderInterface(model, axis="z")
-        made.AddObjectFFRFreducedOrder(mbs)
-    else:
-        mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", model, axis="z")
-    own = exu.SystemContainer().AddSystem()
-    ObjectFixedAxisFFRFreducedOrderInterface(fem, axis="z").AddObjectFFRFreducedOrder(own)
-    stress = own.GetObjectParameter(0, "outputVariableModeBasis")
-    found = mbs.GetObjectParameter(0, "outputVariableModeBasis")
-    np.testing.assert_allclose(found, stress / 1e11, atol=1e-9 * np.abs(stress).max() / 1e11)
-    assert mbs.GetObjectParameter(0, "outputVariableTypeModeBasis") == kind
-    mbs.Assemble()
-    assert CMSObjectComputeNorm(mbs, 0, kind, "maxNorm") == 0.0
-    model.postProcessingModes = {"matrix": strain[:, 1:], "outputVariableType": kind}
-    before = item_counts(mbs)
-    with pytest.raises(ValueError, match="femInterface: its strain modes"):
-        mbs.CreateFixedAxisFFRFReducedOrderObject("other", model, axis="z")
-    assert item_counts(mbs) == before
-
-
-def test_other_parameters_and_bodies_are_set_as_before(fem):
-    mbs = exu.SystemContainer().AddSystem()
-    own, twin = (
-        made(kind, fem, axis="z").AddObjectFFRFreducedOrder(mbs)["oFFRFreducedOrder"]
-        for kind in CLASSES
-    )
-    stress = 2.0 * fem.postProcessingModes["matrix"]
-    mbs.SetObjectParameter(own, "outputVariableModeBasis", stress)
-    mbs.SetObjectParameter(parameterName="Vcolor", value=[1.0, 0.0, 0.0, 1.0], objectNumber=twin)
-    np.testing.assert_array_equal(mbs.GetObjectParameter(own, "outputVariableModeBasis"), stress)
-    assert mbs.GetObjectParameter(twin, "Vcolor") == [1.0, 0.0, 0.0, 1.0]
-    mbs.Assemble()
+    made = ObjectFixedAxisFFRFreducedOrderInterface(fem, axis="z").AddObjectFFRFreducedOrder(mbs)
+    columns = fem.postProcessingModes["matrix"]
+    mbs.SetObjectParameter(made["oFFRFreducedOrder"], "outputVariableModeBasis", columns)
+    with pytest.raises(ValueError, match=r"outputVariableModeBasis: .* needs the shape"):
+        mbs.Assemble()
 
 
 def test_the_axis_is_that_of_the_initial_spin(fem):
@@ -250,44 +163,7 @@ def test_the_axis_is_that_of_the_initial_spin(fem):
         assert made["rotorBody"].axis.direction.tolist() == [0.0, 0.0, 1.0]
 
 
-def test_orientation_by_euler_parameters(fem):
-    half = np.sqrt(0.5)
-    mbs = exu.SystemContainer().AddSystem()
-    cms = ObjectFixedAxisFFRFreducedOrderInterface(fem, axis="z")
-    body = cms.AddObjectFFRFreducedOrderWithUserFunctions(
-        exu, mbs, eulerParametersRef=[half, half, 0.0, 0.0], initialAngularVelocity=[0, -30.0, 0]
-    )["rotorBody"]
-    np.testing.assert_allclose(
-        body.plan.setup.placement.rotation @ [0, 0, 1], [0, -1, 0], atol=1e-15
-    )
-    assert body.plan.setup.placement.speed == pytest.approx(30.0, rel=1e-14)
-
-
-def test_a_file_keeps_the_rotor(fem, tmp_path):
-    """An empty interface adds what another has saved."""
-    cms = ObjectFixedAxisFFRFreducedOrderInterface(fem, axis="z", translation="none", spin=10.0)
-    cms.SaveToFile(tmp_path / "rotor")
-    empty = ObjectFixedAxisFFRFreducedOrderInterface(translation="none", spin=10.0)
-    assert empty.LoadFromFile(str(tmp_path / "rotor.npz")) == 1
-    bodies = [
-        one.AddObjectFFRFreducedOrder(exu.SystemContainer().AddSystem())["rotorBody"]
-        for one in (cms, empty)
-    ]
-    stiffness = [body.motion.invariants.K for body in bodies]
-    np.testing.assert_array_equal(*stiffness)
-    assert (empty.nModes, empty.nNodes) == (cms.nModes, cms.nNodes)
-    with pytest.raises(ValueError, match="spin axis is"):
-        ObjectFixedAxisFFRFreducedOrderInterface(axis="x").LoadFromFile(tmp_path / "rotor.npz")
-
-
 WRONG = {
-    "user function": ({"UFforce": lambda *given: 0.0}, "UFforce: needs 0"),
-    "mass function": ({"UFmassMatrix": 3}, "UFmassMatrix: needs 0"),
-    "two orientations": (
-        {"eulerParametersRef": [1.0, 0, 0, 0], "rotationMatrixRef": UNIT},
-        "given twice",
-    ),
-    "norm": ({"eulerParametersRef": [1.0, 1.0, 0, 0]}, "eulerParametersRef: needs 4 numbers"),
     "position": ({"positionRef": [0.0, np.nan, 0.0]}, "positionRef"),
     "reflection": ({"rotationMatrixRef": -np.eye(3)}, "rotationMatrixRef: needs a rotation"),
     "across": ({"initialAngularVelocity": [0.0, 1.0, 9.0]}, "across the spin axis"),
@@ -302,20 +178,8 @@ def test_wrong_input_changes_nothing(fem, case):
     cms = ObjectFixedAxisFFRFreducedOrderInterface(fem, axis="z")
     before = item_counts(mbs)
     with pytest.raises((ValueError, TypeError), match=message):
-        cms.AddObjectFFRFreducedOrderWithUserFunctions(exu, mbs, **arguments)
+        cms.AddObjectFFRFreducedOrder(mbs, **arguments)
     assert item_counts(mbs) == before
-
-
-def test_an_interface_without_a_model(fem, tmp_path):
-    mbs = exu.SystemContainer().AddSystem()
-    with pytest.raises(ValueError, match="femInterface: this interface is empty"):
-        ObjectFixedAxisFFRFreducedOrderInterface().AddObjectFFRFreducedOrder(mbs)
-    model = bare(fem)
-    model.modeBasis = {}
-    with pytest.raises(ValueError, match="holds no modes"):
-        ObjectFixedAxisFFRFreducedOrderInterface(model)
-    with pytest.raises(ValueError, match="nothing to save before the spin axis is known"):
-        ObjectFixedAxisFFRFreducedOrderInterface(fem).SaveToFile(tmp_path / "rotor")
 
 
 def test_a_rotor_body_kept_over_a_reset_says_so(fem):

@@ -62,16 +62,14 @@ def warn_of_lost_connections(mbs: exudyn.MainSystem, stacklevel: int) -> None:
             warnings.warn(message, ConnectionWarning, stacklevel=stacklevel)
 
 
-def markers_on_mesh(mbs: exudyn.MainSystem, rotor: KnownRotor) -> dict[int, dict]:
-    """Return a script's markers at mesh nodes of a rotor."""
-    found = {}
-    for number in range(mbs.systemData.NumberOfMarkers()):
-        marker = mbs.GetMarker(number)
-        if marker["markerType"] in _NEEDED and int(marker["bodyNumber"]) == rotor.marker_body:
-            nodes = np.asarray(marker["meshNodeNumbers"])
-            if nodes.size and nodes.max() < rotor.mesh_node_count:
-                found[number] = marker
-    return found
+def _markers(mbs: exudyn.MainSystem, rotor: KnownRotor) -> dict[int, dict]:
+    """Return the super-element markers on a rotor."""
+    every = {n: mbs.GetMarker(n) for n in range(mbs.systemData.NumberOfMarkers())}
+    return {
+        number: marker
+        for number, marker in every.items()
+        if marker["markerType"] in _NEEDED and int(marker["bodyNumber"]) == rotor.marker_body
+    }
 
 
 def _refuse_foreign_stress(mbs: exudyn.MainSystem, rotor: KnownRotor) -> None:
@@ -91,9 +89,11 @@ def _give_mesh_axes(mbs: exudyn.MainSystem, rotor: KnownRotor) -> None:
     B = rotor.plan.frame.B
     if rotor.plan.frame.has_mesh_axes:
         return
-    for number, marker in markers_on_mesh(mbs, rotor).items():
+    for number, marker in _markers(mbs, rotor).items():
         if marker["markerType"] != "SuperElementRigid" or number in rotor.turned:
             continue
+        if max(marker["meshNodeNumbers"], default=-1) >= rotor.mesh_node_count:
+            continue  # the package's own
         rotor.turned.add(number)
         local = np.array(marker["localHT"], dtype=float)
         local[:3, :3] = B @ local[:3, :3]
@@ -107,7 +107,7 @@ def _condense(mbs: exudyn.MainSystem, rotor: KnownRotor) -> None:
     Markers stay as they are where their weights do not add up to one, where a rigid marker takes
     the rotation by the other formula (``useAlternativeApproach=False``) or has its nodes on a line.
     """
-    chosen = {n: m for n, m in markers_on_mesh(mbs, rotor).items() if _can_be_condensed(m)}
+    chosen = {n: m for n, m in _markers(mbs, rotor).items() if _can_be_condensed(m)}
     if not chosen:
         return
     body, tilts = mbs.GetObject(rotor.marker_body), _tilts(rotor)

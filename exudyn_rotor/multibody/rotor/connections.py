@@ -14,8 +14,9 @@ from typing import Any
 import exudyn
 import numpy as np
 
-from exudyn_rotor.multibody.rotor.known_rotor import KnownRotor
+from exudyn_rotor.multibody.rotor.known_rotor import KnownRotor, known_rotor
 from exudyn_rotor.multibody.rotor.node_motion import NODE_MARKERS
+from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 
 _ALONG = 1e-6  # sine of the angle up to which a direction counts as that of the spin axis
 _COORDINATES = ("NodeCoordinate", "NodeCoordinates", "NodeRotationCoordinate")
@@ -50,9 +51,11 @@ def lost_connections(mbs: exudyn.MainSystem, rotor: KnownRotor) -> tuple[str, ..
     return tuple(f"{item}: {reason}" for item, reason in (*lost, *walk.sensors()))
 
 
-def lost_loads(mbs: exudyn.MainSystem, rotor: KnownRotor) -> int:
-    """Return how many loads and connectors the rotor cannot carry; sensors change no motion."""
-    walk = _Walk(mbs, rotor)
+def lost_loads(body: RotorItems) -> int:
+    """Return how many loads and connectors a rotor cannot carry; sensors change no motion."""
+    if "marker_body" not in body.objects:
+        return 0
+    walk = _Walk(body.mbs, known_rotor(body))
     return len([*walk.loads(), *walk.objects()])
 
 
@@ -66,7 +69,7 @@ class _Walk:
         self.apart = self._distance_to_centre_of_mass()
         numbers = range(mbs.systemData.NumberOfMarkers())
         every = {number: mbs.GetMarker(number) for number in numbers}
-        at_node = {n: m for n, m in every.items() if m.get("nodeNumber") == rotor.node}
+        at_node = {n: m for n, m in every.items() if int(m.get("nodeNumber", -1)) == rotor.node}
         self.coordinates = {n: m for n, m in at_node.items() if m["markerType"] in _COORDINATES}
         self.rigid = {n for n, m in at_node.items() if m["markerType"] in NODE_MARKERS}
         self.offset = {
@@ -142,6 +145,8 @@ class _Walk:
             return self._coordinate(int(marker["coordinate"]), "a connector")
         if marker["markerType"] == "NodeRotationCoordinate":
             axis = np.eye(3)[int(marker["rotationCoordinate"])]
+            if not self.rotor.plan.frame.has_mesh_axes:
+                return "the node's axes are those of the mesh turned by body.frame.B"
             across = np.linalg.norm(np.cross(axis, self.n)) > _ALONG
             return _tilts("a connector") if across else self._coordinate(spin, "a connector")
         used = np.atleast_2d(item.get(f"scalingMarker{place}", np.zeros((0, 0))))
