@@ -49,8 +49,8 @@ def _balance(
     inertia, external = external_load(body, record, index)
     load = place.lock_mass * q_tt + record.held[index]
     if body.plan.setup.locking == "mass":
-        for number, motion in body.locks.varying.items():
-            load[number] -= place.lock_mass[number] * motion.acceleration(t)
+        for number, driven in body.locks.varying.items():
+            load[number] -= place.lock_mass[number] * driven.acceleration(t)
     load[place.unknowns] = external
     turn = turned(body, q)
     on_modes = external[motion.modes]

@@ -11,13 +11,9 @@ from functools import wraps
 import exudyn
 from exudyn.misc.extensionRegistry import extends, install
 
-ENTRY = "exudyn_rotor"  # the package's one entry of mbs.sys
+from exudyn_rotor.multibody.mark import ENTRY
+
 _OWN = "_knows_fixed_axis_rotors"  # attribute of the wrapped method
-
-
-def entry(mbs: exudyn.MainSystem) -> dict:
-    """Return the package's own entry of ``mbs.sys``."""
-    return mbs.sys.setdefault(ENTRY, {})
 
 
 def _wrap_assemble() -> None:

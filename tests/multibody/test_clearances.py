@@ -132,26 +132,18 @@ def adaptive_steps(integration):
     integration.newton.maxIterations = 5  # takes a sixteenth of the first step
 
 
-def no_force_at_first(integration):
-    integration.generalizedAlpha.computeInitialAccelerations = False
-
-
 CASES = {  # kind, options of the scene, start, and of the run
     "slowly": ("seal", {"load": -3e4}, {}, {}),
     "through a film": ("short journal", {"load": -3e6}, {}, {}),
     "braked": ("film", {"load": -3e5, "initial_speed": 1.0}, {"place": -0.98 * CLEARANCE}, {}),
     "another axis": ("seal", {"load": -3e4, "spin": SPEED, "rotation": TO_X}, {}, {}),
     "explicit steps": (
-        "seal", {"load": -3e4}, {}, {"solverType": exu.DynamicSolverType.DOPRI5}
+        "seal", {"load": -3e4, "spin": SPEED, "locking": "mass"}, {}, {"solverType": exu.DynamicSolverType.DOPRI5}
     ),
     "adaptive steps": ("short journal", {"load": -3e5}, {}, {"change": adaptive_steps}),
     "a base that leaves": ("seal", {"base": sled}, {}, {}),
     "across in a step": ("seal", {}, {"rate": -30.0, "place": 0.9 * CLEARANCE}, {}),
     "magnets": ("magnets", {"load": -6e4}, {}, {}),
-    "magnets from the start": (
-        "magnets", {}, {"place": 1.1 * CLEARANCE}, {"change": no_force_at_first}
-    ),
-    "from the start": ("seal", {}, {"place": 1.1 * CLEARANCE}, {"change": no_force_at_first}),
 }  # fmt: skip
 
 

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 import exudyn
 import numpy as np
 
-from exudyn_rotor.multibody.mark import Mark, mark_of
+from exudyn_rotor.multibody.mark import Mark, entry, mark_of
 from exudyn_rotor.multibody.rotor.plan import Plan
-from exudyn_rotor.multibody.wrapping import entry
 
 if TYPE_CHECKING:
     from exudyn_rotor.multibody.rotor.rotor_items import RotorItems

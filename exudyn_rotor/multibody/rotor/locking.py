@@ -33,7 +33,7 @@ from exudyn.itemInterface import (
 from exudyn_rotor.multibody.rotor.frame import THIRD
 from exudyn_rotor.theory.formulation import ConstantSpeed, Formulation, PrescribedMotion
 
-LOCKINGS = ("auto", "constraints", "mass")
+LOCKINGS = ("auto", "mass", "constraints")
 MODES = 6  # the first coordinate after those of the rigid-body node
 LOCKS = "locks"  # name of the constraint of all that stand still or turn at constant speed
 

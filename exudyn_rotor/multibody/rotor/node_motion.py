@@ -50,14 +50,9 @@ def add_node_marker(mbs: exudyn.MainSystem, rotor: KnownRotor, given: dict) -> e
     `given` are the entries of a rigid or position marker, of which the type and ``localHT`` count.
     """
     frame, inv = rotor.plan.frame, rotor.plan.motion.invariants
-    motion, local = mean_motion(rotor), np.eye(4)
-    if np.size(given.get("localHT", ())):
-        local = np.asarray(given["localHT"], dtype=float)
-    shift = frame.B @ local[:3, 3]
-    motion = np.vstack([motion[:3] - skew(shift) @ motion[3:], motion[3:]])
-    place, columns = frame.points(frame.node) + shift, motion[:3]
+    motion, place = mean_motion(rotor), frame.points(frame.node)
     rigid = given["markerType"] == "NodeRigid"
-    places = place[None, :]
+    places, columns = place[None, :], motion[:3]
     if rigid:
         arm = float(np.sqrt(np.trace(inv.J) / inv.mass))
         places, columns = virtual_nodes(place, arm, motion, _Z)
@@ -70,6 +65,6 @@ def add_node_marker(mbs: exudyn.MainSystem, rotor: KnownRotor, given: dict) -> e
     }
     if not rigid:
         return mbs.AddMarker(MarkerSuperElementPosition(**common))
-    turn = np.eye(4)
-    turn[:3, :3] = frame.B @ local[:3, :3]
+    turn = np.eye(4)  # Exudyn takes no other place than the node's
+    turn[:3, :3] = frame.B @ np.asarray(given["localHT"], dtype=float)[:3, :3]
     return mbs.AddMarker(MarkerSuperElementRigid(localHT=turn, **common))

@@ -19,9 +19,8 @@ from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.clearance_stop import ClearanceStop
 from exudyn_rotor.bearings.held_law import HeldLaw
 from exudyn_rotor.bearings.magnetic import MagneticBearing
-from exudyn_rotor.multibody.mark import Mark
+from exudyn_rotor.multibody.mark import Mark, entry
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
-from exudyn_rotor.multibody.wrapping import entry
 
 _WATCHED, _STOPS = "bearings that journals must not leave", "stops"
 _START = exudyn.ConfigurationType.StartOfStep
@@ -68,6 +67,9 @@ def noting_outside(
         watched = own.get(_WATCHED, {}).get(int(item))
         if watched is None or watched.place in own.get(_STOPS, ()):
             return
+        time = mbs.systemData.GetTime(_START)
+        if time <= 0.0:  # nothing has been accepted yet
+            return
         ends = (mbs.GetObject(item)["markerNumbers"][i] for i in (1, 0))
         journal, bore = (
             mbs.GetMarkerOutput(end, exudyn.OutputVariableType.Position, _START) for end in ends
@@ -78,7 +80,7 @@ def noting_outside(
             return
         beyond = distance - bearing.clearance_along(place / distance)
         if beyond >= 0.0:
-            raise ValueError(_left(watched, bearing, mbs.systemData.GetTime(_START), place, beyond))
+            raise ValueError(_left(watched, bearing, time, place, beyond))
 
     return note
 

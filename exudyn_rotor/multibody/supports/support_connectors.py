@@ -27,6 +27,7 @@ from exudyn_rotor.bearings.bearing import Bearing, LawWithTorque
 from exudyn_rotor.bearings.held_law import HeldLaw
 from exudyn_rotor.bearings.journal_bearing import FilmLaw, JournalBearing, RememberingLaw
 from exudyn_rotor.bearings.support import Support, varies
+from exudyn_rotor.multibody.mark import entry
 from exudyn_rotor.multibody.rotor.known_rotor import KnownRotor, carrying_rotor
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.supports.clearances import noting_outside, watch_clearance
@@ -40,7 +41,6 @@ from exudyn_rotor.multibody.supports.turning_base import (
     on_turning_rotor,
     seen_from_rotor,
 )
-from exudyn_rotor.multibody.wrapping import entry
 from exudyn_rotor.theory.rotating_axes import axial_rotation
 
 NATIVE, SYMBOLIC, PYTHON = "Exudyn", "symbolic function", "Python function"

@@ -117,7 +117,7 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
 
     def __init__(
         self,
-        femInterface: FEMinterface,
+        femInterface: FEMinterface | None = None,
         rigidBodyNodeType: str | exudyn.NodeType = "NodeType.RotationEulerParameters",
         roundMassMatrix: float = 1e-13,
         roundStiffnessMatrix: float = 1e-13,
