@@ -51,7 +51,6 @@ if TYPE_CHECKING:
         anticipated_cross_coupling as anticipated_cross_coupling,
     )
     from exudyn_rotor.evaluation.level_one import stability_level_one as stability_level_one
-    from exudyn_rotor.evaluation.placement import bearing_loads as bearing_loads
     from exudyn_rotor.evaluation.placement import bearing_masses as bearing_masses
     from exudyn_rotor.evaluation.placement import standard_unbalances as standard_unbalances
     from exudyn_rotor.evaluation.separation import SeparationMargins as SeparationMargins
@@ -78,12 +77,6 @@ if TYPE_CHECKING:
     from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce as HarmonicForce
     from exudyn_rotor.linear.response.responses import HarmonicResponse as HarmonicResponse
     from exudyn_rotor.linear.response.responses import UnbalanceResponse as UnbalanceResponse
-    from exudyn_rotor.linear.response.rolling_response import (
-        rolling_bearing_response as rolling_bearing_response,
-    )
-    from exudyn_rotor.linear.response.rolling_result import (
-        RollingBearingResponse as RollingBearingResponse,
-    )
     from exudyn_rotor.linear.response.steady_response import harmonic_response as harmonic_response
     from exudyn_rotor.linear.response.steady_response import (
         unbalance_response as unbalance_response,
@@ -105,6 +98,9 @@ if TYPE_CHECKING:
     )
     from exudyn_rotor.linear.stability.thresholds import stability_threshold as stability_threshold
     from exudyn_rotor.linear.stability.thresholds import unstable_ranges as unstable_ranges
+    from exudyn_rotor.linear.static.bearing_loads import bearing_loads as bearing_loads
+    from exudyn_rotor.linear.static.static_response import static_response as static_response
+    from exudyn_rotor.linear.static.static_result import StaticResponse as StaticResponse
     from exudyn_rotor.multibody.add_rotor import add_rotor as add_rotor
     from exudyn_rotor.multibody.drives.add_drive import add_drive as add_drive
     from exudyn_rotor.multibody.drives.connect_rotors import connect_rotors as connect_rotors
@@ -123,6 +119,9 @@ if TYPE_CHECKING:
     from exudyn_rotor.multibody.twins.exudyn_interface import (
         ObjectFixedAxisFFRFreducedOrderInterface as ObjectFixedAxisFFRFreducedOrderInterface,
     )
+    from exudyn_rotor.nonlinear.limit_cycles import limit_cycles as limit_cycles
+    from exudyn_rotor.nonlinear.periodic_response import periodic_response as periodic_response
+    from exudyn_rotor.nonlinear.periodic_result import PeriodicResponse as PeriodicResponse
     from exudyn_rotor.pictures.motion_shapes import MotionShapes as MotionShapes
     from exudyn_rotor.pictures.shapes import mode_shapes as mode_shapes
     from exudyn_rotor.pictures.shapes import response_shapes as response_shapes
@@ -184,7 +183,7 @@ _NAMES = {
     "drives.gear_mesh": "GearMesh",
     "drives.motors": "DirectCurrentMotor InductionMotor LimitedPower",
     "evaluation.level_one": "StabilityLevelOne anticipated_cross_coupling stability_level_one",
-    "evaluation.placement": "bearing_loads bearing_masses standard_unbalances",
+    "evaluation.placement": "bearing_masses standard_unbalances",
     "evaluation.separation": "SeparationMargins separation_margins",
     "foundations.foundation": "Foundation",
     "foundations.mount": "Mount",
@@ -200,8 +199,6 @@ _NAMES = {
     "linear.response.base_response": "BaseResponse base_response",
     "linear.response.harmonic_loads": "BaseAcceleration HarmonicForce",
     "linear.response.responses": "HarmonicResponse UnbalanceResponse",
-    "linear.response.rolling_response": "rolling_bearing_response",
-    "linear.response.rolling_result": "RollingBearingResponse",
     "linear.response.steady_response": "harmonic_response unbalance_response",
     "linear.response.steady_state": "SteadyState steady_state",
     "linear.response.unbalance": "Unbalance permissible_unbalance",
@@ -212,6 +209,9 @@ _NAMES = {
     "linear.stability.stability_result": "Stability",
     "linear.stability.threshold_result": "StabilityThresholds",
     "linear.stability.thresholds": "stability_threshold unstable_ranges",
+    "linear.static.bearing_loads": "bearing_loads",
+    "linear.static.static_response": "static_response",
+    "linear.static.static_result": "StaticResponse",
     "multibody.add_rotor": "add_rotor",
     "multibody.drives.add_drive": "add_drive",
     "multibody.drives.connect_rotors": "connect_rotors",
@@ -225,6 +225,9 @@ _NAMES = {
     "multibody.supports.foundation_body": "SceneFoundation add_foundation",
     "multibody.twins.exudyn_call": "MainSystemCreateFixedAxisFFRFReducedOrderObject",
     "multibody.twins.exudyn_interface": "ObjectFixedAxisFFRFreducedOrderInterface",
+    "nonlinear.limit_cycles": "limit_cycles",
+    "nonlinear.periodic_response": "periodic_response",
+    "nonlinear.periodic_result": "PeriodicResponse",
     "pictures.motion_shapes": "MotionShapes",
     "pictures.shapes": "mode_shapes response_shapes",
     "pictures.spectra": "Spectra plot_orbit spectra",

@@ -5,7 +5,6 @@ import json
 from functools import cache
 from pathlib import Path
 
-import numpy as np
 from netgen import occ
 
 from exudyn_rotor import Link, ReducedRotor, RotorTrain, SolidRotor, Support, craig_bampton_modes
@@ -47,15 +46,6 @@ def spool(name: str, modes: int = 8, free: bool = False) -> ReducedRotor:
     if free:
         return rotor.reduce(modes, prestress=True)
     return rotor.reduce(craig_bampton_modes(rotor, modes, coupling="RBE3"), prestress=True)
-
-
-def spool_with_growth() -> tuple[ReducedRotor, float, list[Support]]:
-    """Return the inner one, a speed and springs on which its uneven mesh makes axial motion grow.
-
-    Undamped along the axis, damped across it.
-    """
-    K, D = np.diag([2e7, 2e7, 1e7]), np.diag([800.0, 800.0, 0.0])
-    return spool("inner", 8, free=True), 4000.0, [Support(n, K, D) for n in ("front", "rear")]
 
 
 def dual_spool(ratio: float, modes: int = 8, free: bool = False) -> RotorTrain:

@@ -26,6 +26,16 @@ def _bar():
     return Mesh(OCCGeometry(bar).GenerateMesh(maxh=0.15))
 
 
+def _point():
+    mass = er.SolidRotor.from_matrices(20.0 * np.eye(3), np.zeros((3, 3)), [[0.0, 0, 0]], "z")
+    return mass.with_interface("left", [0]).reduce(0)
+
+
+_FILM = er.ShortJournalBearing(
+    interface="left", radius=0.03, length=0.02, clearance=6e-5, viscosity=0.02, load=[0.0, -196.2]
+)
+
+
 def _fem(w):
     fem = FEMinterface()
     named = {"materials": {"steel": STEEL}, "boundaryNamesList": ["left", "right"]}
@@ -107,12 +117,14 @@ RETURNED = {
     **{"EnergyBalance": "energy_balance", "Foundation": "Foundation.from_modes"},
     **{"HarmonicResponse": "harmonic_response", "MotionShapes": "mode_shapes"},
     **{"PrescribedMotion": "PrescribedMotion.run_up", "Prestress": "SolidRotor.prestress"},
-    **{"Proposal": "propose", "RollingBearingResponse": "rolling_bearing_response"},
+    **{"PeriodicResponse": "periodic_response"},
+    **{"Proposal": "propose"},
     **{"RunCheck": "check_run", "SceneFoundation": "add_foundation", "Sensitivity": "sensitivity"},
     **{"SeparationMargins": "separation_margins", "SolidRotor": "SolidRotor.from_ngsolve"},
     **{"Spectra": "spectra", "Stability": "stability", "StabilityLevelOne": "stability_level_one"},
     **{"StabilityMap": "stability_map", "StabilityThresholds": "stability_threshold"},
     **{"StartState": "SteadyState.state", "SteadyState": "steady_state"},
+    **{"StaticResponse": "static_response"},
     **{"StressField": "StressField.of", "StressHistory": "stress_history"},
     **{"UnbalanceResponse": "unbalance_response"},
 }
@@ -246,8 +258,9 @@ CALLS = {
         "stiffness": 7e9,
         "load": [0.0, -500.0],
     },
-    "RollingBearingResponse.displacement": {"speed": 20.0, "time": [0.0, 0.1]},
-    "RollingBearingResponse.state": {"speed": 20.0},
+    "PeriodicResponse.displacement": {"point": 0, "time": [0.0, 0.1]},
+    "PeriodicResponse.orbit": {"point": 0},
+    "PeriodicResponse.state": {"point": 0},
     "RotorBody.start_recording": lambda w: {"self": w.free_body},
     "RotorTrain": lambda w: {
         "rotors": {"first": w.ReducedRotor, "second": w.ReducedRotor},
@@ -275,6 +288,7 @@ CALLS = {
         "nodes": w.SolidRotor.nodes,
         "interfaces": {"left": [0, 1, 2, 3]},
     },
+    "ReducedRotor.stress_of": lambda w: {"coordinates": np.zeros(w.ReducedRotor.size)},
     "SolidRotor.from_ngsolve": {"materials": {"steel": STEEL}, "order": 1},
     "SolidRotor.interface_at": {"name": "seat", "position": 0.15, "width": 0.4},
     "SolidRotor.prestress": {"euler": True},
@@ -325,15 +339,33 @@ CALLS = {
     "recommended_settings": {"end_time": 1.0, "step": 1e-3},
     "report": lambda w: {"path": w.folder / "report.html", "contents": [w.ReducedRotor]},
     "response_shapes": lambda w: {"unbalances": [w.Unbalance]},
-    "rolling_bearing_response": lambda w: {
-        "speeds": [20.0],
-        "supports": [w.RollingBearing, *w.supports],
+    "limit_cycles": lambda w: {
+        "target": _point(),
+        "speeds": [1150.0],
+        "onset": er.stability_threshold(_point(), 100.0, 2000.0, supports=_FILM),
+        "supports": _FILM,
         "gravity": DOWN,
+        "at": "left",
+    },
+    "periodic_response": {
+        "values": [10.0, 20.0],
+        "supports": [
+            er.SqueezeFilmDamper(
+                interface=end,
+                radius=0.06,
+                length=0.02,
+                clearance=1e-4,
+                viscosity=0.01,
+                centring_stiffness=1e6,
+            )
+            for end in ENDS
+        ],
     },
     "sensitivity": lambda w: {"supports": [*w.magnets, *w.supports]},
     "separation_margins": {"operating_range": (500.0, 800.0)},
     "spectra": {"time": 1e-3 * np.arange(40), "motion": np.ones((40, 2)), "length": 0.02},
     "spinning_modes": lambda w: {"rotor": w.stressed, "speeds": (5.0, 10.0)},
+    "static_response": {"loads": {"left": [1.0, 2.0, 0.0]}, "gravity": DOWN},
     "stability_level_one": {"cross_coupling": 1e4},
     "stability_threshold": lambda w: {
         "low": 10.0,

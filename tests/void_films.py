@@ -2,7 +2,7 @@
 
 import exudyn as exu
 import numpy as np
-from exudyn.itemInterface import LoadForceVector, SensorObject
+from exudyn.itemInterface import LoadForceVector
 from point_rotors import ring_rotor
 from scipy.spatial.transform import Rotation
 
@@ -19,7 +19,6 @@ from exudyn_rotor import (
 
 CLEARANCE, SPEED = 1e-4, 580.0
 BEHIND = 0.19  # rad: a groove behind the thinnest film, so that the film begins again in the pad
-KINDS = exu.OutputVariableType
 GRAVITY = np.array([0.0, -9.81, 0.0])
 
 
@@ -69,23 +68,9 @@ def scene(reduced, supports, gravity=GRAVITY, foundation=None, **options):
         else add_foundation(mbs, foundation, rotation=options.get("rotation"))
     )
     added = add_supports(body, supports, base)
-    sensors = [
-        mbs.AddSensor(
-            SensorObject(
-                objectNumber=added[0].objects[0],
-                outputVariableType=kind,
-                storeInternal=True,
-                writeToFile=False,
-            )
-        )
-        for kind in (
-            (KINDS.DisplacementLocal, KINDS.VelocityLocal, KINDS.ForceLocal)
-            if body.formulation.has_spin
-            else (KINDS.Displacement, KINDS.Velocity, KINDS.Force)
-        )
-    ]
+    sensor = added[0].add_sensor()
     mbs.Assemble()
-    return mbs, body, sensors
+    return mbs, body, sensor
 
 
 def solve(mbs, end_time, step, **options):
@@ -120,4 +105,3 @@ def oscillations(motion, step, rank=7):
 
 
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
-TO_X = Rotation.from_euler("y", 90.0, degrees=True).as_matrix()

@@ -18,35 +18,23 @@ class Script(NamedTuple):
 
 SCRIPTS = {
     "speed": Script("speed.speed", "cost of a step"),
-    "small_models": Script("speed.small_models", "speed on small meshes"),
-    "frozen_spin": Script("speed.frozen_spin", "error and cost of a frozen spin"),
-    "ablation": Script("speed.ablation", "cost of each ingredient of a scene"),
     "set_up": Script("speed.set_up", "time of the set-up"),
-    "growth": Script("speed.growth", "time and memory of the set-up over the size of the mesh"),
     "linear": Script("speed.linear", "time of linear analyses"),
+    "beside_ross": Script("speed.beside_ross", "beside ROSS"),
     "trade": Script("trade.trade", "accuracy for the time"),
     "against_3d": Script("exudyn_3d.against_3d", "agreement with the 3D body"),
     "full_3d": Script("exudyn_3d.full_3d", "agreement of full bodies with the full 3D body"),
-    "reduction": Script("reduction", "what reduction costs in accuracy"),
-    "sudden_start": Script("sudden_start", "phase of runs from a sudden start"),
-    "family": Script("family", "costs of the family, full and reduced"),
     "peer": Script("peer.table", "the swapped call in scripts of Exudyn's manner"),
     "conical": Script("exudyn_3d.conical", "conical frequencies"),
-    "mean_axis": Script("exudyn_3d.mean_axis", "Craig–Bampton modes over the speed"),
     "timoshenko": Script("references.timoshenko", "Timoshenko beam"),
     "benchmarks": Script("references.benchmarks", "published and independently computed rotors"),
     "film": Script("references.film", "oil films of finite length"),
-    "bearings": Script("bearings", "cost of bearings in scenes, loss of their linear models"),
     "nonlinear": Script("stiffening.nonlinear", "nonlinear solid, clamped blade"),
     "spun_up_blade": Script("stiffening.spun_up_blade", "blade spun up"),
     "blade": Script("stiffening.blade", "rotating beams"),
     "disc": Script("stiffening.disc", "rotating discs"),
     "overhung": Script("stiffening.overhung", "overhung disc"),
-    "basis": Script("basis", ""),
-    "full_bodies": Script("full_bodies", ""),
     "extremes": Script("extremes.table", "the extremes"),
-    "savers": Script("savers", "no file lost"),
-    "kernels": Script("kernels", ""),
 }
 
 
@@ -60,9 +48,7 @@ def listing() -> str:
     """Return the name, the first line and the numbers of every script."""
     lines = ["python -m validation NAME [options]; --help after a name shows its options", ""]
     for name, script in SCRIPTS.items():
-        lines.append(f"{name:14} {summary(script)}")
-        if script.number:
-            lines.append(f"{'':15}numbers: {script.number}")
+        lines += [f"{name:14} {summary(script)}", f"{'':15}numbers: {script.number}"]
     return "\n".join(lines)
 
 

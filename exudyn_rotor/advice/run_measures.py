@@ -20,7 +20,7 @@ _TOP = 0.2  # share of the flexible modes, from the top, that shows what lies be
 _RINGING = 1.5  # energy about the static stretch over that of a start without it, with a margin
 _SPEEDS = np.linspace(0.1, 2.0, 20)  # looked at for growth, over the highest speed reached
 _KINDS = exudyn.OutputVariableType
-_BRAKING = "ConnectorRigidBodySpringDamper"  # of a film that brakes a free spin; in its own axes
+
 _HALVES = (slice(0, 3), slice(3, 6))  # translation, and tilt times the size
 _EXPLICIT = {"RK33": np.sqrt(3.0), "VelocityVerlet": 2.0}  # ωh that undamped motion bears
 _RK44 = np.sqrt(8.0)  # likewise; those with step control keep below it themselves
@@ -285,16 +285,8 @@ class Measures:
 
         None without films.
         """
-        axes = self.body.standing_axes
-        shares = []
-        for added in self.body.supports:
-            if not isinstance(added.support, Bearing):
-                continue
-            local = self.body.mbs.GetObject(added.objects[0])["objectType"] == _BRAKING
-            kind = _KINDS.DisplacementLocal if local else _KINDS.Displacement
-            place = self.body.mbs.GetObjectOutput(added.objects[0], kind)
-            x, y = place[:2] if local else place @ axes[:, :2]
-            shares.append(added.support.film_use([x, y]))
+        bearings = [one for one in self.body.supports if isinstance(one.support, Bearing)]
+        shares = [one.support.film_use(one.values()[0][:2]) for one in bearings]
         return max((share for share in shares if share is not None), default=None)
 
     def explicit_step(self) -> float:

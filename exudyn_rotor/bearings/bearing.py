@@ -16,10 +16,12 @@ from exudyn_rotor.bearings.film.equilibria import Equilibria
 from exudyn_rotor.bearings.support import COEFFICIENTS, NoCoefficientsError, Support
 
 _REMEMBERED = 1000  # coefficients of a bearing
+_DIFFERENCE, _STILL = 1e-6, 1e-6  # of the largest motion, which is at least that in SI units
 _HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a bearing holds count
 
 Law = Callable[[float, float, float, float, float, float], tuple[float, float]]
 ClearanceAlong = Callable[..., float]  # by a direction (2,), which may be left out
+LawAlong = Callable[[np.ndarray, np.ndarray, float], tuple[np.ndarray, np.ndarray]]
 LawWithTorque = Callable[[float, float, float, float, float, float], tuple[float, float, float]]
 
 
@@ -105,6 +107,15 @@ class Bearing(LoadedBearing):
         return None
 
     @property
+    def law_along(self) -> LawAlong:
+        """For harmonic balance: forces and their derivatives by motions (t, 4), unchecked.
+
+        Of displacements and velocities [m], [m/s], spin angles (t,) and the spin speed: forces
+        (t, 2) [N], and minus their derivatives by the motion, (t, 2, 4).
+        """
+        return self._along
+
+    @property
     def clearance_along(self) -> ClearanceAlong:
         """For scenes: how far that way, of length 1 (2,), or at least, the journal may go [m].
 
@@ -140,6 +151,25 @@ class Bearing(LoadedBearing):
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
         """Return the force on the journal [N]."""
+
+    def _along(
+        self, motion: np.ndarray, angles: np.ndarray, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """See :attr:`law_along`; by differences, unless a law knows better."""
+        law, sizes = self.law, np.abs(motion).max(axis=0)
+        steps = _DIFFERENCE * np.repeat([max(*sizes[:2], _STILL), max(*sizes[2:], _STILL)], 2)
+        force, slopes = np.empty((len(motion), 2)), np.empty((len(motion), 2, 4))
+        for row, (state, angle) in enumerate(zip(motion, angles.tolist(), strict=True)):
+            force[row] = law(*state.tolist(), angle, speed)
+            slopes[row] = differenced(law, state, steps, angle, speed)
+        return force, slopes
+
+    def slopes(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """For scenes: less the derivatives (2, 2) of :attr:`law` by place and by velocity."""
+        found = self._along(np.array([[x, y, vx, vy]]), np.array([angle]), speed)[1][0]
+        return found[:, :2], found[:, 2:]
 
     @abstractmethod
     def coefficients(
@@ -237,3 +267,18 @@ def by_tangent(
     inside = force((most - step) * ex, (most - step) * ey)
     beyond = (eccentricity - most) / step
     return tuple(f + beyond * (f - g) for f, g in zip(edge, inside, strict=True))
+
+
+def differenced(
+    law: Callable[..., tuple[float, ...]],
+    motion: np.ndarray,
+    steps: np.ndarray,
+    angle: float,
+    speed: float,
+) -> np.ndarray:
+    """Return less the central differences (2, 4) of a law's force by place and velocity (4,)."""
+    ends = [
+        [law(*(motion + move).tolist(), angle, speed)[:2] for move in (-each, each)]
+        for each in np.diag(steps)
+    ]
+    return np.array([np.subtract(*pair) for pair in ends]).T / (2.0 * steps)

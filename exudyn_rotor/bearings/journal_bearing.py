@@ -9,7 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, Law, LawWithTorque, Linearised, by_tangent
+from exudyn_rotor.bearings.bearing import (
+    Bearing,
+    Law,
+    LawWithTorque,
+    Linearised,
+    by_tangent,
+    differenced,
+)
 from exudyn_rotor.bearings.controlled_support import FilmSupport
 from exudyn_rotor.bearings.film.equilibria import Equilibria
 from exudyn_rotor.bearings.film.film import OilFilm
@@ -99,6 +106,15 @@ class JournalBearing(Bearing):
         """
         return self._film_law(torque=True)
 
+    def _along(
+        self, motion: np.ndarray, angles: np.ndarray, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        law, forces, slopes = self._film_law(torque=False), [], []
+        for x, y, vx, vy in motion.tolist():
+            forces.append(law(x, y, vx, vy, 0.0, speed))
+            slopes.append(np.hstack(law.slopes(x, y, vx, vy, 0.0, speed)))
+        return np.array(forces), np.array(slopes)
+
     def _film_law(self, torque: bool) -> FilmLaw:
         if self.remembers:
             raise ValueError(
@@ -187,29 +203,39 @@ class FilmLaw:
         rate = np.array([vx, vy])
 
         def force(a: float, b: float) -> tuple[float, ...]:
-            state = self._state(np.array([a, b]), rate, speed)
+            state = self.state_at(np.array([a, b]), rate, speed)
             torque = (-state.torque,) if self._torque else ()
             return *state.force.tolist(), *torque
 
-        most = self._to_the_edge(x, y)
+        most = self.to_the_edge(x, y)
         inside = hypot(x, y) <= most
         return force(x, y) if inside else by_tangent(force, x, y, most, self._step)
 
-    def tangent(self, x: float, y: float) -> tuple[np.ndarray, np.ndarray] | None:
-        """Return stiffness [N/m] and damping [N s/m] at the place of the last call, each (2, 2).
+    def slopes(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return stiffness [N/m] and damping [N s/m], each (2, 2), as :meth:`Bearing.slopes`."""
+        if hypot(x, y) > self.to_the_edge(x, y):
+            size = self._film.clearance
+            rate = max(size * abs(speed), hypot(vx, vy))
+            steps = _STEP * np.array([size, size, rate, rate])
+            found = differenced(self, np.array([x, y, vx, vy]), steps, angle, speed)
+            return found[:, :2], found[:, 2:]
+        return self.state_at(np.array([x, y]), np.array([vx, vy]), speed).tangent
 
-        None where the film is too thin.
-        """
-        return self._last.tangent if hypot(x, y) <= self._to_the_edge(x, y) else None
+    def torque(self, x: float, y: float, vx: float, vy: float, angle: float, speed: float) -> float:
+        """Return the torque on the journal [N m]; beyond the film that at its end."""
+        self(x, y, vx, vy, angle, speed)
+        return -self._last.torque
 
-    def _to_the_edge(self, x: float, y: float) -> float:
+    def to_the_edge(self, x: float, y: float) -> float:
         """Return how far the journal may go on its way out, the film resolved [m]."""
         distance = hypot(x, y)
         if distance <= self._most:
             return self._most
         return self._film.reach_along(np.array([x, y]) / distance, self._film.thinnest)
 
-    def _state(
+    def state_at(
         self,
         place: np.ndarray,
         rate: np.ndarray,
@@ -251,17 +277,28 @@ class RememberingLaw(FilmLaw):
         if begun != self._begun:
             goes_on = self._begun is not None and time > self._begun[0]
             self._duration = time - self._begun[0] if goes_on else np.inf
-            place = np.array([x, y]) * min(1.0, self._to_the_edge(x, y) / max(hypot(x, y), 1e-300))
+            place = np.array([x, y]) * min(1.0, self.to_the_edge(x, y) / max(hypot(x, y), 1e-300))
             if goes_on or speed != 0.0:
                 rate = np.array([vx, vy]) if goes_on else np.zeros(2)
-                solved = self._state(place, rate, speed)
+                solved = self.state_at(place, rate, speed)
                 self._voids = solved.solution.void * solved.heights[:, None]
             else:
                 self._voids = np.zeros_like(self._voids)
             self._begun = begun
         self._duration = now - time
 
-    def _state(self, place: np.ndarray, rate: np.ndarray, speed: float) -> FilmState:
+    def state_at(self, place: np.ndarray, rate: np.ndarray, speed: float) -> FilmState:
         # at once where no time has passed, but for rounding
         duration = max(self._duration, _AT_ONCE * float(self._film.grid.step.min()))
-        return super()._state(place, rate, speed, 1.0 / duration, self._voids)
+        return super().state_at(place, rate, speed, 1.0 / duration, self._voids)
+
+
+def tangent_of(state: FilmState) -> tuple[np.ndarray, np.ndarray]:
+    """Return stiffness and damping (2, 2) of the tangent at a place of the journal.
+
+    Of films that conserve mass those of slow motion: the derivatives of the force that scenes have
+    where they look for an equilibrium.
+    """
+    if state.film.cavitation == "mass-conserving":
+        return state.slow_stiffness, state.slow_damping
+    return state.coefficients()

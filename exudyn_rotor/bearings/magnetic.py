@@ -171,16 +171,30 @@ class MagneticBearing(LoadedBearing):
         if np.any(self._static_load(None)) or np.any(self.sensor_offset):
             states = self._states(None)
         slopes = np.array([self.actuator.slopes(i, x) for x, i in states])
-        turn, own = self.control_axes, self.controller.realisation()
-        by_current, by_place = (turn.T @ (slopes[:, i, None] * turn) for i in (0, 1))
-        both, count = np.eye(2), len(own.inertia)
-        damping, stiffness = (np.zeros((4 + 2 * count, 4 + 2 * count)) for _ in range(2))
+        damping, stiffness = self.coupling(slopes)
+        own, both = self.controller.realisation(), np.eye(2)
         damping[4:, 4:] = self.scale * np.kron(own.damping, both)
         stiffness[4:, 4:] = self.scale * np.kron(own.stiffness, both)
+        by_current = self.control_axes.T @ (slopes[:, 0, None] * self.control_axes)
+        static = self.controller.proportional * by_current + stiffness[:2, :2]
+        sensor, inertia = self.sensor_interface, self.scale * own.inertia
+        return ControlledSupport(self.interface, sensor, inertia, damping, stiffness, static)
+
+    def coupling(self, slopes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return damping and stiffness between the ports of :class:`ControlledSupport`.
+
+        Without the equations of the own coordinates themselves.
+
+        Parameters
+        ----------
+        slopes : ndarray, shape (2, 2)
+            Derivatives of the force of each control axis by current [N/A] and place [N/m].
+        """
+        turn, own, both = self.control_axes, self.controller.realisation(), np.eye(2)
+        by_current, by_place = (turn.T @ (slopes[:, i, None] * turn) for i in (0, 1))
+        damping, stiffness = np.zeros((2, *[4 + 2 * len(own.inertia)] * 2))
         stiffness[4:, 2:4] = -self.scale * np.kron(own.place[:, None], both)
         damping[:2, 4:] = np.kron(own.by_rate, by_current)
         stiffness[:2, 4:] = np.kron(own.by_place, by_current)
         stiffness[:2, :2] = -by_place
-        static = self.controller.proportional * by_current - by_place
-        sensor, inertia = self.sensor_interface, self.scale * own.inertia
-        return ControlledSupport(self.interface, sensor, inertia, damping, stiffness, static)
+        return damping, stiffness

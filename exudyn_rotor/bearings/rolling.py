@@ -48,9 +48,8 @@ class RollingBearing(Bearing):
     """Radial bearing with balls or rollers.
 
     Linear analyses take the mean of its stiffness, in the equilibria under the load, over the
-    passage of one element; :func:`rolling_bearing_response` takes the contacts as they are, and
-    gives the error of linear equations. A scene with it does not repeat with every revolution:
-    :func:`steady_state` holds the cage where it starts.
+    passage of one element; :func:`periodic_response` takes the contacts as they are. A scene with
+    it does not repeat with every revolution: :func:`steady_state` holds the cage where it starts.
 
     Parameters
     ----------
@@ -177,6 +176,13 @@ class RollingBearing(Bearing):
         loads, d = self._loads(x, y, c, s), self.damping
         px, py = float(loads @ c), float(loads @ s)
         return -px - d * vx, -py - d * vy, self.cage_ratio * (x * py - y * px)
+
+    def _along(
+        self, motion: np.ndarray, angles: np.ndarray, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        _, force, stiffness = contacts(self, motion[:, :2], angles)
+        damping = np.broadcast_to(self.damping * np.eye(2), stiffness.shape)
+        return force - self.damping * motion[:, 2:], np.concatenate([stiffness, damping], axis=-1)
 
     def equilibrium(
         self, speed: float, load: ArrayLike | None = None, angle: float = 0.0

@@ -31,7 +31,6 @@ F. W. Ocvirk, NACA TN 2808 (1952); G. Capone, L'Energia Elettrica 68 (1991).
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from dataclasses import dataclass
 from math import atan, hypot, pi, sqrt
 
@@ -70,19 +69,32 @@ def film_tangent(
 
     Up to the rate `rest` of w those of small motions, (3).
     """
+    return film_along(np.array([[x, y, vx, vy]]), speed, rest)[1][0]
+
+
+def film_along(
+    motion: np.ndarray, speed: float, rest: float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return forces (1) (t, 2) and :func:`film_tangent` (t, 2, 4) along a motion (t, 4)."""
+    x, y, vx, vy = motion.T
     half = 0.5 * speed
     a, b = vx + half * y, vy - half * x
-    w = hypot(a, b)
-    if w <= rest:
-        by_rate, by_place = damping_at_rest(x, y), np.zeros((2, 2))
-    else:
-        turn = np.array([[a, -b], [b, a]]) / w
-        u, v = np.array([x, y]) @ turn
-        (along, across), slopes = _integrals(u, v)
-        by_angle = slopes @ (v, -u) + (-across, along)
-        by_rate = turn @ np.column_stack([(along, across), by_angle]) @ turn.T
-        by_place = w * turn @ slopes @ turn.T
-    return np.hstack([by_place + by_rate @ [[0.0, half], [-half, 0.0]], by_rate])
+    w = np.hypot(a, b)
+    moves = w > rest
+    size = np.where(moves, w, 1.0)
+    turn = np.array([[a, -b], [b, a]]).transpose(2, 0, 1) / size[:, None, None]
+    u, v = np.einsum("ti,tij->jt", motion[:, :2], turn)
+    values, slopes = _integrals(u, v)
+    along, across = values.T
+    by_angle = slopes @ np.stack([v, -u], -1)[..., None] + np.stack([-across, along], -1)[..., None]
+    back = turn.transpose(0, 2, 1)
+    by_rate = turn @ np.concatenate([values[..., None], by_angle], axis=-1) @ back
+    by_place = w[:, None, None] * turn @ slopes @ back
+    force = -w[:, None] * (turn @ values[..., None])[..., 0]
+    for still in np.flatnonzero(~moves):
+        by_rate[still], by_place[still] = damping_at_rest(x[still], y[still]), 0.0
+    swirl = by_rate @ np.array([[0.0, half], [-half, 0.0]])
+    return force, np.concatenate([by_place + swirl, by_rate], axis=-1)
 
 
 def damping_at_rest(x: float, y: float) -> np.ndarray:
@@ -92,12 +104,12 @@ def damping_at_rest(x: float, y: float) -> np.ndarray:
     return 0.5 * pi * (s2 * np.eye(2) + 3.0 * np.outer(place, place)) / s2**2.5
 
 
-def _integrals(u: float, v: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return I_cc and I_cs of (1), and their derivatives (2, 2) by u and v."""
+def _integrals(u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return I_cc and I_cs of (1) (t, 2), and their derivatives (t, 2, 2) by u and v."""
     s2, t2 = 1.0 - u * u - v * v, 1.0 - v * v
-    s = sqrt(s2)
+    s = np.sqrt(s2)
     s4, s5, s6, s7 = s2**2, s2**2 * s, s2**3, s2**3 * s
-    beta, by_v = 0.5 * pi + atan(u / s), u * v / (s * t2)  # ∂β/∂u = 1/s
+    beta, by_v = 0.5 * pi + np.arctan(u / s), u * v / (s * t2)  # ∂β/∂u = 1/s
     along = 3.0 * u / s4 + beta * (s2 + 3.0 * u * u) / s5
     across = 2.0 / s4 + u * u / (t2 * s4) + 3.0 * beta * u / s5  # over v
     along_u = 4.0 / s4 + 15.0 * u * u / s6 + 3.0 * beta * u * (3.0 * s2 + 5.0 * u * u) / s7
@@ -107,8 +119,8 @@ def _integrals(u: float, v: float) -> tuple[np.ndarray, np.ndarray]:
     across_u += 3.0 * beta * (s2 + 5.0 * u * u) / s7
     across_v = 8.0 * v / s6 + 4.0 * u * u * v / (t2 * s6) + 2.0 * u * u * v / (t2**2 * s4)
     across_v += 3.0 * u * by_v / s5 + 15.0 * beta * u * v / s7
-    slopes = [[along_u, along_v], [v * across_u, across + v * across_v]]
-    return np.array([along, v * across]), np.array(slopes)
+    slopes = np.array([[along_u, along_v], [v * across_u, across + v * across_v]])
+    return np.stack([along, v * across], axis=-1), slopes.transpose(2, 0, 1)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -176,17 +188,22 @@ class ShortFilmBearing(Bearing):
             fx, fy = by_tangent(lambda a, b: film_force(a, b, vx, vy, speed), x, y, THINNEST, _STEP)
         return size * fx, size * fy
 
-    @abstractmethod
-    def _law_tangent(self, motion: np.ndarray, speed: float) -> Tangent | None:
-        """Return stiffness [N/m] and damping [N s/m] of the law, each (2, 2).
+    @property
+    def _film_turns(self) -> bool:
+        """Whether the film turns with the journal, as that of a damper does not."""
+        return True
 
-        None outside the film. `motion` (4,) is displacement and velocity [m], [m/s].
-        """
-
-    def _film_tangent(self, motion: np.ndarray, speed: float, spin: float) -> Tangent | None:
-        """Return the tangent of a film that turns with `speed`, of a rotor with that of `spin`."""
-        x, y, vx, vy = motion / self.clearance
-        if hypot(x, y) > THINNEST:
-            return None
-        found = self._size / self.clearance * film_tangent(x, y, vx, vy, speed, _REST * abs(spin))
-        return found[:, :2], found[:, 2:]
+    def _along(
+        self, motion: np.ndarray, angles: np.ndarray, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        relative = motion / self.clearance
+        inside = np.hypot(*relative[:, :2].T) <= THINNEST
+        force, slopes = np.empty((len(motion), 2)), np.empty((len(motion), 2, 4))
+        whirl = speed if self._film_turns else 0.0
+        found = film_along(relative[inside], whirl, _REST * abs(speed))
+        force[inside] = self._size * found[0]
+        slopes[inside] = self._size / self.clearance * found[1]
+        if not np.all(inside):
+            out = ~inside
+            force[out], slopes[out] = super()._along(motion[out], angles[out], speed)
+        return force, slopes

@@ -26,7 +26,7 @@ from scipy.optimize import brentq
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import LawWithTorque
-from exudyn_rotor.bearings.short_film import THINNEST, ShortFilmBearing, Tangent
+from exudyn_rotor.bearings.short_film import THINNEST, ShortFilmBearing
 
 _MOST = 1.0 - 1e-9  # eccentricity ratio of an equilibrium
 
@@ -92,9 +92,6 @@ class ShortJournalBearing(ShortFilmBearing):
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
         return self._film(x, y, vx, vy, speed)
-
-    def _law_tangent(self, motion: np.ndarray, speed: float) -> Tangent | None:
-        return self._film_tangent(motion, speed, speed)
 
     @property
     def law_with_torque(self) -> LawWithTorque:

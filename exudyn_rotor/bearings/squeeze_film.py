@@ -32,7 +32,6 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.short_film import (
     THINNEST,
     ShortFilmBearing,
-    Tangent,
     damping_at_rest,
 )
 
@@ -118,11 +117,21 @@ class SqueezeFilmDamper(ShortFilmBearing):
         fx, fy = self._film(x, y, vx, vy, 0.0)
         return fx - k * x, fy - k * y
 
-    def _law_tangent(self, motion: np.ndarray, speed: float) -> Tangent | None:
-        found = self._film_tangent(motion, 0.0, speed)
-        return found and (self.centring_stiffness * np.eye(2) + found[0], found[1])
+    @property
+    def _film_turns(self) -> bool:
+        return False
 
-    def _law_of_small_motions(
+    def _along(
+        self, motion: np.ndarray, angles: np.ndarray, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        force, slopes = super()._along(motion, angles, speed)
+        inside = np.hypot(*motion[:, :2].T) <= THINNEST * self.clearance
+        k = self.centring_stiffness * inside  # the law outside has it
+        force = force - k[:, None] * motion[:, :2]
+        slopes[:, :, :2] += k[:, None, None] * np.eye(2)
+        return force, slopes
+
+    def law_of_small_motions(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
         """Return the force on the journal [N] as :attr:`law`, of the film by the damping (2)."""
@@ -174,9 +183,9 @@ class SqueezeFilmDamper(ShortFilmBearing):
         TypeError, ValueError
             As :meth:`equilibrium`.
         """
-        return self._coefficients_at(self.equilibrium(speed, load), speed)
+        return self.coefficients_at(self.equilibrium(speed, load), speed)
 
-    def _coefficients_at(self, place: np.ndarray, speed: float) -> tuple[np.ndarray, np.ndarray]:
+    def coefficients_at(self, place: np.ndarray, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Return :meth:`coefficients` where the journal rests at a place (2,) [m]."""
         if hypot(*place) >= self.clearance:
             raise ValueError(

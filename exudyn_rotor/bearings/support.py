@@ -27,10 +27,6 @@ class OutsideTableError(NoCoefficientsError):
     """A speed is beyond the end of a table."""
 
 
-class BelowTableError(OutsideTableError):
-    """A speed is below the first one of a table."""
-
-
 @dataclass(frozen=True, eq=False)
 class Support:
     """Linear spring and damper between an interface and the ground.
@@ -179,8 +175,7 @@ class Support:
             slack = _ROUNDING * np.abs(value[0]).max()
             least, most = value[0][0] - slack, value[0][-1] + slack
             if not least <= speed <= most:
-                kind = BelowTableError if speed < least else OutsideTableError
-                raise kind(
+                raise OutsideTableError(
                     f"support at {self.interface!r}: the table of its {name} holds "
                     f"{value[0][0]:g} to {value[0][-1]:g} rad/s, not {speed:g} rad/s: give more of "
                     "it, or extrapolate=True to keep the value at its end"

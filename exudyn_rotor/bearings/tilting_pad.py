@@ -111,6 +111,16 @@ class TiltingPadBearing(Bearing):
                 "another cavitation than 'mass-conserving'"
             )
 
+    def check_coordinates(self) -> None:
+        """Refuse a scene pads without inertia, whose tilts are no coordinates.
+
+        Raises
+        ------
+        ValueError
+        """
+        if self.pad_inertia is None:
+            _ = self.law
+
     @property
     def _law(self) -> Law:
         raise ValueError(

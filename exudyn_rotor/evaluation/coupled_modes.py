@@ -9,7 +9,7 @@ import numpy as np
 
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.modal.whirl import FORWARD, Content, Named, damping_of
+from exudyn_rotor.linear.modal.whirl import Content, Named, damping_of
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import motions_over
@@ -20,8 +20,8 @@ ROUNDING = 1e-9  # of log decrements: a mode with its node at the cross-coupling
 _STILL = 1e-3  # of the speed: a frequency below is that of a motion that does not whirl
 _RESONANT = np.sqrt(0.5)  # damping ratio above which a mode has no resonance
 # of the anticipated cross-coupling: the first that feeds a mode tells which ones; motions in
-# planes, as in unequal bearings, gain by its square
-_LITTLE = (1e-3, 0.1, 1.0)
+# planes, as in unequal bearings, gain by its square, or not before their frequencies meet
+_FEEDING = (1e-3, 0.1, 1.0, 3.0, 10.0)
 _ALIKE = 0.6  # likeness of two shapes below which a step is taken in halves
 _HALVES = 6
 
@@ -61,62 +61,56 @@ class Coupled:
 
     def modes(self, multiple: float) -> Modes:
         """Return all modes under a multiple of the anticipated cross-coupling."""
-        motions = motions_over(self._model(multiple), [self.speed], held=True)[0]
-        return Modes(multiple, self._content.named(motions))
+        motions = motions_over(self._model(multiple), [self.speed], held=True)
+        return Modes(multiple, self._content.named(motions).rows(0))
 
     def first_forward(self) -> tuple[tuple[Modes, int], tuple[Modes, int]]:
-        """Return the modes without and with little cross-coupling, and the first forward one.
+        """Return the first forward mode without cross-coupling, and as it is first fed by it.
 
         That is the lowest lateral mode that the cross-coupling makes less stable, for its work on
         an orbit has the sign of the orbit's sense: in bearings that differ in their two directions
-        modes may have no sense until it is applied. A mode that is damped so much that it has no
-        resonance is passed over; where all are, it is the least damped one.
+        modes move in planes, and have no sense until enough of it joins them. A mode that is damped
+        so much that it has no resonance is passed over; where all are, it is the least damped one.
+        Where none is fed, as by a cross-coupling at the nodes of all, it is the lowest one.
 
         Raises
         ------
         ValueError
-            Where it feeds no lateral mode.
+            Where no mode is lateral.
         """
         start = self.modes(0.0)
-        named, growth = start.named, start.named.motions.values.real
-        for multiple in _LITTLE:
-            little, found = self.modes(multiple), {}
-            for i in np.flatnonzero(start.lateral & np.isfinite(growth)):
-                mode, _ = start.continued(i, little)
-                gained = little.named.motions.values.real[mode] - growth[i]
-                if gained > ROUNDING * max(named.inertial[i], abs(growth[i])):
+        growth, found, fed = start.growth, {}, start
+        for multiple in _FEEDING:
+            fed = self.modes(multiple)
+            # from the fed modes back: of two planes that join, both are like each of these
+            for mode in np.flatnonzero(fed.lateral & np.isfinite(fed.growth)):
+                i, _ = fed.continued(mode, start)
+                least = ROUNDING * max(start.named.inertial[i], abs(growth[i]))
+                if start.lateral[i] and fed.growth[mode] - growth[i] > least:
                     found[i] = mode
             if found:
                 break
         else:
-            return self._forward_of_overdamped(start, little)
-        resonant = [
-            i
-            for i in found
-            if start.ratios[i] < _RESONANT and named.inertial[i] > _STILL * self.speed
-        ]
-        first = min(resonant, key=lambda i: named.inertial[i], default=None)
+            fed, found = start, {i: i for i in np.flatnonzero(start.lateral)}
+        if not found:
+            raise ValueError(f"target: has no lateral mode at {self.speed:g} rad/s")
+        swings = start.named.inertial > _STILL * self.speed
+        resonant = [i for i in found if start.ratios[i] < _RESONANT and swings[i]]
+        first = min(resonant, key=lambda i: start.named.inertial[i], default=None)
         if first is None:
             first = max(found, key=lambda i: growth[i])
-        return (start, first), (little, found[first])
+        return (start, first), (fed, found[first])
 
-    def _forward_of_overdamped(
-        self, start: Modes, coupled: Modes
-    ) -> tuple[tuple[Modes, int], tuple[Modes, int]]:
-        """Return the motion that begins to whirl forward under cross-coupling, and what it was.
-
-        Overdamped motions of both directions are one λ, whose shapes are arbitrary.
-        """
-        growth = coupled.named.motions.values.real
-        forward = np.flatnonzero(coupled.lateral & (coupled.named.codes == FORWARD))
-        before = np.flatnonzero(start.lateral & ~np.isfinite(start.decrements))
-        if not forward.size or not before.size:
-            raise ValueError(
-                f"supports: no mode at {self.speed:g} rad/s is fed by the cross-coupling"
-            )
-        mode = max(forward, key=lambda i: growth[i])
-        away = np.abs(start.named.motions.values.real[before] - growth[mode])
-        return (start, before[np.argmin(away)]), (coupled, mode)
+    def over(self, multiples: np.ndarray) -> list[tuple[Modes, int]]:
+        """Return the modes under ascending multiples, from zero, and which is the first forward."""
+        first, fed = self.first_forward()
+        found = {0.0: first}
+        below = [m for m in multiples[1:] if m < fed[0].multiple]
+        for part in (below[::-1], multiples[len(below) + 1 :]):
+            last = fed
+            for multiple in part:
+                found[multiple] = last = self.followed(*last, multiple)
+        return [found[multiple] for multiple in multiples]
 
     def followed(self, start: Modes, mode: int, multiple: float) -> tuple[Modes, int]:
         """Return the modes under another multiple, and which of them continues a mode.
@@ -146,16 +140,20 @@ class Modes:
     named: Named
 
     @property
+    def growth(self) -> np.ndarray:
+        """Growth [1/s]."""
+        return self.named.motions.values.real
+
+    @property
     def decrements(self) -> np.ndarray:
         """Logarithmic decrements; infinite where a mode decays or grows without oscillating."""
-        growth = self.named.motions.values.real
-        found = damping_of(growth, self.named.inertial)[1]
-        return np.where(np.isnan(found), np.copysign(np.inf, -growth), found)
+        found = damping_of(self.growth, self.named.inertial)[1]
+        return np.where(np.isnan(found), np.copysign(np.inf, -self.growth), found)
 
     @property
     def ratios(self) -> np.ndarray:
         """Damping ratios."""
-        return damping_of(self.named.motions.values.real, self.named.inertial)[0]
+        return damping_of(self.growth, self.named.inertial)[0]
 
     @property
     def lateral(self) -> np.ndarray:

@@ -261,7 +261,8 @@ def stability_level_one(
     """Compute the log decrement of the first forward mode from no cross-coupling to 10 Q_A.
 
     The mode is the lowest lateral one that the cross-coupling makes less stable, followed from
-    none to all of it: work on an orbit has the sign of its sense. Modes of a damping ratio above
+    none to all of it: work on an orbit has the sign of its sense. Where it feeds none, as at nodes
+    of all, it is the lowest one. Modes of a damping ratio above
     0.7, which have no resonance, are passed over where there is another. Cross-coupling Q gives the
     forces ``(−Q u_n2, Q u_n1)``, which feed forward whirl.
 
@@ -291,7 +292,7 @@ def stability_level_one(
     ------
     TypeError, ValueError
         If an argument is of another kind or out of range, an interface is unknown or given twice,
-        or it makes no mode less stable.
+        or the rotor has no lateral mode.
 
     Warns
     -----
@@ -329,11 +330,7 @@ def stability_level_one(
     if gas_density is not None:
         checks.number(gas_density, "gas_density", "kg/m³", above=0.0)
     coupled = Coupled(target, speed, dict(zip(names, amounts, strict=True)), supports, stiffening)
-    first, last = coupled.first_forward()
-    followed = [first]
-    for multiple in _MULTIPLES[1:]:
-        last = coupled.followed(*last, multiple)
-        followed.append(last)
+    followed = coupled.over(_MULTIPLES)
     total, threshold = float(amounts.sum()), None
     _warn_of_others(followed, total)
     decrement = np.array([modes.decrements[mode] for modes, mode in followed])
@@ -344,8 +341,8 @@ def stability_level_one(
         if end > 0:
 
             def between(multiple: float) -> float:
-                modes, mode = coupled.followed(*followed[end - 1], multiple)
-                return -float(modes.named.motions.values.real[mode])
+                modes, mode = coupled.followed(*followed[end], multiple)
+                return -float(modes.growth[mode])
 
             threshold = total * brentq(between, *_MULTIPLES[end - 1 : end + 1])
     return StabilityLevelOne(

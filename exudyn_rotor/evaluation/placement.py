@@ -16,7 +16,6 @@ from exudyn_rotor import checks
 from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
-from exudyn_rotor.theory.rotating_axes import axes_of, parts_across
 
 _RESIDUAL = 6350e-6 * np.pi / 30.0  # U Ω / W [m/s]
 _FASTEST = 25_000.0 * np.pi / 30.0  # [rad/s]
@@ -146,44 +145,3 @@ def bearing_masses(rotor: ReducedRotor | SolidRotor, bearings: Sequence[str]) ->
         raise ValueError(f"bearings: {names[0]!r} and {names[1]!r} are at one place of the axis")
     share = (center - left) / (right - left)
     return mass * np.array([1.0 - share, share])
-
-
-def bearing_loads(
-    rotor: ReducedRotor | SolidRotor, bearings: Sequence[str], gravity: ArrayLike
-) -> np.ndarray:
-    """Return the weight that two bearings carry at rest, by the lever rule along the axis.
-
-    Parameters
-    ----------
-    rotor : ReducedRotor or SolidRotor
-    bearings : sequence of two str
-        Their interfaces.
-    gravity : array_like, shape (3,)
-        In axes of the mesh, as the rotor is mounted at θ = 0 [m/s²].
-
-    Returns
-    -------
-    ndarray, shape (2, 2)
-        A row for each bearing: the load on its journal along (n1, n2) of
-        :attr:`SpinAxis.plane` [N].
-
-    Raises
-    ------
-    TypeError, ValueError
-        As :func:`bearing_masses`.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from exudyn_rotor import SolidRotor, bearing_loads
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # masses of 1 kg and 3 kg on a rod
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> rotor = SolidRotor.from_matrices(np.diag([1.0] * 3 + [3.0] * 3), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
-    >>> print(bearing_loads(rotor, ["left", "right"], [0.0, -10.0, 0.0]).round(9))
-    [[  0. -10.]
-     [  0. -30.]]
-    """
-    gravity = checks.vector(gravity, "gravity", "m/s²")
-    masses = bearing_masses(rotor, bearings)
-    return np.outer(masses, parts_across(axes_of(rotor.axis), gravity))

@@ -51,7 +51,7 @@ def recommended_settings(
     Notes
     -----
     What is changed under ``timeIntegration``, and what it does (two bearings, by
-    ``python -m validation ablation`` and ``python -m validation speed``):
+    ``python -m validation speed``):
 
     ``newton.useModifiedNewton`` : True
         The Jacobian is kept over many steps. Full Newton needs fewer iterations, but a step costs

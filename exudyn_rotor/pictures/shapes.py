@@ -11,7 +11,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.equations import UnconvergedError
-from exudyn_rotor.linear.modal.whirl import WHIRLS, Content
+from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, rounded
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_structural_damping
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import motions_over
@@ -71,11 +71,12 @@ def mode_shapes(
     tolerance = options.accuracy(tolerance, "tolerance")
     model = _with_mesh(target, supports, stiffening, axes)
     warn_of_structural_damping(model, "mode_shapes finds modes")
-    [motions] = motions_over(model, [speed], tolerance=tolerance)
+    motions = motions_over(model, [speed], tolerance=tolerance)
     named = Content.of(model).named(motions)
-    chosen = np.argsort(np.where(np.isnan(motions.values), np.inf, named.inertial), kind="stable")
-    chosen = chosen[: min(count, np.count_nonzero(~np.isnan(motions.values)))]
-    values, vectors = named.motions.values[chosen], named.motions.vectors[:, :, chosen]
+    lost = np.isnan(motions.values)
+    named = named.columns(np.lexsort((rounded(named.inertial), lost))[:, : np.sum(~lost)])
+    named = named.columns(np.arange(min(count, named.inertial.shape[1]))[None])
+    values, vectors = named.motions.values[0], named.motions.vectors[0]
     vectors = np.where(values.imag < 0.0, vectors[::-1].conj(), vectors)
     seen = _of_nodes(
         model, {int(m): x for m, x in zip(motions.orders, vectors, strict=True)}, speed
@@ -84,12 +85,12 @@ def mode_shapes(
     motion = np.array([seen[m] for m in orders])
     return MotionShapes(
         **_surface(model),
-        speeds=np.full(len(chosen), speed),
-        labels=tuple(f"mode {i + 1}, {WHIRLS[named.codes[j]]}" for i, j in enumerate(chosen)),
+        speeds=np.full(len(values), speed),
+        labels=tuple(f"mode {i}, {WHIRLS[code]}" for i, code in enumerate(named.codes[0], start=1)),
         rates=np.abs(values.imag),
-        frequencies=named.inertial[chosen],
+        frequencies=named.inertial[0],
         orders=orders,
-        motion=np.array([_unit(motion[:, :, i]) for i in range(len(chosen))]),
+        motion=np.array([_unit(motion[:, :, i]) for i in range(len(values))]),
     )
 
 

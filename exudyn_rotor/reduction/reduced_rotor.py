@@ -8,6 +8,7 @@ from functools import cached_property
 from os import PathLike
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.reduction.attached import Attached
@@ -259,6 +260,54 @@ class ReducedRotor:
         speed = checks.number(speed, "speed", "rad/s")
         self._static("stress")
         return self.centrifugal.stress_at(speed)
+
+    @cached_property
+    def unshown_stress(self) -> np.ndarray:
+        """Static stress per ω² that the columns do not show, (n, 6) [Pa s²]; zero if not known.
+
+        The columns show the stress of their static coordinates ``ζ₀ = K⁻¹h`` per ω².
+        """
+        columns = self._stress_columns
+        static = getattr(self.centrifugal, "stress", None)
+        if static is None:
+            return np.zeros(columns.shape[:2])
+        offset = self.axis.project(self.center_of_mass) - self.center_of_mass
+        rigid, share = len(self.rigid), np.zeros(self.size)
+        load = self.invariants.moved(offset).h
+        share[rigid:] = load[rigid:] / np.diag(self.invariants.K)[rigid:]
+        return static - columns @ share
+
+    def stress_of(self, coordinates: ArrayLike, speed: float) -> np.ndarray:
+        """Return the stress of coordinates of the columns, shape (n, 6) [Pa].
+
+        With the static stress that the columns do not show, and the stress at rest.
+
+        Parameters
+        ----------
+        coordinates : array_like, shape (k,)
+        speed : float
+            Spin speed [rad/s].
+
+        Raises
+        ------
+        TypeError, ValueError
+            If the rotor has no stress modes, or a value does not fit.
+        """
+        coordinates = checks.vector(coordinates, "coordinates", size=self.size)
+        speed = checks.number(speed, "speed", "rad/s")
+        constant = getattr(self.centrifugal, "constant_stress", None)
+        stress = self._stress_columns @ coordinates + speed**2 * self.unshown_stress
+        return stress if constant is None else stress + constant
+
+    @property
+    def _stress_columns(self) -> np.ndarray:
+        columns = getattr(self.shapes, "stress", None)
+        if columns is None:
+            raise ValueError(
+                "stress: the rotor was reduced without stress modes; use reduce(…, stress=True) "
+                "with a model from NGSolve, and keep the shapes"
+            )
+        return columns
 
     def _static(self, name: str) -> np.ndarray:
         field = getattr(self.centrifugal, name, None)

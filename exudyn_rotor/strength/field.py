@@ -105,15 +105,14 @@ class StressField(Result):
                 "with a model from NGSolve, and keep the shapes"
             )
         columns = reduced.shapes.stress
-        static = getattr(reduced.centrifugal, "stress", None)
         none = np.zeros(columns.shape[:2])
         constant = getattr(reduced.centrifugal, "constant_stress", None)
         return cls(
             positions=reduced.shapes.nodes,
             triangles=reduced.shapes.triangles,
             modes=columns @ selection.T,
-            rest=none if static is None else static - columns @ _static_share(reduced),
-            has_static=static is not None,
+            rest=reduced.unshown_stress,
+            has_static=getattr(reduced.centrifugal, "stress", None) is not None,
             constant=none if constant is None else constant,
         )
 
@@ -259,14 +258,3 @@ def _selection_of(reduced: ReducedRotor, given: Selection | RotorBody) -> Select
             "one that was added to the scene, or select_modes(reduced, formulation)"
         )
     return selection
-
-
-def _static_share(reduced: ReducedRotor) -> np.ndarray:
-    """Return the static centrifugal modal coordinates ``ζ₀ = K⁻¹h`` per ω², shape (k,)."""
-    offset = reduced.axis.project(reduced.center_of_mass) - reduced.center_of_mass
-    load = reduced.invariants.moved(offset).h
-    stiffness = np.diag(reduced.invariants.K)
-    rigid = len(reduced.rigid)
-    share = np.zeros(reduced.size)
-    share[rigid:] = load[rigid:] / stiffness[rigid:]
-    return share

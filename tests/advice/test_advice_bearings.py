@@ -1,28 +1,18 @@
 """Proposals for bearings with coordinates of their own, and for tables that begin above zero."""
 
-import exudyn
-import numpy as np
 import pytest
 from point_rotors import ring_rotor
 
 from exudyn_rotor import (
-    JournalBearing,
     LinearActuator,
     MagneticBearing,
-    OilFilm,
     PIDController,
     SolidRotor,
     Support,
-    add_rotor,
-    add_supports,
-    grooved_pads,
-    linear_model,
     propose,
 )
-from exudyn_rotor.advice.candidate import candidate
 
 ENDS = ("left", "right")
-GRAVITY = [0.0, -9.81, 0.0]
 
 
 @pytest.fixture(scope="module")
@@ -33,21 +23,6 @@ def reduced():
     rotor = rotor.add_point_mass([0.1, 0.0, 0.15], 1e-2)
     rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10))
     return rotor.reduce(24)
-
-
-def scene(reduced, supports):
-    """Return a scene with the rotor on supports, and its body."""
-    mbs = exudyn.SystemContainer().AddSystem()
-    body = add_rotor(mbs, reduced, spin=300.0, gravity=GRAVITY, markers="position")
-    add_supports(body, supports)
-    mbs.Assemble()
-    return mbs, body
-
-
-def in_scene(reduced, supports, **options):
-    """Return the proposal for a scene with the rotor on supports."""
-    mbs, body = scene(reduced, supports)
-    return propose(mbs, body=body, **options)
 
 
 def numbers(proposal):
@@ -72,49 +47,3 @@ def test_magnets_with_ideal_controllers_are_springs_and_dampers(reduced, speeds,
     assert found.modes == expected.modes
     assert numbers(found) == pytest.approx(numbers(expected), rel=1e-3)
     assert found.translation == expected.translation
-
-
-def test_scene_and_list_of_magnets_agree(reduced):
-    controller = PIDController(
-        proportional=3e4,
-        integral=2e5,
-        derivative=60.0,
-        filter_frequency=2e4,
-        amplifier_frequency=1e4,
-    )
-    actuator = LinearActuator(80.0, 1e5)
-    magnets = [
-        MagneticBearing(interface=name, actuator=actuator, controller=controller) for name in ENDS
-    ]
-    found = in_scene(reduced, magnets, speeds=(100.0, 400.0), axial=False)
-    expected = propose(reduced, supports=magnets, speeds=(100.0, 400.0))
-    assert found.modes == expected.modes
-    assert numbers(found) == pytest.approx(numbers(expected), rel=1e-5)
-
-
-def test_films_that_conserve_mass_hold_a_scene(reduced):
-    """The equations are those that all analyses have for such a scene, voids included."""
-    pads = grooved_pads(6e-5, [0.0, np.pi], 0.3)
-    film = OilFilm(0.03, 0.03, 0.02, pads, nodes=18, axial_nodes=0, cavitation="mass-conserving")
-    bearings = [JournalBearing(interface="left", film=film), Support("right", 1e6, 100.0)]
-    mbs, body = scene(reduced, bearings)
-    given = candidate(mbs, body, None, None, False)
-    model = linear_model(mbs, body=body, about="given")
-    assert type(given.source) is type(model)
-    assert given.resonating.size < given.source.size == model.size
-    assert given.motion().shape[1] == given.translations.shape[1] == model.size
-
-
-def test_a_scene_is_not_looked_at_outside_the_speeds_asked_for(reduced):
-    table = ([90.0, 250.0, 500.0], [1e6, 2e6, 3e6])
-    supports = [Support(name, table, damping=100.0) for name in ENDS]
-    found = in_scene(reduced, supports, speeds=(100.0, 400.0))
-    expected = propose(reduced, supports=supports, speeds=(100.0, 400.0))
-    assert found.modes == expected.modes
-    assert numbers(found) == pytest.approx(numbers(expected), rel=1e-3)
-
-
-def test_a_list_is_not_looked_at_outside_the_speeds_asked_for(reduced):
-    table = ([390.0, 500.0], [1e6, 3e6])
-    supports = [Support(name, table, damping=100.0) for name in ENDS]
-    assert propose(reduced, supports=supports, speeds=(400.0, 500.0)).speeds == (400.0, 500.0)

@@ -5,14 +5,12 @@ import pytest
 from models import centered_disc
 from point_rotors import ring_rotor
 
-from exudyn_rotor import SolidRotor, Support, craig_bampton_modes, unbalance_response
+from exudyn_rotor import Support, craig_bampton_modes, unbalance_response
 from exudyn_rotor.advice import mode_choice
 from exudyn_rotor.advice.candidate import candidate
-from exudyn_rotor.advice.mode_choice import critical, resonances
+from exudyn_rotor.advice.mode_choice import resonances
 from exudyn_rotor.advice.request import Request
-from exudyn_rotor.advice.stiffening_level import choose_level
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.theory.nodal import rotations, translations
 
 RADIUS, HALF, MASS = 0.1, 0.2, 5.0
 POLAR = MASS * RADIUS**2
@@ -47,36 +45,6 @@ def test_resonances_are_those_without_damping_and_cross_coupling(given, speed):
     conical = np.roots([TRANSVERSE, -POLAR * speed, -TILT])
     expected = np.sort(np.abs(np.concatenate([lateral, conical]) - speed))
     np.testing.assert_allclose(np.sort(found), expected, rtol=1e-9)
-
-
-def test_critical_speeds_of_a_rigid_rotor():
-    """``k = mΩ²`` and ``k_t = (I_t − I_p) Ω²``; each is there in both planes."""
-    rotor, given = rigid_rotor(), support()
-    found = critical(candidate(rotor, None, given, None, None), Request.of((0.0, 500.0), None, 0.1))
-    expected = np.sqrt([STIFFNESS / MASS, TILT / (TRANSVERSE - POLAR)])
-    distances = np.abs(found[:, None] / np.sort(expected) - 1.0)
-    assert distances.min(axis=0).max() < 1e-9
-    assert distances.min(axis=1).max() < 1e-9
-
-
-@pytest.mark.parametrize("speed", [2.0, 10.0])
-def test_change_by_the_full_level_without_supports(speed):
-    """Two masses on a spring across the axis; unknown stiffening is taken as Ω² per unit mass.
-
-    Then ``ω² + Ω²`` in place of ω²: the change, to first order, errs by the square of (Ω/2ω)².
-    """
-    nodes = np.array([[0.1, 0, 0], [-0.1, 0, 0], [0, 0, 0.2], [0, 0, -0.2]])
-    stretch = np.zeros((12, 1))
-    stretch[[0, 3], 0] = np.sqrt(0.5) * np.array([1.0, -1.0])
-    soft = np.hstack([translations(4), rotations(nodes, np.zeros(3)), stretch])
-    rest = np.eye(12) - soft @ np.linalg.pinv(soft)
-    stiffness = 100.0**2 * stretch @ stretch.T + 1e10 * rest
-    rotor = SolidRotor.from_matrices(np.eye(12), stiffness, nodes, "z").with_interface("a", [2, 3])
-    given = candidate(rotor.reduce(1), None, None, None, None)
-    level = choose_level(given, Request.of(speed, None, 0.1), np.array([0]))
-    change = np.sqrt(1.0 + (speed / 100.0) ** 2) - 1.0
-    assert not level.known
-    assert level.full == pytest.approx(change, rel=0.5 * (speed / 100.0) ** 2)
 
 
 @pytest.mark.parametrize("stiffness", [1e7, 1e8])

@@ -6,7 +6,6 @@ import pytest
 from point_rotors import free_stiffness, ring_rotor
 
 from exudyn_rotor import (
-    EnergyBalance,
     PrescribedMotion,
     SolidRotor,
     add_rotor,
@@ -124,34 +123,8 @@ def test_drive_of_a_prescribed_spin(reduced, spin, locking):
     assert errors[1] < 0.35 * errors[0]
 
 
-def test_integrator_that_takes_energy_shows(reduced):
-    """A spectral radius of 0.5 takes more than 1.0."""
-    given = {"steps": 100, "torque": TORQUE, "translation": "free"}
-    kept, damped = (run(reduced, radius=radius, **given)[0] for radius in (1.0, 0.5))
-    assert damped.error[-1] - kept.error[-1] < -0.5 * abs(kept.error[-1])
-
-
 def test_instants_too_far_apart_are_told(reduced):
     """Ten for three turns: what they leave of the works is told, not taken for the integrator's."""
     with pytest.warns(UserWarning, match=r"10 recorded instants are too far apart .*writePeriod"):
         balance, _ = run(reduced, 10, spin=100.0, translation="none")
     assert np.abs(balance.error).max() > 0.01 * np.abs(balance.loads).max()
-
-
-def test_balances_that_are_not_known_are_refused(reduced):
-    with pytest.raises(ValueError, match=r"call body.start_recording\(\) before"):
-        run(reduced, 4, recording=False)
-    moving = add_rotor(
-        exu.SystemContainer().AddSystem(),
-        reduced,
-        translation=PrescribedMotion(
-            lambda t: np.zeros(3), lambda t: np.zeros(3), lambda t: np.zeros(3)
-        ),
-        spin=10.0,
-    )
-    with pytest.raises(ValueError, match="prescribed translation"):
-        energy_balance(moving)
-    with pytest.raises(TypeError, match="body: needs"):
-        energy_balance("rotor")
-    with pytest.raises(ValueError, match="elastic: needs the shape"):
-        EnergyBalance([0.0, 1.0], [0.0, 1.0], [0.0], *[[0.0, 0.0]] * 4)

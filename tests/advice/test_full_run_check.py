@@ -5,10 +5,9 @@ import warnings
 import exudyn
 import numpy as np
 import pytest
-from models import disc_rotor
 from run_scenes import solve
 from scipy.spatial.transform import Rotation
-from soft_bars import STEP, STEPS, bar, run
+from soft_bars import bar, run
 
 from exudyn_rotor import (
     AssumptionWarning,
@@ -17,14 +16,11 @@ from exudyn_rotor import (
     Pad,
     PrescribedMotion,
     ShortJournalBearing,
-    SolidRotor,
     add_rotor,
     add_supports,
     check_run,
     propose,
 )
-from exudyn_rotor.multibody.full.full_record import recorded_states
-from exudyn_rotor.solid.tensor import von_mises
 
 RUN_UP = PrescribedMotion.run_up(0.0, 300.0, 1e-2)
 SCENES = {
@@ -93,24 +89,6 @@ def test_a_journal_out_of_its_film_fails_the_check(beside, kind, spin):
         assert not row.ok
 
 
-def test_stiffening_of_a_mesh_is_estimated_as_for_modes():
-    """The same displacement, in modes and in nodes, so large that the static one is no matter."""
-    solid = disc_rotor(order=1)  # without its elements nothing but the matrices is known
-    rotor = SolidRotor.from_matrices(solid.mass, solid.stiffness, solid.nodes, "z")
-    reduced = rotor.reduce(6)
-    values = []
-    for model in (rotor, reduced):
-        options = {"spin": 300.0, "translation": "none", "stiffening": "tilt"}
-        amounts = np.zeros(11)
-        amounts[[5, 7]] = 0.02, 0.01
-        start = reduced.shapes.matrix[:, 6:] @ amounts[5:] if model is rotor else amounts
-        mbs = exudyn.SystemContainer().AddSystem()
-        body = add_rotor(mbs, model, modal_coordinates=start, **options)
-        mbs.Assemble()
-        values.append(check_run(body, warn=False)["stiffening"].value)
-    assert values[0] == pytest.approx(values[1], rel=1e-3)
-
-
 def test_step_and_speed_too_high_are_told(solid):
     mbs = exudyn.SystemContainer().AddSystem()
     body = add_rotor(mbs, solid, spin=300.0, translation="none")
@@ -126,35 +104,3 @@ def test_step_and_speed_too_high_are_told(solid):
     assert len(caught) == len(check.failed)
     assert check["spin step"].value == pytest.approx(0.3, rel=1e-9)
     assert check["speed"].value == pytest.approx(1.5)
-
-
-def test_without_instants_the_end_alone_is_known(solid):
-    mbs = exudyn.SystemContainer().AddSystem()
-    body = add_rotor(mbs, solid, spin=100.0, translation="none")
-    mbs.Assemble()
-    solve(mbs, 20, 0.02)
-    with pytest.warns(AssumptionWarning, match="for a full body with instants"):
-        check = check_run(body, limits={"tilt": 1.0, "adrift": 10.0, "travel": 1.0, "strain": 1.0})
-    assert check.instants == 1
-    assert check["deflection"].value > 0.0
-    for given in ({"reduced": solid.reduce(2)}, {"solid": solid}, {"nodes": [0]}):
-        with pytest.raises(ValueError, match="is a full body, without an error of modes"):
-            check_run(body, **given)
-
-
-def test_stress_of_the_run_is_over_the_yield_stress(solid):
-    """The von Mises stress of all displacements, the static ones by the spin among them."""
-    carried = solid.with_prestress(solid.prestress(yield_stress=1e6))
-    body = run(carried, carried, **SCENES["run-up"])
-    peak = von_mises(body.recorded().stress).max()
-    assert check_run(body, warn=False)["yield"].value == pytest.approx(peak / 1e6, rel=1e-9)
-
-
-def test_rates_are_those_of_the_displacements(solid):
-    """Generalised alpha keeps the displacement's step beside the mean rate, to second order."""
-    states = recorded_states(run(solid, solid, **SCENES["free"]))
-    mean = 0.5 * (states.q_t[1:] + states.q_t[:-1])
-    steps = np.diff(states.q, axis=0) / STEP
-    assert len(states.time) == STEPS + 1
-    assert np.abs(steps - mean)[10:].max() < 0.1 * np.abs(mean).max()
-    np.testing.assert_array_equal(states.speed, states.q_t[:, 5])

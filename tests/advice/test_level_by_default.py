@@ -9,7 +9,7 @@ from models import STEEL, block_beam, disc_rotor
 from netgen.occ import Cylinder, OCCGeometry, Z
 from ngsolve import Mesh
 
-from exudyn_rotor import SolidRotor, campbell, critical_speeds, free_modes, stability
+from exudyn_rotor import SolidRotor, campbell, critical_speeds, stability
 from exudyn_rotor.theory.stiffening import estimated_error, stiffening
 from validation.stiffening import nonlinear
 
@@ -81,15 +81,3 @@ def test_level_is_full_where_there_are_elements_and_results_name_it():
     assert plain.invariants.K2 is None
     assert plain.invariants.K2_estimated is None
     assert "stiffening: tilt" in campbell(plain, [0.0, 100.0]).table()
-
-
-@pytest.mark.parametrize("factor", [1e-6, 1e6, 1e12])
-def test_modes_do_not_depend_on_the_scale_of_the_stiffness(factor):
-    """By iteration; rounding of the frequencies is that of the matrices."""
-    steel = STEEL | {"youngsModulus": factor * STEEL["youngsModulus"]}
-    geometry = OCCGeometry(Cylinder((0, 0, 0), Z, 0.2, 0.1))
-    mesh = Mesh(geometry.GenerateMesh(maxh=0.08))
-    plain = free_modes(SolidRotor.from_ngsolve(mesh, STEEL, "z"), 4).frequencies
-    scaled = SolidRotor.from_ngsolve(mesh, steel, "z", check_units=False)
-    found = free_modes(scaled, 4).frequencies
-    np.testing.assert_allclose(found, np.sqrt(factor) * plain, rtol=1e-9)

@@ -7,7 +7,7 @@ from asymmetric import DISC, END, SHAFT, asymmetric_shaft
 from point_rotors import ring_rotor
 from run_scenes import solve
 
-from exudyn_rotor import Support, add_rotor, campbell, check_run
+from exudyn_rotor import add_rotor, check_run
 from exudyn_rotor.advice.request import PERIOD_ERROR
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
@@ -108,18 +108,6 @@ def test_left_out_stiffening_is_the_change_of_a_frequency(rings, speed, forward)
     assert found == pytest.approx(POLAR * speed**2 / (4 * k), rel=2e-3)
 
 
-def test_left_out_stiffening_is_seen_in_the_campbell_diagram(rings):
-    """Mean of forward and backward conical whirl, to the second order of I_pΩ/I_tλ, here 2 %."""
-    speed, k = 4.0, 2 * STIFFNESS * HALF**2
-    supports = [Support(name, STIFFNESS) for name in ("left", "right")]
-    exact, without = (
-        np.sort(campbell(rings, [speed], supports=supports, stiffening=s).frequencies_rotor[0])
-        for s in ("tilt", "none")
-    )
-    change = np.sort(np.abs(without - exact))[-2:].mean() / np.sqrt(k / TRANSVERSE)
-    assert change == pytest.approx(POLAR * speed**2 / (4 * k), rel=0.03)
-
-
 # ------------------------------------------------------------------ frequencies in space
 
 
@@ -143,85 +131,7 @@ def test_slow_whirl_in_space_is_seen_from_the_rotor_frame(rings, ratio):
     assert check_run(body, warn=False)["step"].value == pytest.approx(expected, rel=4 / steps)
 
 
-@pytest.mark.parametrize("ratio", [5, -5])
-def test_sag_at_rest_in_space_is_no_slow_motion(rings, ratio):
-    """Dropped on its springs the rotor moves by ``s (1 − cos ω_s t)`` downwards in space.
-
-    Of the mean square 3s²/2 one third is motion in space, at ω_s; the rotor frame sees
-    ``ω² = Ω² + ω_s²/3``, and the error is that of a slow whirl by the share of the motion.
-    """
-    whirl = np.sqrt(2 * STIFFNESS / MASS)
-    speed, steps, period = ratio * whirl, 400, 2 * np.pi / whirl
-    mbs, body = rotating_body(rings, spin=speed, gravity=[0.0, -9.81, 0.0])
-    on_springs(mbs, body, steps, period)
-    seen = np.sqrt(speed**2 + whirl**2 / 3)
-    expected = PERIOD_ERROR * (seen * period / steps) ** 2 * np.sqrt(1 / 3) * seen / whirl
-    assert check_run(body, warn=False)["step"].value == pytest.approx(expected, rel=4 / steps)
-
-
-@pytest.mark.parametrize("translation", ["free", "in-plane", "none"])
-@pytest.mark.parametrize("marker_body", [True, False])
-def test_recorded_speed_of_a_free_spin(rings, translation, marker_body):
-    """It stays; with a marker body a torque adds T t/Θ, generalised alpha integrates that."""
-    mbs = exu.SystemContainer().AddSystem()
-    options = {"initial_speed": 30.0, "marker_body": marker_body}
-    body = add_rotor(mbs, rings, translation=translation, **options)
-    if marker_body:
-        for name in ("left", "right"):
-            mbs.CreateTorque(itemNumber=body.marker(name), loadVector=[0, 0, 0.4])
-    body.start_recording()
-    mbs.Assemble()
-    solve(mbs, 20, 0.1)
-    record = body.recorded()
-    gain = 0.8 / POLAR * record.time if marker_body else 0.0 * record.time
-    assert len(record.time) == 21
-    assert record.speed == pytest.approx(30.0 + gain, rel=1e-9)
-
-
 # ------------------------------------------------------------------ divergence
 
 
-def grows(squares: np.ndarray, speed: float) -> bool:
-    """Whether a mass on two springs grows in a rotating frame, Coriolis forces and all."""
-    a, b = squares - speed**2
-    values = np.roots([1.0, 0.0, a + b + 4.0 * speed**2, 0.0, a * b])
-    return bool(values.real.max() > 1e-6 * abs(values).max())
-
-
-@pytest.mark.parametrize("speed", [200.0, 300.0, 470.0, 550.0, 610.0, 700.0, 1600.0, 5000.0])
-def test_divergence_of_a_shaft_with_two_stiffnesses(speed):
-    """It grows between its two frequencies, 490 and 600 rad/s; above, Coriolis forces hold it.
-
-    Twenty speeds are looked at, up to twice the highest.
-    """
-    squares = SHAFT * (1.0 / DISC + 0.5 / END)
-    mbs, body = rotating_body(asymmetric_shaft(), spin=speed)
-    mbs.Assemble()
-    row = check_run(body, warn=False)["divergence"]
-    factors = np.arange(1, 21) / 10.0
-    bad = [factor for factor in factors if grows(squares, factor * speed)]
-    assert row.value == pytest.approx(1.0 / bad[0] ** 2 if bad else 0.0, rel=1e-9)
-    assert row.ok == (not bad or bad[0] > np.sqrt(2.0))
-
-
 # ------------------------------------------------------------------ loads
-
-
-@pytest.mark.parametrize("direction", [1.0, -1.0])
-def test_axial_force_on_a_rotor_off_its_frame_is_felt(rings, direction):
-    """A force at the centre of mass tilts nothing, however far that is from the frame's node.
-
-    Its lever about the node is held by locked coordinates and is no unresisted load.
-    """
-    shift = np.zeros((10, 3))
-    shift[:, 0] = 0.02
-    mbs, body = started(rings, shift, 0 * shift, spin=30.0)
-    for name in ("left", "right"):
-        mbs.CreateForce(itemNumber=body.marker(name), loadVector=[0, 0, 50.0 * direction])
-    on_springs(mbs, body, 100, 0.02, stiffness=100.0)
-    size = np.sqrt((POLAR / 2 + TRANSVERSE) / MASS)
-    check = check_run(body, warn=False)
-    assert check["travel"].value == 0.0  # the spin is prescribed
-    moved = np.linalg.norm(body.recorded().q[:, body.layout.unknowns], axis=1).max()
-    assert moved / np.sqrt(MASS) > 0.05 * size
-    assert check["unresisted load"].value < 1e-4

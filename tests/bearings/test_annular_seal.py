@@ -92,14 +92,3 @@ def test_scene_and_list_have_the_same_exponents():
 def test_refused_input(changes, match):
     with pytest.raises(ValueError, match=match):
         seal(**changes)
-
-
-def test_a_leakage_that_may_be_laminar_is_told():
-    """Oil of 0.1 Pa s: by ``Δp = ½ρV²(1 + ξ + 2σ)`` with Blasius' λ, which holds without spin."""
-    with pytest.warns(UserWarning, match=r"Reynolds number is [\d.]+ here") as told:
-        one = seal(viscosity=0.1)
-    reynolds = 2.0 * one.axial_velocity(0.0) * one.clearance * 1000.0 / 0.1
-    assert f" {reynolds:.3g} " in str(told[0].message)
-    sigma = 0.079 * reynolds**-0.25 * one.length / one.clearance
-    velocity = np.sqrt(2.0 * one.pressure_drop / (1000.0 * (1.0 + one.inlet_loss + 2.0 * sigma)))
-    assert one.axial_velocity(0.0) == pytest.approx(velocity, rel=1e-12)

@@ -3,7 +3,6 @@
 import exudyn as exu
 import numpy as np
 import pytest
-from exudyn.rigidBodyUtilities import InertiaCuboid
 from point_rotors import SKEW_AXIS, ring_rotor
 from scipy.spatial.transform import Rotation
 
@@ -195,31 +194,3 @@ def test_a_stop_brakes_a_free_spin_by_coulombs_friction(axis, sense):
     expected = sense * (80.0 - friction * normal * 0.05 / INERTIA * time[-1])
     assert speed[-1] == pytest.approx(expected, rel=1e-9)
     assert abs(speed[-1]) < 79.6
-
-
-def test_a_base_gets_what_the_rotor_loses():
-    """Angular momentum about the axis, of a rotor and of the block that carries its films."""
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, turned_rings(np.array([0.0, 0.0, 1.0])), initial_speed=80.0)
-    block = InertiaCuboid(density=2500.0, sideLengths=[0.3, 0.1, 0.5])
-    base = mbs.CreateRigidBody(inertia=block, nodeType=exu.NodeType.RotationRxyz)
-    add_supports(body, [KINDS["short film"](name) for name in ENDS], base)
-    mbs.Assemble()
-    settings = recommended_settings(0.05, 1e-3, accuracy=1e-8)
-    settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write = False
-    mbs.SolveDynamic(settings)
-    rate = mbs.GetObjectOutputBody(base, exu.OutputVariableType.AngularVelocity, np.zeros(3))[2]
-    lost = INERTIA * (80.0 - body.coordinates()[1][3])
-    assert lost > 0.01
-    assert block.GetInertia6D()[2] * rate == pytest.approx(lost, rel=1e-9)
-
-
-def test_a_single_node_cannot_brake_a_free_spin():
-    rotor = ring_rotor(RADIUS, 0.15, MASS).with_interface("left", [0]).reduce(0)
-    for options, kind in (({"spin": 50.0}, "short film"), ({}, "squeeze film")):
-        body = add_rotor(exu.SystemContainer().AddSystem(), rotor, **options)
-        add_supports(body, KINDS[kind]("left"))
-    with pytest.raises(ValueError, match="its torque would not brake the free spin"):
-        add_supports(body, KINDS["short film"]("left"))
-    add_supports(body, stop("left", friction=0.0))

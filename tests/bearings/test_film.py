@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from exudyn_rotor import OilFilm, Pad, grooved_pads, plot_pressure
-from exudyn_rotor.bearings.film.grid import Axial
 
 RADIUS, CLEARANCE, VISCOSITY, SPEED = 0.05, 1e-4, 0.02, 300.0
 STILL = (0.0, 0.0)
@@ -70,41 +69,6 @@ def test_short_cut_film_is_ocvirks(ratio):
     assert np.all(np.abs(found - exact) < 0.1 * change + 1e-3 * np.abs(exact))
 
 
-def test_squeezed_short_film_is_damped_as_computed():
-    """C = π μ R L³/c³ of a full short film about the middle (∫ p dz = −μ ∂t h L³/h³)."""
-    length = 0.01 * RADIUS
-    short = film(length, grooves=(), cavitation="none")
-    _, damping = short.state([0.0, 0.0], STILL, SPEED).coefficients()
-    exact = np.pi * VISCOSITY * RADIUS * length**3 / CLEARANCE**3
-    # (L/R)²/10 by the flow around, 1e-5
-    assert damping == pytest.approx(exact * np.eye(2), rel=2e-5, abs=1e-9 * exact)
-
-
-def test_surface_carries_the_same_oil_through_a_void():
-    """Long film: (1 − θ) h keeps its value from where the film broke, where p and p' vanish."""
-    long = {"length": 1e4 * RADIUS, "grooves": [np.pi / 2], "width": 10.0}
-    # the film is thickest in the groove, so that both films begin there
-    angle = np.radians(274.0)
-    place = 0.6 * CLEARANCE * np.array([np.cos(angle), np.sin(angle)])
-    conserving = film(**long, cavitation="mass-conserving").state(place, STILL, SPEED)
-    void = conserving.solution.fraction[:, 0]
-    broken = np.flatnonzero(void > 0.0)
-    start = broken[0]
-    assert np.array_equal(broken, np.arange(start, broken[-1] + 1))
-    # the void that a face lets through is that of the cell before it
-    carried = (1.0 - void[broken]) * conserving.solution.equation.heights[2, broken]
-    assert carried == pytest.approx(carried[0], rel=1e-12)
-    between = conserving.heights[start - 1 : start + 1]
-    assert between.min() < carried[0] < between.max()
-    reynolds = film(**long).state(place, STILL, SPEED)
-    assert conserving.force == pytest.approx(reynolds.force, rel=2e-3)
-
-
-def test_sommerfeld_number_is_that_of_the_load():
-    state = carried(film(), 0.5)
-    assert state.sommerfeld_number == pytest.approx(0.5, rel=1e-8)
-
-
 # ------------------------------------------------------------------ balances
 
 
@@ -137,48 +101,6 @@ def test_power_that_goes_in_is_dissipated():
     assert slow.force == pytest.approx(2.0 * shares.force, rel=1e-12)
 
 
-@pytest.mark.parametrize("speed", [SPEED, -SPEED])
-def test_oil_is_balanced_and_nowhere_pulled(speed):
-    """p ≥ 0, 0 ≤ θ ≤ 1, p θ = 0 and no cell gains oil, with voids that the surface carries."""
-    conserving = film(width=10.0, cavitation="mass-conserving", supply_pressure=1e5, axial_nodes=4)
-    state = conserving.state([-5e-5, 4e-5], STILL, speed)
-    solution = state.solution
-    pressure, void = solution.pressure, solution.void
-    assert 0.02 < np.mean(void > 0.0) < 0.9
-    assert min(pressure.min(), void.min()) >= 0.0
-    assert void.max() <= 1.0
-    assert not np.any(pressure * void)
-    equation = solution.equation
-    kept = equation.residual(pressure, void, equation.heights**3, equation.heights, equation.rates)
-    carried = equation.source * equation.speed * CLEARANCE * conserving.grid.axial.weights
-    assert np.all(np.abs(kept) < 1e-11 * np.abs(carried))
-
-
-def test_supply_pressure_pushes_the_journal_away_from_its_groove():
-    """At rest: a short film's resultant is the groove's; a long one has p = p_s all around."""
-    options = {"grooves": [0.0], "width": 20.0, "supply_pressure": 1e5}
-    short = film(0.01 * RADIUS, **options).force([0.0, 0.0], STILL, 0.0)
-    groove = 1e5 * 0.01 * RADIUS * 2.0 * RADIUS * np.sin(np.radians(10.0))
-    # and of the edge layers beside it, of the width L and, on the grid, of a node
-    layers = 1e5 * 0.01 * RADIUS * RADIUS * (2.0 * np.pi / 120 + 0.02)
-    assert groove < -short[0] < groove + layers
-    long = film(2e3 * RADIUS, **options).force([0.0, 0.0], STILL, 0.0)
-    assert np.linalg.norm(long) < 8.0 * 1e5 * RADIUS**2  # of the ends, about R long each
-
-
-def test_side_flow_of_a_supply_grows_with_the_nodes():
-    """At a corner p goes from p_s to 0 along a circle: a flow of h³ p_s/(6π μ) ∫dr/r there."""
-    flows = []
-    for nodes in (60, 120):
-        pads = grooved_pads(CLEARANCE, [0.0, np.pi], 0.3)
-        oil = OilFilm(
-            RADIUS, RADIUS, 0.02, pads, supply_pressure=2e5, nodes=nodes, axial_nodes=nodes // 10
-        )
-        flows.append(oil.state(STILL, STILL, 1e-6).side_flow)
-    corner = CLEARANCE**3 * 2e5 / (6.0 * np.pi * 0.02)
-    assert flows[1] - flows[0] == pytest.approx(8.0 * np.log(2.0) * corner, rel=0.02)
-
-
 # ------------------------------------------------------------------ derivatives, symmetries
 
 
@@ -202,72 +124,6 @@ def test_coefficients_are_derivatives_of_the_force(cavitation, speed):
     ahead = [skew.force(state.position, e, speed) - state.force for e in moved]
     differences = -np.array(ahead).T / (1e-7 * CLEARANCE * SPEED)
     assert damping == pytest.approx(differences, abs=1e-5 * np.abs(damping).max())
-
-
-@pytest.mark.parametrize("cavitation", ["half-sommerfeld", "reynolds", "mass-conserving"])
-@pytest.mark.parametrize("preload", [0.0, 0.6])
-def test_equilibrium_carries_the_load_and_mirrors_with_the_spin(cavitation, preload):
-    grooved = film(preload=preload, cavitation=cavitation)
-    state = grooved.equilibrium(SPEED, [-3e3, 500.0])
-    assert state.force == pytest.approx([3e3, -500.0], rel=1e-6)
-    mirrored = grooved.equilibrium(-SPEED, [-3e3, -500.0])
-    assert mirrored.position == pytest.approx(state.position * [1, -1], rel=1e-6)
-    assert mirrored.attitude == pytest.approx(state.attitude)
-    assert mirrored.power_loss == pytest.approx(state.power_loss)
-
-
-def test_a_plain_bore_has_no_direction():
-    plain = film(grooves=())
-    attitudes = [
-        plain.equilibrium(SPEED, load).attitude for load in ([-3e3, 0.0], [1800.0, 2400.0])
-    ]
-    # nodes stand elsewhere: second order of the grid
-    assert attitudes[1] == pytest.approx(attitudes[0], rel=2e-3)
-
-
-def test_one_profile_is_exact_for_short_bores():
-    """Its error falls with the square of L/D or faster."""
-    errors = []
-    for length in (0.05, 0.0125):
-        options = {"length": length, "nodes": 60}
-        place = [-0.5 * CLEARANCE, 0.5 * CLEARANCE]
-        grids = [film(axial_nodes=n, **options).force(place, STILL, SPEED) for n in (8, 16)]
-        fine = grids[1] + (grids[1] - grids[0]) / 3.0
-        error = film(**options).force(place, STILL, SPEED) - fine
-        errors.append(np.linalg.norm(error) / np.linalg.norm(fine))
-    assert errors[0] < 2e-2
-    assert errors[1] < errors[0] / 16.0 + 5e-4  # of the extrapolation, (1/16)⁴ and voids
-
-
-@pytest.mark.parametrize("half", [0.02, 0.5, 3.0])
-def test_profile_is_integrated_along_the_axis(half):
-    """∫ f dζ, ∫ f² dζ and ∫ f'² dζ of f = 1 − cosh ζ / cosh(L/2R), short: (L²/4R² − ζ²)/2."""
-    place = np.linspace(-half, half, 4001)
-    profile, scale = 1.0 - np.cosh(place) / np.cosh(half), Axial.profile(half)
-    size = scale.shapes[0, 0] / profile[2000]
-    slope = np.gradient(profile, place, edge_order=2)
-    for found, exact in (
-        (scale.weights, size * np.trapezoid(profile, place)),
-        (scale.mass, size**2 * np.trapezoid(profile**2, place)),
-        (scale.stiffness[0], size**2 * np.trapezoid(slope**2, place)),
-    ):
-        assert found == pytest.approx(exact, rel=2e-4)  # half², of the parabola
-
-
-def test_preload_brings_the_pads_to_the_journal():
-    """The assembled clearance is 1 − m that of the pads."""
-    # the middle of a pad is up to half a node away: m/(1 − m) (Δφ/2)²/2
-    assert film(preload=0.6).clearance == pytest.approx(0.4 * CLEARANCE, rel=6e-4)
-
-
-def test_rigid_mass_is_at_the_limit_of_whirl():
-    state = carried(film(), 0.9)
-    stiffness, damping = state.coefficients()
-    mass = state.critical_mass()
-    system = np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness / mass, -damping / mass]])
-    growth = np.linalg.eigvals(system).real
-    assert np.max(growth) == pytest.approx(0.0, abs=1e-9 * np.max(np.abs(growth)))
-    assert film(preload=0.6).equilibrium(30.0, [-3e4, 0.0]).critical_mass() == np.inf
 
 
 # ------------------------------------------------------------------ what is refused, picture
@@ -303,3 +159,8 @@ def test_picture_shows_the_whole_film():
     ax = plot_pressure(carried(film(), 0.5))
     assert ax.get_xlim()[1] - ax.get_xlim()[0] == pytest.approx(340.0, abs=0.1)
     assert ax.get_ylim() == pytest.approx((-25.0, 25.0))
+
+
+def test_sommerfeld_number_is_that_of_the_load():
+    state = carried(film(), 0.5)
+    assert state.sommerfeld_number == pytest.approx(0.5, rel=1e-8)

@@ -16,14 +16,11 @@ from exudyn_rotor import (
     SaturatingActuator,
     SolidRotor,
     Support,
-    Unbalance,
     bearing_loads,
-    campbell,
     linear_model,
     sensitivity,
     stability,
     steady_state,
-    unbalance_response,
 )
 
 K_I, K_S = 80.0, 3e5
@@ -158,39 +155,6 @@ def test_flexible_rotor_with_sensors_elsewhere(sensor):
         np.testing.assert_allclose(result.values[row], expected, rtol=1e-9)
 
 
-def test_sensitivity_of_a_spinning_rotor_is_that_of_both_senses():
-    """Of a fixed direction: the mean of forward and backward whirl, in inertial axes."""
-    m, half = 20.0, 0.15
-    inertia = np.diag([m, m * (0.5 * 0.1**2 + half**2)])
-    places = [np.array([1.0, side * half]) for side in (-1.0, 1.0)]
-    gyroscopic = np.diag([0.0, SPEED * m * 0.1**2])
-    A, drive, seen = closed_loop(inertia, gyroscopic, np.zeros((2, 2)), places, places, DELAYED)
-    frequencies = np.array([60.0, 300.0, 900.0])
-    result = sensitivity(rigid(), frequencies, supports=pair(angle=0.4), speed=SPEED)
-    unit, expected = np.eye(len(A)), []
-    for w in frequencies:
-        sides = [seen @ la.solve(1j * w * unit - X, drive) for X in (A, A.conj())]
-        expected.append(1.0 + 0.5 * sum(sides))
-    at = np.searchsorted(result.frequencies, frequencies)
-    for row in result.values[:, at]:
-        np.testing.assert_allclose(row, expected, rtol=1e-8)
-    assert result.zones == ("A",) * 4
-
-
-def test_realisation_is_the_transfer_function():
-    frequencies = np.array([1.0, 300.0, 5e3, 3e4])
-    for one in (PD, PID, replace(PID, derivative=0.0), DELAYED):
-        M, D, K, b, c, d = one.realisation()
-        found = [
-            (c + 1j * w * d) @ la.solve(-(w**2) * np.diag(M) + 1j * w * D + K, b)
-            for w in frequencies
-        ]
-        error = np.angle(found / one.transfer(frequencies))
-        bound = (frequencies * one.delay) ** 5 / 720.0 + 1e-12
-        assert np.all(np.abs(error) <= 1.01 * bound)
-        np.testing.assert_allclose(np.abs(found), np.abs(one.transfer(frequencies)), rtol=1e-12)
-
-
 # ------------------------------------------------------------------ scenes and lists
 
 
@@ -215,26 +179,6 @@ def test_scene_and_list_have_the_same_exponents(kind, turn, rotation):
     # differences of Exudyn's forces give the slopes of the magnets
     assert distance(found, linear_model(reduced, supports=supports), SPEED) < 1e-7
     assert added[0].uses_python
-    assert len(added[0].objects) == 2
-
-
-def test_public_analyses_take_scene_and_list_alike():
-    reduced = rings(heavy=0.0)
-    held = Support("right", np.diag([0.0, 0.0, 5e5]), 150.0, np.diag([0.0, 0.0, 4e3]))
-    supports = [bearing(controller=PD, sensor="right"), bearing("right", angle=0.3), held]
-    mbs, body, _ = on_supports(reduced, supports, spin=0.0, drive="elastic")
-    targets = (
-        linear_model(mbs, body=body, about="given"),
-        linear_model(reduced, supports=supports),
-    )
-    speeds, unbalance = [60.0, SPEED], [Unbalance("left", 1e-4)]
-    responses = [unbalance_response(each, speeds, unbalance, accuracy=None) for each in targets]
-    orbits = [each.motion[:, :, each.orders.tolist().index(1), :3] for each in responses]
-    np.testing.assert_allclose(*orbits, rtol=0.0, atol=1e-9 * np.abs(orbits[1]).max())
-    frequencies = [np.sort(campbell(each, speeds).frequencies_rotor) for each in targets]
-    np.testing.assert_allclose(*frequencies, rtol=1e-8, atol=1e-5)
-    growth = [stability(each, speeds).growth for each in targets]
-    np.testing.assert_allclose(*growth, rtol=1e-7, atol=1e-6)
 
 
 @pytest.mark.parametrize("controller", ["PD", "PID"])
@@ -257,22 +201,6 @@ def test_magnets_under_weight_are_stiffer_in_one_direction(controller):
         assert rest[1] < -1e-5
     in_list = linear_model(rigid(), supports=[*supports, AXIAL])
     assert distance(linear_model(mbs, body=body), in_list, SPEED) < 1e-6
-
-
-@pytest.mark.parametrize("weight", [95.0, 99.0])
-def test_slopes_are_exact_where_a_magnet_is_all_but_without_current(weight):
-    """No difference of forces crosses the end of its current."""
-    gravity = [0.0, -weight, 0.0]
-    loads = bearing_loads(rigid(), ["left", "right"], gravity)
-    supports = [
-        bearing(name, actuator=MAGNETS, load=load)
-        for name, load in zip(("left", "right"), loads, strict=True)
-    ]
-    carrying = MAGNETS.current_for(np.linalg.norm(loads[0]), 0.0)
-    assert 0.9 < carrying / MAGNETS.bias_current < 1.0
-    mbs, body, _ = on_supports(rigid(), [*supports, AXIAL], spin=SPEED, gravity=gravity)
-    in_list = linear_model(rigid(), supports=[*supports, AXIAL])
-    assert distance(linear_model(mbs, body=body), in_list, SPEED) < 1e-8
 
 
 # ------------------------------------------------------------------ laws and refusals

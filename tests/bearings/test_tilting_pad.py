@@ -14,7 +14,6 @@ from exudyn_rotor import (
     SolidRotor,
     Support,
     TiltingPadBearing,
-    Unbalance,
     add_foundation,
     add_rotor,
     add_supports,
@@ -23,8 +22,6 @@ from exudyn_rotor import (
     linear_model,
     recommended_settings,
     stability,
-    steady_state,
-    unbalance_response,
 )
 from exudyn_rotor.theory.axis import SpinAxis
 
@@ -62,14 +59,6 @@ def test_another_program():
     np.testing.assert_allclose(damping, np.diag([2.104e5, 2.560e5]), atol=0.01 * 2.56e5)
 
 
-def test_slow_motions_have_the_slope_of_the_equilibria():
-    slow, skew = bearing(whirl_ratio=1e-4, nodes=60), np.array([700.0, -2000.0])
-    stiffness, _ = slow.coefficients(SPEED, skew)
-    for step in 2.0 * np.eye(2):
-        moved = slow.equilibrium(SPEED, skew + step) - slow.equilibrium(SPEED, skew - step)
-        np.testing.assert_allclose(stiffness @ moved, 2.0 * step, atol=0.02)
-
-
 def test_sense_of_the_spin_mirrors_bearing_and_pivots():
     """Mirrored across n2, pads from the other side and pivots at the other share of the arc."""
     mirror = np.diag([-1.0, 1.0])
@@ -82,16 +71,6 @@ def test_sense_of_the_spin_mirrors_bearing_and_pivots():
     )
     for a, b in zip(one.coefficients(SPEED), other.coefficients(-SPEED), strict=True):
         np.testing.assert_allclose(a, mirror @ b @ mirror, atol=1e-5 * np.abs(a).max())
-
-
-def test_pivots_nearer_to_the_thin_end_carry_more():
-    sunk = [-bearing(pivot=pivot, nodes=60).equilibrium(SPEED)[1] for pivot in (0.4, 0.5, 0.6)]
-    assert sunk[0] > 1.2 * sunk[1] > 1.2 * 1.02 * sunk[2]
-
-
-def test_pads_that_cannot_carry_count_as_absent():
-    tilts = bearing(preload=0.0).tilts(SPEED)
-    assert np.isnan(tilts).tolist() == [True, True, False, False, True]
 
 
 def test_pads_that_tilt_do_not_make_a_rotor_whirl():
@@ -167,61 +146,12 @@ def test_scene_and_linear_analyses_agree(axis, foundation):
         assert np.abs(theirs - one).min() < 1e-6 * max(abs(one), SPEED)
 
 
-def test_light_pads_follow_at_once():
-    """Their films, the tilts eliminated at the speed, are the coefficients of the whirl."""
-    pads = on_pads(inertia=1e-9)[1][0]
-    linear, total = pads.linearised(), 0.0
-    for film, t, mass in zip(linear.films, linear.tangents, linear.masses, strict=True):
-        K, C = (X[:2, :2] for X in film.matrices(SPEED))
-        Z = K + 1j * SPEED * C
-        total = total + Z - np.outer(Z @ t, t @ Z) / (t @ Z @ t - mass * SPEED**2)
-    stiffness, damping = pads.coefficients(SPEED)
-    expected = stiffness + 1j * SPEED * damping
-    np.testing.assert_allclose(total, expected, rtol=0.0, atol=1e-7 * np.abs(expected).max())
-
-
-def test_stiffness_in_the_whirl_has_the_mass_of_pads():
-    heavy = on_pads(inertia=INERTIA)[1][0].linearised()
-    total = 0.0
-    for film, t, mass in zip(heavy.films, heavy.tangents, heavy.masses, strict=True):
-        K, C = (X[:2, :2] for X in film.matrices(SPEED))
-        Z = K + 1j * SPEED * C
-        total = total + Z - np.outer(Z @ t, t @ Z) / (t @ Z @ t - mass * SPEED**2)
-    found = heavy.static_stiffness(SPEED)
-    np.testing.assert_allclose(found, total.real, rtol=0.0, atol=1e-12 * np.abs(total).max())
-
-
 def run(mbs, end_time, step):
     settings = recommended_settings(end_time, step)
     settings.timeIntegration.verboseMode = 0
     settings.solution.file.write = False
     mbs.SolveDynamic(settings)
     return mbs.systemData.GetODE2Coordinates()
-
-
-def test_a_run_stays_in_the_equilibrium():
-    rotor, supports, gravity = on_pads()
-    mbs, body, added = scene(rotor, supports, gravity, spin=SPEED)
-    places = mbs.systemData.GetObjectLTGODE2(added[0].objects[-1])
-    start, tilts = steady_state(body).state(), supports[0].tilts(SPEED)
-    np.testing.assert_allclose(start.q[places], tilts, rtol=1e-6)
-    body.start_from(start)
-    # the run's own tolerance
-    np.testing.assert_allclose(run(mbs, 0.01, 2e-4)[places], tilts, rtol=1e-4)
-
-
-def test_a_response_sets_the_tilts():
-    """Those of the response of the scene itself, about the same equilibrium."""
-    rotor, supports, gravity = on_pads()
-    mbs, body, added = scene(rotor, supports, gravity, spin=SPEED)
-    places = mbs.systemData.GetObjectLTGODE2(added[0].objects[-1])
-    linear, own = (
-        unbalance_response(model, [SPEED], Unbalance("left", 1e-3), accuracy=None)
-        .state(SPEED, body)
-        .q[places]
-        for model in (linear_model(rotor, supports=supports), linear_model(mbs, body=body))
-    )
-    np.testing.assert_allclose(linear, own, rtol=0.0, atol=1e-6 * np.abs(own).max())
 
 
 def test_films_brake_a_free_spin():
@@ -235,49 +165,6 @@ def test_films_brake_a_free_spin():
     torque = sum(one.film.state(still, still, SPEED).torque for one in supports[0].pad_bearings)
     slower = SPEED - mbs.GetSensorValues(spin)[1]
     assert slower == pytest.approx(torque / (MASS * 0.1**2) * 1e-7, rel=2e-3)
-
-
-def test_absent_pads_are_held_by_next_to_nothing_and_told_once():
-    loose = grooved_pads(CLEARANCE, np.radians([10.0, 130.0, 250.0]), 0.2)
-    film = OilFilm(RADIUS, RADIUS, 0.02, loose, nodes=36, axial_nodes=0)
-    pads = TiltingPadBearing(interface="left", film=film, load=[0.0, -500.0], pad_inertia=INERTIA)
-    linear = pads.linearised()
-    with pytest.warns(UserWarning, match=r"pads \[0\] carry nothing at 314") as told:
-        found = [each.matrices(speed) for speed in (SPEED, 0.9 * SPEED) for each in linear.films]
-    assert len(told) == 1
-    assert 0.0 < np.abs(found[0][0]).max() < 2e-6 * np.abs(found[1][0]).max()
-    t, mass = linear.tangents[0], linear.masses[0]
-    K, D = (t @ X[:2, :2] @ t for X in found[0])
-    assert np.all(np.roots([mass, D, K]).real < 0.0)
-    assert np.all(np.roots([mass, D, K]).imag == 0.0)
-
-
-@pytest.mark.parametrize("preload", [0.0, 0.5])
-def test_equilibria_do_not_depend_on_what_was_asked_before(preload):
-    speeds = np.linspace(0.2, 1.0, 5) * SPEED
-    up, down, alone = (bearing(preload=preload, nodes=60) for _ in range(3))
-    first = [up.coefficients(speed) for speed in speeds]
-    last = [down.coefficients(speed) for speed in speeds[::-1]][::-1]
-    np.testing.assert_allclose(
-        alone.coefficients(speeds[2]), first[2], rtol=1e-7, atol=1e-7 * np.abs(first[2]).max()
-    )
-    np.testing.assert_allclose(first, last, rtol=0.0, atol=1e-7 * np.abs(first).max())
-
-
-def test_support_asks_for_one_equilibrium_at_a_speed(monkeypatch):
-    """Stiffness, damping and the check of the speed, and at a later look."""
-    asked, solved = [], TiltingPadBearing._solved
-
-    def counting(one, speed, load):
-        asked.append(speed)
-        return solved(one, speed, load)
-
-    monkeypatch.setattr(TiltingPadBearing, "_solved", counting)
-    support = bearing(nodes=60).linearised()
-    for speed in (SPEED, 0.9 * SPEED, SPEED):
-        support.parts(speed)
-        support.undamped().parts(speed)
-    assert asked == [SPEED, 0.9 * SPEED]
 
 
 def test_refused_input():

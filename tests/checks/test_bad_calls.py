@@ -22,10 +22,11 @@ from valid_calls import CALLS, MADE, RETURNED, SCENES, SHARED, USUAL
 
 import exudyn_rotor as er
 
+pytestmark = pytest.mark.filterwarnings("ignore")
+
 ALL = os.environ.get("EXUDYN_ROTOR_BAD_CALLS") == "all"
 SAMPLE = {"valid": 20, "wrong": 250}  # of some hundreds, and some thousands
 
-pytestmark = pytest.mark.filterwarnings("ignore")
 
 NUMBERS = {"float", "int"}
 ARRAY = re.compile(r"ArrayLike|np\.ndarray|Sequence\[(float|int)\]|tuple\[float|csr_array|Matrix")
@@ -239,7 +240,8 @@ RIGHT = {
     "empty": """
         eulerParametersRef rotationMatrixRef triangles variation BaseRecord.at.time
         BaseRecord.integrals.times PIDController.transfer.frequencies Prestress.hub
-        RollingBearingResponse.displacement.time Spectra.plot.orders grooved_pads.grooves
+        PeriodicResponse.displacement.time
+        Spectra.plot.orders grooved_pads.grooves
         keep_modes.indices""",
     "nan": "ModeBasis.frequencies",
     "inf": "ModeBasis.frequencies",
@@ -259,8 +261,8 @@ WRONG = {
         connect_rotors.at interface_motion.interface marker.interface marker.name motion.name
         stability_level_one.at""",
     "text": """
-        base_response.at harmonic_response.at rolling_bearing_response.at standard_unbalances.at
-        unbalance_response.at""",
+        base_response.at harmonic_response.at periodic_response.at
+        standard_unbalances.at unbalance_response.at""",
 }
 # well-formed by themselves: any argument that they do not fit is named
 FORMED = {"empty", "shape", "text", "negative"}

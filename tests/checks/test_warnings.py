@@ -3,7 +3,6 @@
 import ast
 import warnings
 from pathlib import Path
-from unittest.mock import patch
 
 import exudyn as exu
 import numpy as np
@@ -32,9 +31,9 @@ from exudyn_rotor import (
     check_run,
     critical_speeds,
     energy_balance,
+    periodic_response,
     propose,
     recommended_settings,
-    rolling_bearing_response,
     select_modes,
     separation_margins,
     stability_level_one,
@@ -42,7 +41,6 @@ from exudyn_rotor import (
     stress_history,
     unbalance_response,
 )
-from exudyn_rotor.linear.response import rolling_motion
 from exudyn_rotor.solvers import pardiso
 
 LAMINAR = {
@@ -81,12 +79,8 @@ def mass_on_balls(speed, tolerance=1e-2, **bearing):
         **bearing,
     )  # fmt: skip
     given = {"supports": balls, "gravity": [0.0, -9.81, 0.0], "tolerance": tolerance}
-    rolling_bearing_response(mass.with_interface("seat", [0]).reduce(0), [speed], **given)
-
-
-def motion_with_few_harmonics(_):
-    with patch.object(rolling_motion, "_MOST_UNKNOWNS", 40):
-        mass_on_balls(0.0, tolerance=1e-6)
+    rotor = mass.with_interface("seat", [0]).reduce(0)
+    periodic_response(rotor, [speed], follow=False, **given)
 
 
 def unstable_motion_on_rolling_bearings(_):
@@ -302,7 +296,7 @@ PLACES = {
         response_with_one_mode, UserWarning, "errs by about"),
     "linear/model/linear_model.py:_warn_of_refused": (
         campbell_below_a_table, UserWarning, "no values at .* which are NaN"),
-    "linear/modal/resonance.py:_warn": (
+    "linear/modal/resonance.py:warn": (
         critical_speeds_below_a_table, UserWarning, "none are looked for"),
     "linear/response/steady_response.py:_warn_of_missing": (
         response_below_a_table, UserWarning, "no steady motion at .* NaN there"),
@@ -312,10 +306,8 @@ PLACES = {
         curved_elements, UserWarning, "are replaced by mid nodes"),
     "linear/response/refinement.py:warn_of_coarse_peaks": (
         peak_between_few_speeds, UserWarning, "too far apart to give its size and width"),
-    "linear/response/rolling_response.py:_warn_of_left_out": (
-        motion_with_few_harmonics, UserWarning, "of the motion to higher harmonics"),
-    "linear/response/rolling_response.py:_warn_of_instability": (
-        unstable_motion_on_rolling_bearings, UserWarning, "the steady motion is unstable"),
+    "nonlinear/periodic_response.py:warn_of": (
+        unstable_motion_on_rolling_bearings, UserWarning, "values .* the motion is unstable"),
     "evaluation/separation.py:_warn_of_speeds_left_out": (
         response_below_the_operating_range, UserWarning, "count, and the response is known from"),
     "reduction/mean_axis.py:warn_of_held_frame": (
@@ -338,7 +330,6 @@ ELSEWHERE = {
     "bearings/tilting_pad.py:_of_pads": "carry nothing at",
     "linear/modal/critical_speed_map.py:critical_speed_map": "no values at .* which are NaN",
     "linear/over.py:_warn_of_lost": "do not converge for all motions",
-    "linear/response/rolling_response.py:_warn_of_lost": "no values at .* which are NaN",
     "linear/stability/stability.py:warn_of_refused": "no values at .* which are NaN",
 }
 TEXTS = {place: text for place, (_, _, text) in PLACES.items()} | ELSEWHERE
@@ -383,14 +374,3 @@ def test_every_warning_has_a_test():
         file = path.relative_to(PACKAGE).as_posix()
         found += calls_of_warn(path.read_text(encoding="utf-8"), file)
     assert sorted(found) == sorted(TEXTS)
-
-
-def test_calls_are_found_in_every_form():
-    source = (
-        "import warnings\ndef f():\n    warnings.warn('x')\nfrom warnings import warn\nwarn('y')"
-    )
-    assert calls_of_warn(source, "a.py") == ["a.py:f", "a.py:module"]
-
-
-def test_assumption_warning_is_a_user_warning():
-    assert issubclass(AssumptionWarning, UserWarning)

@@ -1,13 +1,10 @@
 """Motors and drag in scenes: start-up and coast-down in closed form, energy, axes, refusals."""
 
-from dataclasses import replace
-
 import exudyn as exu
 import numpy as np
 import pytest
 from exudyn.rigidBodyUtilities import InertiaCuboid
 from rings import J, Z, rings, run, speed_of
-from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
     DirectCurrentMotor,
@@ -59,15 +56,6 @@ def test_start_and_coast_down_in_closed_form(name, at):
     assert speed_of(body) == pytest.approx(expected, rel=2e-5)
 
 
-AXES = {
-    "x": ([1.0, 0.0, 0.0], None),
-    "y": ([0.0, 1.0, 0.0], None),
-    "-y": ([0.0, -1.0, 0.0], None),
-    "-z mounted": ([0.0, 0.0, -1.0], Rotation.from_euler("x", 0.3).as_matrix()),
-    "skew": ([2.0, -1.0, 2.0], Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()),
-}
-
-
 def eccentric(axis=Z, rotation=None, at=None, steps=60, modes=0):
     """Start an eccentric rotor on springs, a full one without `modes`; return scene and sensors."""
     mbs = exu.SystemContainer().AddSystem()
@@ -82,29 +70,6 @@ def eccentric(axis=Z, rotation=None, at=None, steps=60, modes=0):
         body.start_recording()
     run(mbs, 0.2, steps, body)
     return mbs, body, sensors
-
-
-@pytest.fixture(scope="module")
-def upright():
-    return eccentric()
-
-
-@pytest.mark.parametrize("name", AXES)
-def test_axes_change_nothing(upright, name):
-    mbs, body, sensors = eccentric(*AXES[name])
-    assert speed_of(body) == pytest.approx(speed_of(upright[1]), rel=1e-8)
-    found, expected = (
-        scene.GetSensorStoredData(made[0])[-1]
-        for scene, made in ((mbs, sensors), (upright[0], upright[2]))
-    )
-    np.testing.assert_allclose(found, expected, rtol=1e-7)
-
-
-@pytest.mark.parametrize("at", [None, "left"])
-def test_a_full_body_takes_drives(at):
-    """All displacements of ten masses and one more, as coordinates and as modes."""
-    speeds = [speed_of(eccentric(at=at, modes=modes)[1]) for modes in (None, 24)]
-    assert speeds[0] == pytest.approx(speeds[1], rel=1e-6)  # accuracy of the run
 
 
 @pytest.mark.parametrize("at", [None, "left"])
@@ -144,58 +109,6 @@ def test_the_stator_takes_the_reaction():
     assert speed_of(body) - omega[2] == pytest.approx(relative, rel=1e-4)
 
 
-def test_torques_backwards_are_those_forwards():
-    for motor, other in (
-        (INDUCTION, replace(INDUCTION, synchronous_speed=-100.0)),
-        (MOTOR, replace(MOTOR, no_load_speed=-100.0)),
-        (LIMITED, replace(LIMITED, stall_torque=-4.0)),
-    ):
-        for speed in (-20.0, 10.0, 80.0, 130.0):
-            assert other.torque(-speed) == pytest.approx(-motor.torque(speed), rel=1e-12)
-
-
-def test_who_evaluates_is_reported():
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rings().reduce(0))
-    add_drive(body, MOTOR, "left")
-    curve = add_drive(body, TorqueCurve(([0.0, 1.0], [1.0, 0.0])))
-    assert curve.uses_python
-    assert "DirectCurrentMotor at left by symbolic function; TorqueCurve by Python" in body.report()
-    mbs.Assemble()
-    assert body.check_connections() == ()
-
-
-def test_refused_calls_leave_the_scene_as_it_was():
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rings().with_interface("point", [0]).reduce(0))
-    driven = add_rotor(mbs, rings().reduce(0), name="driven", spin=10.0)
-    bare = add_rotor(mbs, rings().reduce(0), name="bare", marker_body=False)
-    ground = mbs.CreateGround()
-
-    def counts():
-        data = mbs.systemData
-        return data.NumberOfObjects(), data.NumberOfMarkers(), data.NumberOfNodes()
-
-    before = counts()
-    for error, match, arguments in (
-        (TypeError, "body: needs RotorBody", (mbs, MOTOR)),
-        (TypeError, "drive: needs Drive", (body, 5.0)),
-        (ValueError, "body: rotor 'driven' has a prescribed spin", (driven, MOTOR)),
-        (ValueError, "body: rotor 'bare' was added with marker_body=False", (bare, MOTOR)),
-        (ValueError, "at: 'top' is unknown", (body, MOTOR, "top")),
-        (ValueError, "at: 'point' is a single node", (body, MOTOR, "point")),
-        (ValueError, "base: a drive on the whole rotor", (body, MOTOR, None, ground)),
-        (TypeError, "takes 1 positional argument", (body, TorqueCurve(lambda speed: 5.0))),
-        (TypeError, "curve: its torque: needs", (body, TorqueCurve(lambda speed, time: None))),
-        (ValueError, "curve: its torque: needs", (body, TorqueCurve(lambda speed, t: np.nan))),
-        (ValueError, "its table holds 1 to 2 rad/s, not 0", (body, TorqueCurve(([1, 2], [3, 4])))),
-    ):
-        with pytest.raises(error, match=match):
-            add_drive(*arguments)
-        assert counts() == before
-        assert body.drives == []
-
-
 def test_a_run_beyond_a_table_stops():
     mbs = exu.SystemContainer().AddSystem()
     body = add_rotor(mbs, rings().reduce(0), translation="none")
@@ -203,25 +116,6 @@ def test_a_run_beyond_a_table_stops():
     with pytest.raises(Exception, match="curve: its table holds 0 to 5 rad/s"):
         run(mbs, 0.2, 20)
     assert TorqueCurve(([0.0, 5.0], [5.0, 4.0]), extrapolate=True).torque(9.0) == 4.0
-
-
-@pytest.mark.parametrize(
-    ("make", "match"),
-    [
-        (lambda: Drag(), "drag: needs constant, linear or quadratic"),
-        (lambda: Drag(linear=-1.0), "linear: needs a finite number"),
-        (lambda: LimitedPower(power=1.0, stall_torque=0.0), "stall_torque: needs a number"),
-        (
-            lambda: InductionMotor(breakdown_torque=1, breakdown_slip=1.2, synchronous_speed=9),
-            "breakdown_slip: needs",
-        ),
-        (lambda: TorqueCurve(([1.0, 0.0], [1.0, 2.0])), "curve: its speeds: needs"),
-        (lambda: TorqueCurve(([0.0, 1.0], [1.0])), "curve: its torques: needs"),
-    ],
-)
-def test_bad_numbers_are_refused(make, match):
-    with pytest.raises(ValueError, match=match):
-        make()
 
 
 @pytest.mark.parametrize("at", ["left", None])

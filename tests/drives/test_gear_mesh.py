@@ -88,30 +88,6 @@ def test_forces_are_what_energy_and_loss_say(backlash):
         assert law.loss(x, x_t) >= 0.0
 
 
-def test_tangent_is_the_derivative():
-    gears = mesh(damping=40.0, helix_angle=0.2)
-    x, x_t, step = np.full(12, 1e-4), np.full(12, 1e-2), 1e-3
-    for place, matrix in zip((0, 1), gears.law.tangent(x, x_t), strict=True):
-        columns = []
-        for move in step * np.eye(12):
-            ahead = [x, x_t]
-            ahead[place] = ahead[place] + move
-            columns.append((gears.forces(x, x_t) - gears.forces(*ahead)) / step)
-        np.testing.assert_allclose(np.transpose(columns), matrix, atol=1e-9 * matrix.max())
-    np.testing.assert_array_equal(mesh().law.tangent(0.0 * x, 0.0 * x)[0], mesh().matrices()[0])
-    assert not np.any(mesh(backlash=1e-3).law.tangent(np.zeros(12), x_t))
-
-
-def test_stiffness_follows_the_teeth():
-    gears = mesh(teeth=[20, 32], variation=[0.25])
-    x = np.zeros(12)
-    x[5], x[11] = np.pi / 20, -np.pi / 20 * RADII[0] / RADII[1]  # half a tooth on
-    x[0] = 1e-5
-    expected = 0.75 * K * gears.direction[0] * 1e-5
-    assert gears.transmitted(x, 0.0 * x) == pytest.approx(expected, rel=1e-8)
-    assert gears.mesh_frequency(-30.0) == 600.0
-
-
 @pytest.mark.parametrize(
     ("changes", "match"),
     [

@@ -5,23 +5,18 @@ import numpy as np
 import pytest
 import scipy.linalg
 from rings import J, Z, rings, run, speed_of
-from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
     DirectCurrentMotor,
     Drag,
     GearMesh,
-    Link,
-    RotorTrain,
     Support,
     TorqueCurve,
     add_drive,
     add_rotor,
     add_supports,
-    campbell,
     connect_rotors,
-    linear_model,
 )
 
 RADII = (0.06, 0.09)
@@ -105,46 +100,6 @@ def test_frequencies_at_rest_are_those_of_masses_and_springs(helix_angle):
     np.testing.assert_allclose(found, expected[1:], rtol=1e-5)
 
 
-def first_order(M, G, K):
-    """Return A of d(x, ẋ)/dt = A (x, ẋ)."""
-    below = np.hstack([-np.linalg.solve(M, K), -np.linalg.solve(M, G)])
-    return np.vstack([np.eye(12, 24, 12), below])
-
-
-def test_a_kick_goes_through_gears_and_gyroscopes():
-    """Against the linear equations by hand; the phase errs by ω³h²t/12."""
-    gears, speed = mesh(helix_angle=0.3), 400.0
-    mbs, _, connection = pair(
-        gears,
-        first={"initial_speed": speed, "initial_velocity": [0.02, 0.01, 0.0]},
-        second={"initial_speed": -speed * RADII[0] / RADII[1]},
-    )
-    sensor = connection.add_sensor()
-    run(mbs, 0.02, 800, accuracy=1e-7)
-    A, start, side = first_order(*closed_form(gears, 2e6, speed)), np.zeros(24), np.eye(6)
-    start[12:14] = 0.02, 0.01
-    side[0, 4], side[1, 3] = -0.15, 0.15  # φ × (−0.15 e)
-    row = gears.stiffness * gears.direction @ np.kron(np.eye(2), side)
-    time, found = mbs.GetSensorStoredData(sensor)[::40, :2].T
-    expected = np.array([row @ (scipy.linalg.expm(t * A) @ start)[:12] for t in time])
-    np.testing.assert_allclose(found, expected, atol=5e-3 * np.abs(expected).max())
-
-
-def test_the_linear_train_of_both_is_the_same():
-    gears, speed = mesh(helix_angle=0.3), 400.0
-    roots = np.linalg.eigvals(first_order(*closed_form(gears, 2e6, speed)))
-    expected = np.sort(np.abs(roots.imag))[2::2]
-    supports, rotor = [Support(name, 2e6 * np.eye(3)) for name in ENDS], rings().reduce(0)
-    train = RotorTrain(
-        {"one": rotor, "two": rotor},
-        {"one": 1.0, "two": -RADII[0] / RADII[1]},
-        {"one": supports, "two": supports},
-        [Link("one:left", "two:left", gears)],
-    )
-    found = np.sort(campbell(train, [speed], accuracy=None).frequencies_inertial[0])
-    np.testing.assert_allclose(found[-len(expected) :], expected, rtol=1e-6)
-
-
 MOTOR = DirectCurrentMotor(stall_torque=9.0, no_load_speed=60.0)
 
 
@@ -225,61 +180,6 @@ def test_energy_goes_into_drives_springs_and_losses(backlash):
     assert abs(left[1]) < 0.02
 
 
-PLACES = {
-    "x": {"axis": [1.0, 0.0, 0.0]},
-    "-z": {"axis": [0.0, 0.0, -1.0]},
-    "y": {"axis": [0.0, 1.0, 0.0]},
-    "skew": {
-        "axis": [2.0, -1.0, 2.0],
-        "rotation": Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix(),
-    },
-    "second turned over": {"flip": True},
-}
-
-
-@pytest.mark.parametrize("name", PLACES)
-def test_axes_and_senses_change_nothing(name):
-    gears, heavy = mesh(helix_angle=0.2, damping=300.0), 0.0 if "turned" in name else 0.02
-    first = driven(gears=gears, heavy=heavy)
-    other = driven(gears=gears, heavy=heavy, **PLACES[name])
-    expected, found = ([speed_of(body) for body in result[1]] for result in (first, other))
-    found[1] *= -1.0 if "turned" in name else 1.0
-    np.testing.assert_allclose(found, expected, rtol=1e-6)
-    np.testing.assert_allclose(other[2][2][-1, 1:], first[2][2][-1, 1:], rtol=1e-4)
-
-
-def test_a_full_body_meshes():
-    """Ten masses on stiff springs, beside their rigid motions alone."""
-    found = [driven(gears=mesh(), full=full)[1] for full in (False, True)]
-    speeds = [[speed_of(body) for body in bodies] for bodies in found]
-    np.testing.assert_allclose(speeds[1], speeds[0], rtol=2e-2)
-
-
-def test_teeth_part_and_hit_as_two_inertias_do():
-    """A torque that swings, by the scene and by an equation of two inertias on stiff bearings."""
-    gears = mesh(backlash=2e-4, stiffness=1e5, damping=20.0, pressure_angle=1e-3)
-    mbs, bodies, connection = pair(gears, support=1e9)
-    swing = lambda t: 6.0 * np.sin(80.0 * t)  # noqa: E731
-    add_drive(bodies[0], TorqueCurve(lambda speed, t: swing(t)))
-    sensor = connection.add_sensor()
-    run(mbs, 0.2, 1000)
-
-    def rates(t, y):
-        x, x_t = np.zeros(12), np.zeros(12)
-        x[[5, 11]], x_t[[5, 11]] = y[:2], y[2:]
-        force = gears.forces(x, x_t)
-        return [*y[2:], (force[5] + swing(t)) / J, force[11] / J]
-
-    force = mbs.GetSensorStoredData(sensor)[:, 1]
-    expected = solve_ivp(rates, (0.0, 0.2), np.zeros(4), rtol=1e-8, atol=1e-10, max_step=1e-3)
-    np.testing.assert_allclose(
-        [speed_of(body) for body in bodies], expected.y[2:, -1], rtol=5e-3, atol=2e-3
-    )
-    assert force.min() < -20.0
-    assert force.max() > 20.0
-    assert 0.05 < np.mean(force == 0.0) < 0.9
-
-
 def test_mesh_frequency_is_that_of_the_teeth():
     """At a constant speed, 20 teeth and a stiffness that varies shake the mesh 20 times a turn."""
     gears = mesh(teeth=[20, 30], variation=[0.1], damping=2e3)
@@ -294,47 +194,3 @@ def test_mesh_frequency_is_that_of_the_teeth():
     share = np.abs(np.fft.rfft((late - late.mean()) * np.hanning(len(late))))
     frequencies = 2.0 * np.pi * np.fft.rfftfreq(len(late), time[1] - time[0])
     assert frequencies[share.argmax()] == pytest.approx(gears.mesh_frequency(30.0), rel=0.02)
-
-
-def test_refused_calls_leave_the_scene_as_it_was():
-    mbs = exu.SystemContainer().AddSystem()
-    gears = mesh(line_angle=0.0)
-    rotor, apart = rings().with_interface("point", [0]).reduce(0), [gears.center_distance, 0.0, 0.0]
-    one = add_rotor(mbs, rotor, name="one")
-    two = add_rotor(mbs, rotor, name="two", position=apart)
-    tilted = Rotation.from_euler("x", 0.1).as_matrix()
-    skew = add_rotor(mbs, rotor, name="skew", position=apart, rotation=tilted)
-    bare = add_rotor(mbs, rotor, name="bare", marker_body=False)
-    elsewhere = add_rotor(exu.SystemContainer().AddSystem(), rotor)
-
-    def counts():
-        data = mbs.systemData
-        return data.NumberOfObjects(), data.NumberOfMarkers(), data.NumberOfNodes()
-
-    before = counts()
-    for error, match, arguments in (
-        (TypeError, "connection: needs Connection", (MOTOR, one, "left", two, "left")),
-        (TypeError, "body: needs RotorBody", (gears, mbs, "left", two, "left")),
-        (TypeError, "other: needs RotorBody", (gears, one, "left", "two", "left")),
-        (ValueError, "at: 'top' is unknown", (gears, one, "top", two, "left")),
-        (ValueError, "other_at: 'point' is a single node", (gears, one, "left", two, "point")),
-        (TypeError, "other_at: needs a name", (gears, one, "left", two)),
-        (ValueError, "other: rotor 'bare' was added with", (gears, one, "left", bare, "left")),
-        (ValueError, "other: needs another rotor", (gears, one, "left", one, "right")),
-        (ValueError, "other: needs another rotor", (gears, one, "left", elsewhere, "left")),
-        (ValueError, "other: gears need parallel axes", (gears, one, "left", skew, "left")),
-        (ValueError, "other: its gear is 0.3 m along", (gears, one, "left", two, "right")),
-        (ValueError, "other: its axis is 0.1596", (mesh(), one, "left", two, "left")),
-    ):
-        with pytest.raises(error, match=match):
-            connect_rotors(*arguments)
-        assert counts() == before
-        assert one.drives == []
-
-
-def test_linear_analyses_of_the_scene_are_for_one_rotor():
-    mbs, bodies, _ = pair(mesh())
-    mbs.Assemble()
-    for body, other in zip(bodies, bodies[::-1], strict=True):
-        with pytest.raises(ValueError, match=f"second rotor.*{other.name!r}.*RotorTrain"):
-            linear_model(mbs, body=body)

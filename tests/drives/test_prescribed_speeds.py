@@ -11,7 +11,6 @@ from exudyn_rotor import (
     ConstantSpeed,
     FlexibleCoupling,
     GearMesh,
-    PrescribedMotion,
     add_rotor,
     connect_rotors,
 )
@@ -64,10 +63,3 @@ def test_shafts_of_another_speed_are_refused():
     with pytest.raises(ValueError, match=r"prescribe 40\.0 rad/s"):
         connect_rotors(coupling, one, "right", ConstantSpeed(41.0))
     connect_rotors(coupling, one, "right", ConstantSpeed(40.0))
-
-
-def test_motions_over_time_are_taken():
-    coupling = CONNECTIONS["coupling"][0]
-    motion = PrescribedMotion.run_up(0.0, 40.0, duration=0.1)
-    _, arguments = scene(coupling, motion)
-    connect_rotors(*arguments)

@@ -5,8 +5,6 @@ import pytest
 
 from exudyn_rotor import SolidRotor, Support, stability, stability_level_one
 
-MASS, STIFFNESS = 2.0, 2e4
-
 
 @pytest.fixture(scope="module")
 def rotor():
@@ -47,13 +45,38 @@ def test_the_mode_followed_is_the_one_that_turns_unstable(rotor, damping, ratio)
         assert abs(found.growth[0]) < 1e-6
 
 
-def test_a_rotor_that_is_overdamped_has_a_limit_but_no_decrement():
-    """``c ż + (k − iq) z = 0`` beside little mass."""
+OMEGA = 100.0  # of a point of 1 kg [rad/s]
+
+
+def on_bearings(ratio, q, damping=20.0):
+    """Return level I of the point on bearings k ± Δk/2."""
     point = SolidRotor.from_matrices(
         np.eye(3), np.zeros((3, 3)), [[0, 0, 0]], axis="z", interfaces={"disc": [0]}
     ).reduce(0)
-    bearing = Support("disc", 1e4, damping=1e3)
-    result = stability_level_one(point, 300.0, 5e4, "disc", supports=bearing)
+    bearing = Support("disc", 1e4 * np.diag([1.0 - ratio, 1.0 + ratio]), damping * np.eye(2))
+    return stability_level_one(point, 300.0, q, "disc", supports=bearing)
+
+
+@pytest.mark.parametrize("q", [50.0, 300.0, 500.0, 999.0, 1500.0])
+def test_anisotropic_bearings_raise_the_threshold(q):
+    """Forward and backward whirl share the forces: Q₀² = (c ω̄)² + (Δk/2)² for k ± Δk/2.
+
+    From (λ² + cλ + k₁)(λ² + cλ + k₂) + Q² = 0 at λ = iν: ν² = (k₁ + k₂)/2. Up to Q = Δk/2 the
+    planes do not join, and no mode changes its growth.
+    """
+    found, limit = on_bearings(0.1, q), np.hypot(20.0 * OMEGA, 1e3)
+    apart = found.applied < 1e3
+    growth = found.log_decrement * found.frequencies / (2.0 * np.pi)
+    np.testing.assert_allclose(growth[apart], 10.0, rtol=1e-9)
+    if 10.0 * q < limit:
+        assert found.threshold is None
+    else:
+        assert found.threshold == pytest.approx(limit, rel=1e-6)
+
+
+def test_a_rotor_that_is_overdamped_has_a_limit_but_no_decrement():
+    """``c ż + (k − iq) z = 0`` beside little mass."""
+    result = on_bearings(0.0, 5e4, 1e3)
     assert np.isinf(result.log_decrement[0])
     assert result.threshold == pytest.approx(1e3 * 100.0, rel=1e-6)  # c ω
     assert "inf" in result.table()

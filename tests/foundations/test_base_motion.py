@@ -46,58 +46,6 @@ def record(function, end, step, direction=(1.0, 0.0, 0.0)):
     return BaseRecord(t, np.outer(function(t), direction))
 
 
-@pytest.mark.parametrize("speed", [0.0, 180.0])
-def test_harmonic_ground_from_rest(speed):
-    """One mass: u = −A (sin νt − (ν/ω) sin ωt) / (ω² − ν²), whatever the spin."""
-    omega, nu = 120.0, 70.0
-    shaken = record(lambda t: 2.0 * np.sin(nu * t), 0.3, 2e-4)
-    found = base_response(rigid(), shaken, speed=speed, supports=springs(omega), tolerance=1e-7)
-    t = found.time
-    expected = -2.0 * (np.sin(nu * t) - nu / omega * np.sin(omega * t)) / (omega**2 - nu**2)
-    # straight lines between samples: (ν h)² / 12 of the load
-    scale = np.abs(expected).max()
-    along = axes_of(rigid().axis).T[:, 0]
-    np.testing.assert_allclose(
-        found.displacement("left"), np.outer(expected, along), rtol=0.0, atol=3e-5 * scale
-    )
-
-
-@pytest.mark.parametrize("omega", [20.0, 100.0, 200.0])
-def test_half_sine_shock_spectrum(omega):
-    """Residual response of one mass: 2β cos(π/2β) / |1 − β²| of a/ω², β = T/(2τ) > 1.
-
-    Chopra, Dynamics of Structures (2012), Eq. (4.8.4).
-    """
-    duration, beta = 0.01, np.pi / (0.01 * omega)
-    shock = record(lambda t: 40.0 * np.sin(np.pi * t / duration), duration, 5e-5)
-    given = {"speed": 300.0, "supports": springs(omega), "at": "right"}
-    found = base_response(rigid(), shock, end_time=duration + 7.0 / omega, **given)
-    expected = 40.0 / omega**2 * 2.0 * beta * np.cos(np.pi / 2.0 / beta) / (beta**2 - 1.0)
-    assert found.peak("right")[0] == pytest.approx(expected, rel=3e-4)
-
-
-def test_damped_rest_under_a_lasting_acceleration():
-    """Half a critical damping, a long step: the mass ends at −a/ω², along the axis, too."""
-    step = record(lambda t: np.ones_like(t), 1.0, 0.01, (1.0, 2.0, 3.0))
-    found = base_response(rigid(), step, speed=50.0, supports=springs(100.0, 0.5))
-    ends = -np.array([1.0, 2.0, 3.0]) @ axes_of(rigid().axis) / 100.0**2
-    np.testing.assert_allclose(found.displacement("left")[-1], ends, rtol=1e-6)
-
-
-@pytest.mark.parametrize("samples", [2, 11])
-@pytest.mark.parametrize("speed", [0.0, 5.0, 500.0])
-def test_peaks_are_those_of_the_motion_and_not_of_the_record(samples, speed):
-    """A sudden acceleration a moves an undamped mass by 2 a/ω² at most, here after 3 ms.
-
-    Lines between the times are within 1 % of the motion, and a peak is between two of them at most.
-    """
-    omega, times = 1000.0, np.linspace(0.0, 0.05, samples)
-    sudden = BaseRecord(times, np.tile([1.0, 0.0, 0.0], (samples, 1)))
-    found = base_response(rigid(), sudden, speed=speed, supports=springs(omega))
-    assert found.peak("left")[0] == pytest.approx(2.0 / omega**2, rel=0.01)
-    assert found.time[-1] == pytest.approx(0.05, abs=2e-3)
-
-
 # ------------------------------------------------------------------ scenes
 
 SHAKEN = BaseRecord(
@@ -165,14 +113,6 @@ def test_scene_and_linear_response_agree(rotation):
     assert errors[2] < 1e-4
 
 
-def test_loads_are_a_base_that_moves():
-    """A base of a thousand tons that is driven by the record, seen from it."""
-    _, by_loads = run(1e-4, block=None)
-    _, by_motion = run(1e-4, moved=True)
-    # the rotor's reaction moves the base: their masses are as 5e-6 to 1
-    assert np.abs(by_loads - by_motion).max() < 1e-4 * np.abs(by_loads).max()
-
-
 def whole():
     """Return the rotor of :func:`rigid`, with a heavy spot, unreduced and in a complete basis."""
     rotor = ring_rotor(0.1, 0.15, 5.0).add_point_mass([0.1, 0.0, 0.15], 1e-3)
@@ -195,25 +135,6 @@ def shaken(rotor, record=SHAKEN, **options):
     return np.array(places), body.coordinates()[0][at] * body.formulation.has_spin, added
 
 
-@pytest.mark.parametrize(
-    ("options", "loads"),
-    [
-        ({"spin": 200.0, "translation": "none"}, exu.LoadIndex),
-        ({"spin": 200.0, "translation": "free", "rotation": SKEW}, exu.LoadIndex),
-        ({"initial_speed": 90.0, "translation": "in-plane"}, exu.LoadIndex),
-        ({"initial_speed": 90.0, "translation": "none"}, exu.ObjectIndex),
-    ],
-    ids=["no translation", "free, skew", "free spin", "free spin, no translation"],
-)
-def test_a_full_body_is_shaken_as_a_reduced_one(options, loads):
-    """In a complete basis; three times under a load that Exudyn puts on its mass."""
-    (full, angle, forces), (reduced, other, load) = (shaken(one, **options) for one in whole())
-    assert isinstance(forces, exu.ObjectIndex)
-    assert isinstance(load, loads)
-    np.testing.assert_allclose(full, reduced, rtol=0.0, atol=1e-5 * np.abs(reduced).max())
-    assert angle == pytest.approx(other, abs=1e-9)
-
-
 def test_a_constant_acceleration_is_gravity():
     """Which turns an eccentric rotor whose spin is free, here by 5e-7 rad."""
     still, falls = (BaseRecord([0.0, 1.0], [[0.0, a, 0.0]] * 2) for a in (0.0, 9.81))
@@ -225,24 +146,6 @@ def test_a_constant_acceleration_is_gravity():
         turned = expected[1] - 0.4 - 20.0 * 6e-3
         assert abs(turned) > 1e-7
         assert found[1] == pytest.approx(expected[1], abs=1e-4 * abs(turned))
-
-
-def test_ground_shaken_below_a_free_rotor():
-    """A rotor without markers stays where it is in space, as an eccentric one that does not spin.
-
-    To the second order of the steps.
-    """
-    for rotor in whole():
-        mbs = exu.SystemContainer().AddSystem()
-        body = add_rotor(mbs, rotor, spin=0.0, translation="free", marker_body=False)
-        add_base_motion(mbs, SHAKEN, body)
-        mbs.Assemble()
-        settings = recommended_settings(end_time=0.02, step=1e-4, body=body)
-        settings.solution.file.write = False
-        mbs.SolveDynamic(settings)
-        _, moved = SHAKEN.integrals(np.array([0.02]))
-        found = body.coordinates()[0][:3]
-        np.testing.assert_allclose(found, -moved[0], rtol=0.0, atol=1e-4 * np.abs(moved).max())
 
 
 # ------------------------------------------------------------------ records

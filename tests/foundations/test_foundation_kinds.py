@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import exudyn as exu
 import ngsolve
 import numpy as np
 import pytest
@@ -16,13 +15,7 @@ from exudyn_rotor import (
     Foundation,
     Mount,
     SolidRotor,
-    Unbalance,
-    add_foundation,
-    add_rotor,
-    add_supports,
     linear_model,
-    recommended_settings,
-    unbalance_response,
 )
 
 
@@ -68,27 +61,6 @@ def test_a_stiff_solid_is_a_rigid_block():
     assert errors[0] / errors[1] == pytest.approx(10.0, rel=0.05)
 
 
-@pytest.mark.parametrize("solver", ["RK44", "ExplicitMidpoint", "GeneralizedAlpha"])
-def test_a_foundation_sags_under_its_weight_in_all_solvers(solver):
-    """Undamped modes from rest: ζ = (s·g/ω²)(1 − cos ωt), s the participation per modal mass."""
-    frequencies, participation = np.array([60.0, 90.0]), np.array([[2.0, 1.0], [0, 3], [0, 0]])
-    frame = Foundation.from_modes(
-        frequencies, 0.0, {"left": np.eye(3, 2)}, places={"left": [0.0, 0.2, 0.1]},
-        participation=participation,
-    )  # fmt: skip
-    mbs, gravity, end = exu.SystemContainer().AddSystem(), [3.0, -9.81, 0.0], 0.05
-    base = add_foundation(mbs, frame, gravity=gravity)
-    mbs.Assemble()
-    settings = recommended_settings(end, end / 800)
-    settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write = False
-    mbs.SolveDynamic(settings, solverType=getattr(exu.DynamicSolverType, solver))
-    found = mbs.GetNodeOutput(base.node, exu.OutputVariableType.Coordinates)
-    swing = (1.0 - np.cos(frequencies * end)) / frequencies**2
-    phase = (frequencies * end / 800) ** 2 / 6.0 * frequencies * end  # of rules of second order
-    np.testing.assert_allclose(found, gravity @ participation * swing, rtol=phase.max())
-
-
 def test_bad_foundations_are_refused():
     unit, points = np.eye(2), {"left": np.ones((3, 2))}
     for error, match, arguments in (
@@ -116,28 +88,3 @@ def test_bad_foundations_are_refused():
         Mount("left", -1.0)
     with pytest.raises(ValueError, match="'left' is no interface of the solid"):
         Foundation.from_solid(replace(rings(), interfaces={}), POINTS)
-
-
-def test_a_support_without_its_point_is_refused_everywhere():
-    rotor, there = rings(), KINDS["number"]
-    alone = Foundation(np.eye(1), np.eye(1), np.eye(1), {"right": np.ones((3, 1))})
-    off = replace(BLOCK, places={"left": [0.0, 0.0, 0.2]})
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor)
-    for block, match in ((alone, "has no point for the support at 'left'"), (off, "0.35 m off")):
-        base = add_foundation(mbs, block)
-        before = mbs.systemData.NumberOfObjects()
-        with pytest.raises(ValueError, match=match):
-            linear_model(rotor, supports=there, foundation=block)
-        with pytest.raises(ValueError, match=match):
-            add_supports(body, there, base)
-        assert mbs.systemData.NumberOfObjects() == before
-    with pytest.raises(ValueError, match="in another mbs"):
-        add_supports(body, there, add_foundation(exu.SystemContainer().AddSystem(), BLOCK))
-    with pytest.raises(ValueError, match="gravity: needs a foundation with its participation"):
-        add_foundation(mbs, alone, gravity=[0.0, -9.81, 0.0])
-    model = linear_model(rotor, supports=there, foundation=BLOCK)
-    with pytest.raises(ValueError, match="a linear model has its own"):
-        linear_model(model, foundation=BLOCK)
-    with pytest.raises(ValueError, match="a foundation does not turn"):
-        unbalance_response(model, [1.0], Unbalance("left (foundation)", 1e-4))

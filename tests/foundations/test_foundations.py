@@ -6,28 +6,23 @@ import exudyn as exu
 import numpy as np
 import pytest
 import scipy.linalg
-from apart import distance, exponents
+from apart import distance
 from point_rotors import ring_rotor
-from test_supports_in_scenes import KINDS, SKEW, TO_X, TO_Y, rings
+from test_supports_in_scenes import KINDS, rings
 
 from exudyn_rotor import (
     BaseAcceleration,
     Foundation,
     HarmonicForce,
     Mount,
-    ShortJournalBearing,
-    SolidRotor,
     Support,
     Unbalance,
     add_foundation,
     add_rotor,
     add_supports,
-    bearing_loads,
     campbell,
-    critical_speeds,
     harmonic_response,
     linear_model,
-    stability,
     unbalance_response,
 )
 from exudyn_rotor.reduction.driven import without_spin
@@ -99,31 +94,6 @@ def test_natural_frequencies_are_those_of_two_masses_at_any_speed():
     assert set(result.whirl[1, lower]) <= {"foundation", "mixed"}
 
 
-def test_a_mode_is_named_by_what_moves():
-    """A soft foundation below a stiff rotor and the reverse."""
-    rotor, supports, foundation = two_masses(own=(2e5, 2e5), ratio=20.0)
-    found = campbell(linear_model(rotor, supports=supports, foundation=foundation), [SPEED])
-    slow = found.frequencies_inertial[0] < 60.0
-    assert slow.sum() >= 2
-    moving = slow & (found.frequencies_inertial[0] > 10.0)
-    assert set(found.whirl[0, moving]) == {"foundation"}
-    model = linear_model(rotor, supports=supports, foundation=foundation)
-    growth = stability(model, [SPEED])
-    assert np.all(growth.growth_of("foundation") < 0.0)
-    assert "foundation" not in campbell(rotor, [SPEED], supports=supports).whirl
-    # without shapes, from rings in the place of the mesh, and in a scene
-    bare = linear_model(replace(rotor, shapes=None), supports=supports, foundation=foundation)
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor, spin=SPEED)
-    add_supports(body, supports, add_foundation(mbs, foundation))
-    mbs.Assemble()
-    scene = linear_model(mbs, body=body, about="given")
-    for other in (bare, scene):
-        names = campbell(other, [SPEED], accuracy=None)
-        slow = (names.frequencies_inertial[0] < 60.0) & (names.frequencies_inertial[0] > 10.0)
-        assert set(names.whirl[0, slow]) == {"foundation"}
-
-
 @pytest.mark.parametrize("speed", [0.3, 0.9, 1.7])
 def test_unbalance_response_is_that_of_two_masses(speed):
     """Isotropic foundation: circular orbits of rotor and foundation, amplitude and phase."""
@@ -165,33 +135,6 @@ def test_loads_on_the_foundation_and_its_ground():
     np.testing.assert_allclose(found, expected, rtol=1e-9)
 
 
-def test_a_nearly_rigid_foundation_is_the_ground():
-    """The error of exponents falls with the foundation's stiffness."""
-    rotor = rings()
-    supports = [KINDS["cross-coupled"], HELD]
-    expected = exponents(linear_model(rotor, supports=supports), 0.0)
-    errors = []
-    for stiffness in (1e10, 1e11, 1e12):
-        mounts = [Mount(corner, stiffness) for corner in CORNERS]
-        block = Foundation.rigid(30.0, [2.0, 2.0, 1.0], [0.0, -0.2, 0.0], mounts, POINTS)
-        found = exponents(linear_model(rotor, supports=supports, foundation=block), 0.0)
-        apart = np.abs(found[:, None] - expected).min(axis=0)
-        errors.append(apart.max())
-    ratios = np.array(errors[:-1]) / errors[1:]
-    np.testing.assert_allclose(ratios, 10.0, rtol=0.03)
-
-
-def test_critical_speeds_are_resonances_of_the_response():
-    """The peaks of a lightly damped response over the speed."""
-    rotor, supports, foundation = two_masses(own=OWN)
-    foundation = replace(foundation, damping=np.eye(3))
-    model = linear_model(rotor, supports=supports, foundation=foundation)
-    speeds = critical_speeds(model, nodal_diameters=[1]).speeds
-    for own in OWN:
-        for expected in frequencies_in_a_row(own):
-            assert np.abs(speeds - expected).min() < 1e-7 * expected
-
-
 # ------------------------------------------------------------------ scenes
 
 
@@ -215,45 +158,6 @@ CHOSEN = ["2 x 2", "3 x 3", "tilt, damped", "about the axis", "rotor frame", "ta
 def test_scene_and_linear_model_have_the_same_exponents(kind):
     held = {"spin": SPEED} if kind in ("about the axis", "rotor frame, tilts") else {}
     assert compared([KINDS[kind], HELD], **held) < 1e-7
-
-
-@pytest.mark.parametrize(
-    ("turn", "rotation", "options"),
-    [
-        (TO_X, None, {"translation": "in-plane"}),
-        (TO_Y, None, {"spin": SPEED, "translation": "none"}),
-        (SKEW, TO_X, {"initial_angle": 0.4}),
-    ],
-    ids=["x", "y", "skew"],
-)
-def test_axes_change_nothing(turn, rotation, options):
-    supports = [KINDS["tilt, damped"], replace(KINDS["3 x 3"], frame="rotor"), HELD]
-    assert compared(supports, turn, rotation, **options) < 1e-7
-
-
-def test_unbalance_moves_scene_and_linear_model_alike():
-    """Anisotropic supports in both frames and a table; amplitudes of all harmonics."""
-    rotor = rings(heavy=0.0)
-    supports = [KINDS["table"], replace(KINDS["2 x 2"], frame="rotor"), HELD]
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor, spin=SPEED)
-    add_supports(body, supports, add_foundation(mbs, BLOCK))
-    mbs.Assemble()
-    model = linear_model(rotor, supports=supports, foundation=BLOCK)
-    responses = [
-        unbalance_response(each, [150.0, SPEED], Unbalance("left", 1e-4), at=list(POINTS),
-                           accuracy=None)
-        for each in (model, linear_model(mbs, body=body, about="given"))
-    ]  # fmt: skip
-    assert {0, 1, 2} <= set(responses[0].orders.tolist())
-    # but for the twist: the frame of a scene holds the mean rotation, here a drive does
-    ours, theirs = (
-        dict(zip(each.orders.tolist(), np.moveaxis(each.motion[..., :5], 2, 0), strict=True))
-        for each in responses
-    )
-    limit = 1e-9 * np.abs(ours[1]).max()  # a smaller harmonic may be in one of them alone
-    for n in ours | theirs:
-        np.testing.assert_allclose(ours.get(n, 0.0), theirs.get(n, 0.0), rtol=0.0, atol=limit)
 
 
 def test_a_block_is_exudyns_rigid_body():
@@ -286,34 +190,3 @@ def test_a_block_is_exudyns_rigid_body():
     found = linear_model(scene, body=body, about="given")
     # differences of Exudyn's forces give K to 4e-8 of its largest entry
     assert distance(found, expected, SPEED) < 1e-6
-
-
-def test_a_film_bearing_and_unbalance_on_a_foundation():
-    """Linearised about the steady state of the scene: loaded journals, a foundation that sags.
-
-    The spin stretches the rings, and the scene's journals whirl by it, which the linear model,
-    about their equilibria, leaves out. A whirl of the size a adds (a/h)² to the coefficients of a
-    film of the thickness h: 1e-6 with 20 nm of rings thirty times softer than these.
-    """
-    soft, gravity = ring_rotor(0.1, 0.15, 5.0), [0.0, -9.81, 0.0]
-    rotor = SolidRotor.from_matrices(soft.mass, 30.0 * soft.stiffness, soft.nodes, "z")
-    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(2)
-    loads = dict(zip(POINTS, bearing_loads(rotor, list(POINTS), gravity), strict=True))
-    film = {"radius": 0.02, "length": 0.015, "clearance": 5e-5, "viscosity": 0.02}
-    bearings = [ShortJournalBearing(interface=n, load=loads[n], **film) for n in POINTS]
-    supports = [*bearings, Support("left", np.diag([0.0, 0.0, 1e6]), 50.0)]
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor, spin=SPEED, gravity=gravity)
-    add_supports(body, supports, add_foundation(mbs, BLOCK, gravity=gravity))
-    mbs.Assemble()
-    model = linear_model(rotor, supports=supports, foundation=BLOCK)
-    scene = linear_model(mbs, body=body)
-    worst = [stability(each, [SPEED], accuracy=None).growth[0].max() for each in (model, scene)]
-    assert worst[0] == pytest.approx(worst[1], rel=1e-6)
-    at, unbalance = ["left", "right"], [Unbalance("left", 1e-6)]
-    ours, theirs = (
-        unbalance_response(each, [SPEED], unbalance, at=at, accuracy=None)
-        for each in (model, scene)
-    )
-    first = [each.motion[0, :, each.orders.tolist().index(1), :2] for each in (ours, theirs)]
-    np.testing.assert_allclose(*first, rtol=0.0, atol=1e-6 * np.abs(first[0]).max())

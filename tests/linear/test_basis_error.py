@@ -4,12 +4,11 @@ from functools import cache
 
 import numpy as np
 import pytest
-from models import STEEL, block_beam, centered_disc
+from models import centered_disc
 
 from exudyn_rotor import (
     ReducedRotor,
     SolidRotor,
-    SpinAxis,
     Support,
     Unbalance,
     campbell,
@@ -19,8 +18,6 @@ from exudyn_rotor import (
     stability_threshold,
     unbalance_response,
 )
-from exudyn_rotor.reduction.inertial_modes import inertial_modes
-from exudyn_rotor.solvers.inertia_relief import inertia_relief
 
 SPEEDS = [0.0, 2500.0]
 
@@ -100,55 +97,6 @@ def test_errors_of_the_least_stable_motion_are_in_a_warning():
     assert "basis error" in result.table()
 
 
-@pytest.mark.parametrize("kind", ["turned", "along", "own", "stressed"])
-def test_static_responses_to_inertia_forces_are_complete(kind):
-    """Their energy, by the full stiffness, is in the modes and the responses added to them."""
-    rotor = SolidRotor.from_ngsolve(block_beam(0.05), STEEL, "z", order=1)
-    rotor = rotor.with_prestress(rotor.prestress())
-    component = craig_bampton_modes(rotor, 2, coupling="RBE3")
-    basis = rotor.reduce(component).shapes.matrix
-    stiffness = np.maximum(np.einsum("ik,ik->k", basis, rotor.stiffness @ basis), 0.0)
-    stiffness[:6] = 0.0
-    added = inertial_modes(rotor, component.matrix, basis, stiffness).matrix
-    count, elastic = rotor.node_count, basis[:, 6:]
-    speed = 1000.0 / np.linalg.norm(rotor.axis.radial(rotor.nodes), axis=1).max()
-    e = np.diag(rotor.axis.direction)
-    loads = {
-        "turned": speed * rotor.mass @ (np.kron(np.eye(count), rotor.axis.skew) @ basis),
-        "along": speed * rotor.mass @ (np.kron(np.eye(count), e) @ basis),
-        "own": rotor.stiffness @ elastic / np.sqrt(stiffness[6:]),
-        "stressed": speed * rotor.carried_prestress.matrix @ basis,
-    }[kind]
-    loads = loads - rotor.mass @ (basis @ (basis.T @ loads))
-    whole = np.einsum("ik,ik->k", loads, inertia_relief(rotor).solve(loads))
-    columns = np.hstack([elastic, added])
-    work = columns.T @ loads
-    part = np.einsum("ik,ik->k", work, np.linalg.solve(columns.T @ rotor.stiffness @ columns, work))
-    assert whole.max() > 5e-3
-    assert np.all(whole - part < 1e-3)
-
-
-def test_inertia_forces_along_the_axis_bend_a_blade_across_its_mode():
-    """Of a blade oblique to the axis, whose only mode is bending across its thinner side.
-
-    The loads ``MẽẽQ`` have a part across the other side, which ``MẽQ``, along the blade, has not.
-    Modes of both sides, or rigid tilts, would make the part along the axis one of those.
-    """
-    axis = SpinAxis((0.6, 0.8, 0.0), (0.0, 0.0, 0.0))
-    blade = SolidRotor.from_ngsolve(block_beam(0.05), STEEL, axis, order=1).clamped("left")
-    basis = blade.reduce(1).shapes.matrix
-    square = np.einsum("ik,ik->k", basis, blade.stiffness @ basis)
-    added = inertial_modes(blade, basis, basis, square).matrix
-    along = np.kron(np.eye(blade.node_count), np.outer(axis.direction, axis.direction))
-    load = blade.mass @ (along @ basis)
-    load -= blade.mass @ (basis @ (basis.T @ load))
-    response = inertia_relief(blade).solve(load)
-    columns = np.hstack([basis, added])
-    reduced = columns.T @ blade.stiffness @ columns
-    part = columns @ np.linalg.solve(reduced, columns.T @ load)
-    assert part == pytest.approx(response, abs=0.02 * np.abs(response).max())
-
-
 def test_errors_are_in_the_table_and_above_the_accuracy_in_a_warning():
     rotor, given = reduced("tilt", "free 4"), {"supports": supports("stiff"), "modes": 5}
     with pytest.warns(UserWarning, match=r"mode \d \(.*\) at .* rpm errs by about .* interfaces"):
@@ -174,11 +122,6 @@ def test_no_warning_within_the_accuracy_and_without_a_check():
     assert "error of the basis: not known" in unchecked.table()
     assert np.all(np.isnan(unchecked.columns()["basis error"]))
     campbell(reduced("tilt", "free 12"), SPEEDS, accuracy=0.5, **given)
-
-
-def test_accuracy_is_checked():
-    with pytest.raises(ValueError, match="accuracy"):
-        campbell(reduced("tilt", "free 4"), [0.0], accuracy=0.0)
 
 
 @pytest.mark.parametrize("kind", ["soft", "stiff", "anisotropic"])

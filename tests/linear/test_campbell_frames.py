@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from bodies import BODIES, SHAFT, moments, point_mass, rings
-from models import centered_disc, two_masses
+from models import two_masses
 from point_rotors import random_rotor
 
 from exudyn_rotor import SolidRotor, campbell
@@ -55,15 +55,6 @@ def test_point_mass_in_both_frames(reduced):
     assert result.free_motions == ()
 
 
-def test_turning_the_other_way_round():
-    support = Support("at", (HERTZ * 100.0) ** 2)
-    with pytest.raises(ValueError, match="allow_negative=True"):
-        campbell(point_mass(), [-1.0, 0.0], supports=[support])
-    result = campbell(point_mass(), [-HERTZ * 50.0], supports=[support], allow_negative=True)
-    assert result.whirl[0].tolist() == ["axial", "forward", "backward"]
-    np.testing.assert_allclose(result.frequencies_inertial[0, 1:] / HERTZ, 100.0, rtol=1e-12)
-
-
 @BODIES
 @pytest.mark.parametrize("speed", [0.0, 40.0, 400.0, 4000.0])
 def test_conical_modes_of_a_rigid_rotor(shape, speed):
@@ -113,32 +104,6 @@ def test_free_rotor_keeps_all_rigid_modes_and_names_them():
     assert result.growth.shape == (2, 9)
 
 
-def test_displaced_free_mass_stands_still_in_space():
-    """Free translations are double eigenvalues iΩ without a second vector, here to 1e-12."""
-    result = campbell(point_mass().reduce(0), [7.0])
-    np.testing.assert_allclose(result.frequencies_rotor[0], [0.0, 7.0, 7.0], rtol=1e-12)
-    np.testing.assert_allclose(result.growth, 0.0, atol=1e-12)
-    np.testing.assert_allclose(result.frequencies_inertial, 0.0, atol=1e-11)
-    assert result.whirl[0].tolist() == ["axial", "static", "static"]
-
-
-def test_motion_that_is_free_only_in_combination():
-    rotor = rings(SHAFT).with_interface("ring", range(5)).reduce(0)
-    result = campbell(rotor, 0.0, supports=[Support("ring", 1e6 * np.eye(3))])
-    assert result.free_motions[0] == "spin"
-    assert (
-        result.free_motions[1:]
-        == ("combination of translation 1, translation 2, tilt 1, tilt 2",) * 2
-    )
-
-
-def test_overdamped_modes_count():
-    """One kilogram with k = 1, d = 10: λ = −5 ± √24; the slower stands for the pair."""
-    result = campbell(point_mass(), 0.0, supports=[Support("at", np.eye(3), 10.0 * np.eye(3))])
-    np.testing.assert_allclose(result.growth[0], np.sqrt(24.0) - 5.0, rtol=1e-9)
-    np.testing.assert_array_equal(result.damping_ratio, 1.0)
-
-
 def test_damping_is_that_of_the_inertial_frequency():
     """A damper that stands still: λ = −ζω ± iω√(1 − ζ²) in the inertial frame at every speed."""
     omega, ratio = 100.0, 0.05
@@ -150,44 +115,6 @@ def test_damping_is_that_of_the_inertial_frequency():
 
 
 # ------------------------------------------------------------------ order and whirl
-
-
-@pytest.mark.parametrize("frame", ["inertial", "rotor"])
-def test_columns_ascend_and_tracked_columns_follow_the_modes(frame):
-    support = Support("at", np.diag([1e4, 1e4, 3.6e5]))
-    speeds = np.linspace(0.0, 900.0, 31)
-    result = campbell(point_mass(), speeds, supports=[support], frame=frame)
-    seen = {"rotor": result.frequencies_rotor, "inertial": result.frequencies_inertial}
-    assert np.all(np.diff(seen[frame], axis=1) >= -1e-9 * seen[frame][:, 1:])
-    assert result.plot().get_ylabel() == f"frequency in the {frame} frame [Hz]"
-    assert np.all(result.continued)  # as conjugates where a frequency passes zero
-    tracked = result.tracked()
-    for column in range(3):
-        words = set(tracked.whirl[1:, column])
-        assert len(words) == 1
-        inertial = 600.0 if words == {"axial"} else 100.0
-        np.testing.assert_allclose(tracked.frequencies_inertial[:, column], inertial, rtol=1e-9)
-
-
-@pytest.mark.parametrize("count", [4, 6, 8])
-def test_few_modes_are_the_same_at_all_speeds(count):
-    """Kept are those that are lowest at rest, also where others pass below them in the rotor frame.
-
-    Gyroscopic moments change an inertial frequency by ``|dω/dΩ| ≤ I_p/I_t``, the precession of a
-    free rigid body, and ``I_p ≤ 2 I_t`` for every body.
-    """
-    speeds = np.linspace(0.0, 2500.0, 13)
-    reduced = centered_disc(order=1).reduce(10)
-    supports = [Support(name, 2e7, 500.0) for name in ("left", "right")]
-    every = campbell(reduced, speeds, supports=supports).tracked()
-    few = campbell(reduced, speeds, supports=supports, modes=count).tracked()
-    assert few.frequencies_rotor.shape == (13, count)
-    assert np.all(few.continued)
-    lowest = np.argsort(every.frequencies_inertial[0], kind="stable")[:count]
-    expected = every.frequencies_inertial[:, np.sort(lowest)]
-    np.testing.assert_array_equal(few.frequencies_inertial, expected)
-    steps = np.abs(np.diff(few.frequencies_inertial, axis=0))
-    assert steps.max() <= 2.0 * (speeds[1] - speeds[0])
 
 
 # ------------------------------------------------------------------ periodic systems

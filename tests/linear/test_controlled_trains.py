@@ -4,9 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from apart import exponents
 from point_rotors import SKEW_AXIS, free_stiffness, ring_rotor
-from test_magnetic_bearing import DELAYED, MAGNETS, PD, bearing, pair, rigid
+from test_magnetic_bearing import DELAYED, bearing, pair, rigid
 from test_tilting_pad import SPEED, on_pads
 
 from exudyn_rotor import (
@@ -14,14 +13,10 @@ from exudyn_rotor import (
     HarmonicForce,
     Link,
     RotorTrain,
-    ShortJournalBearing,
     SolidRotor,
     Support,
     Unbalance,
-    campbell,
-    critical_speeds,
     harmonic_response,
-    linear_model,
     sensitivity,
     stability,
     unbalance_response,
@@ -29,67 +24,14 @@ from exudyn_rotor import (
 
 GIVEN = {"accuracy": None}
 MAGNETIC = rigid(), [*pair(angle=0.3)]  # a controller with filter and delay
-UNDER_WEIGHT = (
-    rigid(),
-    [bearing(actuator=MAGNETS, load=[0.0, -98.0], sensor="right"), bearing("right", PD)],
-)
 ON_SPRINGS = rigid(5.0), [Support(name, 2e5, 9.0) for name in ("left", "right")]
 PADS = on_pads(SKEW_AXIS)[:2]
-PAIRS = {
-    "magnets and springs": (MAGNETIC, ON_SPRINGS),
-    "magnets under weight and pads": (UNDER_WEIGHT, PADS),
-}  # fmt: skip
 
 
 def apart(found, expected):
     """Return how far the expected numbers are from the found ones, over their size."""
     gap = np.abs(found - np.asarray(expected)[:, None]).min(axis=1)
     return np.max(gap / np.maximum(np.abs(expected), 10.0))
-
-
-@pytest.mark.parametrize("ratio", [1.0, 1.6, -1.3])
-@pytest.mark.parametrize("kind", PAIRS)
-def test_rotors_without_links_are_those_alone(kind, ratio):
-    """Growth of all motions, and inertial frequencies: the same numbers by other equations."""
-    parts = dict(zip("AB", PAIRS[kind], strict=True))
-    train = RotorTrain(
-        {name: part[0] for name, part in parts.items()},
-        {"A": 1.0, "B": ratio},
-        {name: part[1] for name, part in parts.items()},
-    )
-    both, found = (f(train, [SPEED], **GIVEN) for f in (stability, campbell))
-    counted = 0
-    for (rotor, supports), rate in zip(PAIRS[kind], (1.0, ratio), strict=True):
-        given = {"supports": supports, "allow_negative": True, **GIVEN}
-        alone = exponents(linear_model(rotor, supports=supports), rate * SPEED).real
-        counted += len(alone)
-        assert apart(both.exponents[0].real, alone) < 1e-8
-        assert (
-            apart(oscillating(found), oscillating(campbell(rotor, [rate * SPEED], **given))) < 1e-9
-        )
-    assert counted == both.exponents.shape[1]
-
-
-def oscillating(result):
-    """Return growth + i inertial frequency of motions that are not overdamped."""
-    values = result.growth[0] + 1j * result.frequencies_inertial[0]
-    return values[values.imag > 20.0]  # which of the real exponents are listed is another matter
-
-
-@pytest.mark.parametrize("speed", [0.0, 200.0])
-def test_overdamped_motions_are_those_of_the_rotor_alone(speed):
-    """Beside a rotor on uneven springs, too: a free motion counts once, not by both its zeros."""
-    rotor, magnets = MAGNETIC
-    uneven = [Support(n, np.diag([k, 2.0 * k, 0.0])) for n, k in (("left", 1e5), ("right", 2e5))]
-    train = RotorTrain(
-        {"A": rotor, "B": rigid(5.0)}, {"A": 1.0, "B": 1.6}, {"A": magnets, "B": uneven}
-    )
-    given = (rotor, {"supports": magnets}), (train, {})
-    alone, both = (campbell(one, [speed], accuracy=None, **more) for one, more in given)
-    decays = [np.sort(r.growth[0][(r.frequencies_inertial[0] == 0.0)]) for r in (alone, both)]
-    found, expected = (each[each < -1.0] for each in decays)
-    assert len(found) > 0
-    np.testing.assert_allclose(found, expected, rtol=1e-6)
 
 
 def test_responses_without_links_are_those_alone():
@@ -172,32 +114,3 @@ def test_loops_of_a_train_have_their_sensitivity():
         sensitivity(loose, frequencies)
     with pytest.raises(ValueError, match="a RotorTrain has its own"):
         sensitivity(train, frequencies, supports=MAGNETIC[1])
-
-
-def test_critical_speeds_and_free_motions_have_the_stiffness_of_one_rotor():
-    """The static stiffness of magnets, that of films, and that of pads in the whirl."""
-    film = ShortJournalBearing(
-        interface="left",
-        radius=0.02,
-        length=0.02,
-        clearance=5e-5,
-        viscosity=0.01,
-        load=[0.0, -98.0],
-    )
-    journal = rigid(), [film, Support("right", 4e6, 100.0)]
-    for rotor, supports in (MAGNETIC, journal, PADS):
-        train = RotorTrain({"A": rotor, "B": rigid(5.0)}, {"A": 1.0, "B": 1.6}, {"A": supports})
-        linear, alone = linear_model(train), linear_model(rotor, supports=supports)
-        own = [name for name in linear.free_motions if name.startswith("A")]
-        assert own == [f"A: {name}" for name in alone.free_motions]
-        for speed in (0.5 * SPEED, SPEED):
-            undamped, expected = (model.undamped().at(speed).K for model in (linear, alone))
-            for n, K in expected.items():
-                found = undamped[n][: len(K), : len(K)]
-                np.testing.assert_allclose(found, K, rtol=0.0, atol=1e-9 * np.abs(K).max())
-    given = {"nodal_diameters": [1], "max_speed": 800.0, **GIVEN}
-    train = RotorTrain({"A": MAGNETIC[0]}, {"A": 1.0}, {"A": MAGNETIC[1]})
-    speeds = critical_speeds(train, **given).speeds
-    np.testing.assert_allclose(
-        speeds, critical_speeds(MAGNETIC[0], supports=MAGNETIC[1], **given).speeds, rtol=1e-8
-    )

@@ -4,7 +4,7 @@ import exudyn
 import numpy as np
 import pytest
 from bodies import BODIES, MASS, SHAFT, moments, point_mass, rings
-from models import centered_disc, disc_rotor, two_masses
+from models import disc_rotor, two_masses
 from test_scene_linear import BEARING, on_springs
 from test_scene_linear import rings as scene_rotor
 
@@ -19,7 +19,6 @@ from exudyn_rotor import (
 )
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.modal import resonance
 from exudyn_rotor.linear.modal.critical_speed_map import critical_speed_map
 from exudyn_rotor.linear.modal.critical_speeds import critical_speeds
 from exudyn_rotor.linear.over import motions_over
@@ -58,32 +57,6 @@ def test_asymmetric_masses_order_2(masses):
     np.testing.assert_allclose(forward, two_each(np.sqrt(KY * KZ / (KY + KZ) / 2.0)), rtol=1e-12)
 
 
-def test_axial_modes_at_any_order(masses):
-    for order in (1.0, 2.0, 3.5):
-        result = critical_speeds(masses, order=order, nodal_diameters=[0])
-        np.testing.assert_allclose(result.speeds, np.array([1200, 2000]) / order, rtol=1e-12)
-        assert set(result.whirl) == {"axial"}
-        np.testing.assert_allclose(result.frequencies_rotor, [1200, 2000], rtol=1e-12)
-
-
-@pytest.mark.parametrize("stiffness", np.geomspace(1e3, 1e5, 8))
-def test_equal_speeds_are_listed_from_backward_to_forward(stiffness):
-    """Two masses of 2 kg that a rod holds apart, Ω² = k/m in both directions and at both ends.
-
-    Found wave by wave, the four speeds are in the order of their rounding.
-    """
-    rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]
-    rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
-    supports = [Support(name, stiffness) for name in ("left", "right")]
-    result = critical_speeds(rotor, supports=supports, nodal_diameters=[1])
-    rounding = np.finfo(float).eps * 1e8 / stiffness  # of the rod, in the supports' stiffness
-    np.testing.assert_allclose(result.speeds, np.sqrt(stiffness / 2.0), rtol=10.0 * rounding)
-    assert np.all(np.diff(result.speeds) >= 0.0)
-    assert result.whirl == ("backward", "backward", "forward", "forward")
-
-
 @BODIES
 def test_rigid_rotor_with_gyroscopic_moment(shape):
     """Forward at ``Ω² = k/(I_t − I_p)``, for a shaft only; backward at ``k/(I_t + I_p)``."""
@@ -99,20 +72,6 @@ def test_rigid_rotor_with_gyroscopic_moment(shape):
     for word, speeds in expected.items():
         found = result.speeds[np.equal(result.whirl, word)]
         np.testing.assert_allclose(found, np.sort(speeds), rtol=1e-9)
-
-
-def test_a_free_rotor_is_the_limit_of_soft_supports():
-    """Its rigid motions follow the bending by their inertia.
-
-    Springs of 1 N/m move frequencies of 3000 rad/s and more by k/(2 m ω²), 1e-8; mass 16 kg.
-    """
-    rotor = centered_disc(order=1).reduce(8)
-    free = critical_speeds(rotor, nodal_diameters=[1])
-    soft = [Support(name, 1.0) for name in ("left", "right")]
-    held = critical_speeds(rotor, supports=soft, nodal_diameters=[1])
-    bending = held.speeds > 100.0
-    np.testing.assert_allclose(free.speeds, held.speeds[bending], rtol=1e-6)
-    assert free.whirl == tuple(np.array(held.whirl)[bending])
 
 
 @pytest.mark.parametrize("order", [0.5, 1.0, 2.0, 3.0])
@@ -135,12 +94,6 @@ def test_support_that_stiffens_with_the_speed():
         critical_speeds(rotor, supports=[support])
 
 
-def test_table_of_a_constant_stiffness_is_a_constant():
-    table = Support("at", ([0.0, 50.0, 500.0], [1e4, 1e4, 1e4]))
-    result = critical_speeds(point_mass().reduce(0), supports=[table], max_speed=300.0)
-    np.testing.assert_allclose(result.speeds, 100.0, rtol=1e-11)
-
-
 @pytest.fixture(scope="module")
 def disc():
     rotor = disc_rotor(1)
@@ -151,25 +104,6 @@ def rising(stiffness):
     """Return a stiffness that grows by a tenth within 4000 rad/s, as a table of nine speeds."""
     speeds = np.linspace(0.0, 4000.0, 9)
     return speeds, stiffness * (1.0 + 0.1 * speeds / 4000.0)
-
-
-@pytest.mark.parametrize("order", [1.0, 2.0])
-def test_a_table_leaves_spin_and_axial_motion_free(disc, order):
-    """Equal values in a table are a number: the same critical speeds, but by bracketing.
-
-    Both solve the same equations; bracketing stops at 1e-12 of the range, and the conditioning of
-    an eigenvalue of 1e6 rad²/s² beside 1e12 costs ten digits of the square.
-    """
-    reduced = disc.reduce(8)
-    names = ("left", "right")
-    by_number = [Support(name, 2e7, 300.0) for name in names]
-    by_table = [Support(name, ([0.0, 500.0, 4000.0], [2e7] * 3), 300.0) for name in names]
-    given = {"order": order, "max_speed": 4000.0}
-    expected = critical_speeds(reduced, supports=by_number, **given)
-    result = critical_speeds(reduced, supports=by_table, **given)
-    assert len(expected.speeds) >= 2
-    np.testing.assert_allclose(result.speeds, expected.speeds, rtol=1e-8)
-    assert sorted(result.whirl) == sorted(expected.whirl)
 
 
 def test_critical_speeds_with_a_table_are_fixed_points(disc):
@@ -274,27 +208,6 @@ def test_an_uneven_rotor_on_uneven_springs(on_uneven_springs):
     np.testing.assert_allclose(by_table.speeds, result.speeds, rtol=1e-6)
 
 
-def test_motions_that_need_more_harmonics_are_left_out(on_uneven_springs, monkeypatch):
-    rotor, supports = on_uneven_springs
-    monkeypatch.setattr(resonance, "_MOST", resonance._FEW)
-    with pytest.warns(UserWarning, match="still change with harmonics up to the 4th"):
-        result = critical_speeds(rotor, supports=supports, nodal_diameters=[1])
-    assert result.speeds.size == 0
-
-
-def test_axes_of_the_rotor_give_the_same():
-    """In axes of the rotor uneven supports couple harmonics, at rest they do not."""
-    supports = [Support("all", np.diag([1e6, 2e6, 3e6]), tilt_stiffness=np.diag([1e4, 3e4, 1e9]))]
-    still, turning = (
-        critical_speeds(rings(SHAFT).reduce(0), supports=supports, axes=axes)
-        for axes in ("auto", "rotor")
-    )
-    assert (still.axes, turning.axes) == ("inertial", "rotor")
-    assert len(still.speeds) >= 4
-    np.testing.assert_allclose(turning.speeds, still.speeds, rtol=1e-6)
-    assert turning.whirl == still.whirl
-
-
 def test_tables_tell_that_there_are_none():
     rotor = point_mass().reduce(0)
     support = Support("at", 1e4)  # 100 rad/s
@@ -359,8 +272,6 @@ def test_critical_speeds_are_looked_for_from_where_tables_begin(begins, found, i
         result = critical_speeds(model, max_speed=most, nodal_diameters=[1], accuracy=None)
     # forward and backward; scenes are linearised by differences
     np.testing.assert_allclose(result.speeds, 2 * found * [100.0], rtol=1e-6)
-    if in_scene:
-        return
     # beyond the end of a table the rest counts
     with pytest.warns(UserWarning, match=r"critical speeds: none are looked for .* to 110 rad/s"):
         beyond = critical_speeds(model, max_speed=110.0, nodal_diameters=[1], accuracy=None)

@@ -6,7 +6,6 @@ that leaves out is compared with the closed form of a Jeffcott rotor that nothin
 
 import numpy as np
 import pytest
-from models import STEEL, block_beam
 from point_rotors import ring_rotor
 
 from exudyn_rotor import (
@@ -16,7 +15,6 @@ from exudyn_rotor import (
     critical_speeds,
     harmonic_response,
     stability,
-    unbalance_response,
 )
 from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
 
@@ -34,14 +32,6 @@ def ring(eccentricity: float = ECCENTRICITY) -> SolidRotor:
     moved = rotor.nodes + np.array([eccentricity, 0.0, 0.0])
     given = SolidRotor.from_matrices(rotor.mass, rotor.stiffness, moved, "z")
     return given.with_interface("all", range(10))
-
-
-def hung(rotor: SolidRotor, place: float) -> SolidRotor:
-    """Return a body with an interface 'root' whose point is at x = `place`."""
-    hub = rotor.with_interface("root", range(10))
-    root = hub.interfaces["root"].centered_on(np.array([place, 0.0, 0.0]))
-    fields = {name: getattr(hub, name) for name in hub.__dataclass_fields__}
-    return SolidRotor(**fields | {"interfaces": {**hub.interfaces, "root": root}})
 
 
 def on_route(rotor: SolidRotor, route: str):
@@ -112,95 +102,7 @@ def test_critical_speed_is_that_at_constant_speed(rotor, route):
     assert np.abs(found.speeds / CRITICAL - 1.0).min() < 1e-7
 
 
-def test_whirl_is_that_at_constant_speed(rotor, route):
-    """``(k − mΩ² + icΩ) u = m e Ω²`` in the rotor frame."""
-    target, speeds = on_route(rotor, route), SPEEDS[1:]
-    found = unbalance_response(target, speeds, supports=carrier(1e5), frame="rotor")
-    u = found.motion[:, 0, 0, :2].real @ [1.0, 1j]
-    stiffness = STIFFNESS - MASS * speeds**2 + 1j * DAMPING * speeds
-    np.testing.assert_allclose(u, MASS * ECCENTRICITY * speeds**2 / stiffness, rtol=1e-6)
-
-
-def test_balanced_spin_is_neutral_at_every_level(route):
-    """At 'none' the centrifugal field must not drive it: growth Ω was found there."""
-    target = on_route(ring(0.0), route)
-    for level in ("none", "tilt"):
-        found = campbell(target, SPEEDS, supports=carrier(), modes=8, stiffening=level)
-        values = found.growth + 1j * found.frequencies_rotor
-        assert np.all(np.sum(values == 0.0, axis=1) == 2)
-
-
-def test_feet_hold_the_spin_of_a_balanced_rotor(route):
-    """Ten springs at ten nodes: the six rigid motions at rest have ``ω² = 10 k/m``."""
-    rotor = ring(0.0)
-    for number in range(10):
-        rotor = rotor.with_interface(f"foot {number}", [number])
-    target = on_route(rotor, route)
-    supports = [Support(f"foot {number}", 1e5 * np.eye(3)) for number in range(10)]
-    found = campbell(target, [0.0], supports=supports, modes=7)
-    assert found.free_motions == ()
-    assert np.sort(found.frequencies_rotor[0])[:6] == pytest.approx(np.sqrt(1e6 / MASS))
-
-
-def test_springs_that_turn_hold_a_spin_off_the_axis(route):
-    """A body hung up at a root off the axis, as a blade: nothing of its equations is left out.
-
-    With the lever l from the root to the centre of mass, ``ω² = k (1/m + l²/I)`` across it.
-    """
-    lever = 0.2
-    target = on_route(hung(ring(0.3), 0.3 - lever), route)
-    supports = [Support("root", STIFFNESS, frame="rotor")]
-    found = campbell(target, [0.0], supports=supports, modes=8)
-    expected = np.sqrt(STIFFNESS * (1.0 / MASS + lever**2 / INERTIA))
-    assert np.abs(found.frequencies_rotor / expected - 1.0).min() < 1e-4
-
-
 # ------------------------------------------------------------------ meshes, flexible
-
-
-@pytest.fixture(scope="module")
-def beam():
-    """Return a beam with a prestress and masses that put it out of balance in both senses."""
-    rotor = SolidRotor.from_ngsolve(block_beam(0.1), STEEL, "z", order=1)
-    rotor = rotor.add_point_mass([0.02, 0.03, 0.3], 0.4).add_point_mass([0.02, -0.03, 0.0], 0.1)
-    return rotor.with_prestress(rotor.prestress())
-
-
-@pytest.mark.parametrize("centred", [True, False])
-@pytest.mark.parametrize("level", ["none", "tilt", "full"])
-def test_routes_agree_on_a_mesh(beam, level, centred):
-    """All modes are kept in the reduction, so nothing but rounding may be between the routes."""
-    rotor = beam.center_interfaces() if centred else beam
-    supports = [Support("left", 1e6, 50.0, tilt_stiffness=1e4), Support("right", 1e5, 50.0)]
-    given = {"supports": supports, "modes": 8, "stiffening": level}
-    found = []
-    for route in ROUTES:
-        target = on_route(rotor, route)
-        result = campbell(target, [0.0, 300.0, 900.0], **given)
-        values = result.growth + 1j * result.frequencies_rotor
-        found.append(values)
-    for other in found[1:]:
-        np.testing.assert_allclose(other, found[0], rtol=1e-5, atol=1e-3)
-
-
-def test_analyses_of_a_mesh_agree(beam, route):
-    """Exponents are those of the modes, and at a critical speed a mode has its frequency."""
-    tilting = np.diag([1e4, 1e4, 1e3])
-    supports = [Support("left", np.diag([1e6, 1e6, 1e6]), 50.0, tilt_stiffness=tilting),
-                Support("right", 1e5, 50.0)]  # fmt: skip
-    target = on_route(beam, route)
-    given = {"supports": supports}
-    modes = campbell(target, [300.0], modes=5, **given)
-    expected = (modes.growth + 1j * modes.frequencies_rotor)[0]
-    exponents = stability(target, [300.0], **given).exponents[0]
-    exponents = np.where(exponents.imag < 0.0, exponents.conj(), exponents)
-    assert distance(exponents, expected) < 1e-3
-    undamped = [Support(s.interface, s.stiffness, 0.0, s.tilt_stiffness) for s in supports]
-    found = critical_speeds(target, supports=undamped, max_speed=600.0)
-    assert len(found.speeds) >= 3
-    for speed, frequency in zip(found.speeds, found.frequencies_rotor, strict=True):
-        near = campbell(target, [speed], supports=undamped, modes=6).frequencies_rotor[0]
-        assert np.abs(near - frequency).min() < 1e-4 * speed
 
 
 def test_torque_turns_a_free_spin_alone(rotor, route):

@@ -60,16 +60,6 @@ def test_geared_inertias_have_their_torsion():
     assert np.abs(found / exact - 1.0).min() < 1e-6
 
 
-def test_geared_pair_at_a_low_speed():
-    """Where turning axes split high frequencies by little, which Hill's method does not resolve."""
-    rotors = {"A": rings(*FIRST).reduce(0), "B": rings(*SECOND).reduce(0)}
-    supports = {n: [Support(p, 3e9 * np.eye(3)) for p in "ab"] for n in "AB"}
-    mesh = GearMesh(radii=[0.1, 0.2], stiffness=3e6)
-    train = RotorTrain(rotors, {"A": 1.0, "B": -0.5}, supports, [Link("A:a", "B:a", mesh)])
-    slow, still = (np.sort(row) for row in campbell(train, [0.0, 1.0]).frequencies_inertial)
-    np.testing.assert_allclose(slow, still, rtol=1e-3, atol=1e-3)
-
-
 def test_gears_are_apart_by_their_centre_distance():
     """``(r₁ + r₂)/cos α`` at the angle of the line of centres, in one plane."""
     rotors, mesh = {"A": rigid(*FIRST), "B": rigid(*SECOND)}, gears()

@@ -8,32 +8,35 @@ import numpy as np
 import pytest
 from apart import apart
 from models import disc_with_two_modes
-from point_rotors import ring_rotor
 from test_magnetic_bearing import DELAYED, LINEAR
-from test_uneven_films import BLOCK, HEAVY, SPEED
 from void_films import SKEW
 
 from exudyn_rotor import (
     AnnularSeal,
     ClearanceStop,
+    Foundation,
     MagneticBearing,
+    Mount,
     RollingBearing,
-    ShortJournalBearing,
     SqueezeFilmDamper,
     Support,
-    Unbalance,
     add_foundation,
     add_rotor,
     add_supports,
     bearing_loads,
-    campbell,
     linear_model,
-    stability,
-    unbalance_response,
 )
-from exudyn_rotor.bearings.short_film import film_force, film_tangent
 
 ENDS = ("left", "right")
+SPEED, HEAVY = 300.0, 5.0 * np.array([0.0, -9.81, 0.0])
+CORNERS = [[x, -0.3, z] for x in (-0.2, 0.2) for z in (-0.1, 0.6)]
+BLOCK = Foundation.rigid(
+    80.0,
+    [4.0, 5.0, 1.0],
+    [0.0, -0.2, 0.2],
+    [Mount(corner, 4e6, 2e3) for corner in CORNERS],
+    {"left": [0.0, 0.0, 0.0], "right": [0.0, 0.0, 0.5]},
+)
 OIL = {"radius": 0.06, "length": 0.02, "clearance": 2e-4, "viscosity": 0.01}
 BALLS = {"count": 8, "pitch_radius": 0.033, "element_radius": 0.006, "stiffness": 7e9}
 PUMP = {"radius": 0.04, "length": 0.03, "clearance": 3e-4, "pressure_drop": 1e6}
@@ -83,10 +86,6 @@ KINDS = {
 }  # fmt: skip
 
 
-def short(name, load):
-    return [ShortJournalBearing(interface=name, load=load, **OIL)]
-
-
 THRUST = Support("right", np.diag([0.0, 0.0, 1e6]), np.diag([0.0, 0.0, 100.0]))
 
 
@@ -120,100 +119,7 @@ def test_every_kind_on_a_block_with_a_free_spin(kind):
     assert apart(*models(KINDS[kind], BLOCK, free=True), SPEED) < 1e-6
 
 
-TILTING = {
-    "alike": {"tilt_stiffness": 2e4 * np.eye(2)},
-    "crossed": {"tilt_stiffness": TILTS},
-    "rotor frame": {"frame": "rotor", "tilt_stiffness": TILTS, "tilt_damping": TILT_LOSSES},
-    "table": {"tilt_stiffness": ([0.0, 900.0], [TILTS, 2.0 * TILTS.T])},
-}
-
-
-@pytest.mark.parametrize("kind", TILTING)
-def test_static_moments_on_a_block_leave_the_exponents(kind):
-    """20 times the weight: they differed by up to 7e-6 of the speed, in proportion to it."""
-
-    def make(name, load):
-        return [Support(name, 0.0, 0.0, **TILTING[kind]), Support(name, 5e6, LOSSES)]
-
-    in_scene, in_list = models(make, BLOCK, gravity=4.0 * HEAVY)
-    before = _tilt_functions(in_scene)
-    assert apart(in_scene, in_list, SPEED) < 1e-6
-    assert _tilt_functions(in_scene) == before
-
-
-def _tilt_functions(model):
-    """Return who evaluates every support's moment."""
-    body = model.scene.body
-    mbs, name = body.mbs, "springForceTorqueUserFunction"
-    items = [mbs.GetObject(number) for one in body.supports for number in one.objects]
-    return [str(item[name]) for item in items if name in item]
-
-
-@pytest.mark.parametrize("base", [None, BLOCK], ids=["ground", "block"])
-@pytest.mark.parametrize("kind", ["damper", "damper on an orbit"])
-def test_dampers_of_an_eccentric_rotor_in_their_centres(kind, base):
-    """They differed by 3e-4 of the speed, by differences of a force with |e| e."""
-    nothing = np.zeros(3)
-    assert apart(*models(KINDS[kind], base, gravity=nothing, heavy=0.02), SPEED) < 1e-6
-
-
-@pytest.mark.parametrize("kind", ["damper", "short"])
-def test_films_in_their_centres_by_their_own_tangents(kind):
-    """A rotor without unbalance, or undeformed: in the centre by default and as given, too."""
-    films = {"damper": KINDS["damper"], "short": short}
-    nothing, rings = np.zeros(3), ring_rotor(0.1, 0.15, 20.0)
-    reduced = rings.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
-    assert apart(*on_ends(reduced, films[kind], gravity=nothing, about="steady"), SPEED) < 1e-6
-    assert apart(*models(films[kind], gravity=nothing, about="given"), SPEED) < 1e-6
-
-
-def test_public_analyses_take_dampers_alike():
-    """Frequencies, growth and orbits."""
-    targets, speeds = models(KINDS["damper"], gravity=np.zeros(3)), [SPEED]
-    frequencies = [campbell(each, speeds, accuracy=None).frequencies_rotor for each in targets]
-    growths = [stability(each, speeds, accuracy=None).growth for each in targets]
-    for found, expected in (frequencies, growths):
-        found, expected = (each[np.isfinite(each)] for each in (found, expected))
-        assert np.abs(found[:, None] - expected).min(axis=1).max() < 1e-6 * SPEED
-    unbalance = [Unbalance("left", 1e-4)]
-    found = [unbalance_response(each, speeds, unbalance, accuracy=None) for each in targets]
-    np.testing.assert_allclose(*(each.semi_axes("left")[0] for each in found), rtol=1e-6)
-
-
 # ------------------------------------------------------------------ the short film
-
-
-@pytest.mark.parametrize("speed", [0.0, 1.3, -0.4])
-def test_tangents_of_a_short_film_are_those_of_its_force(speed):
-    """By central differences over 1e-5: to 1e-10 of the third derivatives, 1e2 at 0.8 c."""
-    random, h = np.random.default_rng(3), 1e-5
-    for _ in range(20):
-        ratio, angle = random.uniform(0.0, 0.8), random.uniform(0.0, 6.3)
-        rates = random.normal(size=2)
-        motion = np.r_[ratio * np.cos(angle), ratio * np.sin(angle), rates]
-        ends = [[film_force(*(motion + s * h * d), speed) for s in (-1, 1)] for d in np.eye(4)]
-        expected = np.array([np.subtract(*pair) for pair in ends]).T / (2.0 * h)
-        found = film_tangent(*motion, speed)
-        np.testing.assert_allclose(found, expected, atol=1e-6 * np.abs(expected).max())
-
-
-@pytest.mark.parametrize("phase", [0.0, 0.7, np.pi / 2])
-def test_small_harmonic_motions_off_the_centre(phase):
-    """Their first harmonic has no stiffness and the damping of half of a film all around."""
-    place, amplitude = np.array([3e-5, 9e-5]), 2e-10
-    damper = SqueezeFilmDamper(interface="left", load=1e6 * place, centring_stiffness=1e6, **OIL)
-    turn = 2.0 * np.pi * np.arange(720) / 720
-    waves = amplitude * np.exp(1j * np.array([0.0, phase]) + 1j * turn[:, None])  # whirl: 0 to 1
-    forces = [damper.force(place + wave.real, 200.0 * (1j * wave).real) for wave in waves]
-    first = 2.0 * np.exp(-1j * turn) @ np.array(forces) / len(turn)
-    K, D = damper.coefficients(200.0)
-    expected = -(K + 200.0j * D) @ waves[0]
-    # 720 angles resolve the kinks of the force to 1e-5, and 2e-10 m are 1e-6 of the clearance
-    np.testing.assert_allclose(first, expected, atol=3e-5 * np.abs(expected).max())
-    ratio = np.hypot(*place) / OIL["clearance"]
-    size = 0.5 * np.pi * 0.01 * 0.06 * 0.02**3 / 2e-4**3
-    along, across = (1.0 + 2.0 * ratio**2) / (1.0 - ratio**2) ** 2.5, (1.0 - ratio**2) ** -1.5
-    np.testing.assert_allclose(np.linalg.eigvalsh(D), size * np.array([across, along]), rtol=1e-12)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -1,14 +1,11 @@
 """Nodal diameters of discs and slender shafts, beside those counted at the rim."""
 
-import ngsolve
 import numpy as np
 import pytest
-from netgen import occ
 
-from exudyn_rotor import SolidRotor, Support, campbell, stability
+from exudyn_rotor import campbell
 from validation.stiffening.disc import PLATE, disc_rotor
 
-STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
 AROUND = 30  # bricks around the axis
 
 
@@ -45,50 +42,3 @@ def test_modes_of_a_disc_have_the_nodal_diameters_that_the_rim_shows(plate):
         checked.append(n)
     assert {0, 1, 2, 3, 4, 5, 6} <= set(checked)
     assert checked.count(0) == 2  # without and with a nodal circle
-
-
-def test_discs_with_many_nodal_diameters_are_no_torsion(plate):
-    found = stability(plate, [200.0], accuracy=None)
-    unknown = found.whirl[0] == "unknown"
-    assert np.count_nonzero(unknown) >= 4
-    assert set(found.families[0, unknown]) == {"other"}
-
-
-def test_bending_in_many_waves_has_one_nodal_diameter():
-    """A rod bends, twists and stretches only far below the waves around it, at 40 kHz and above.
-
-    Five pairs of bending, on a mesh with so few nodes around the axis that waves look alike.
-    """
-    rod = occ.Cylinder(occ.Pnt(0, 0, 0), occ.Z, 0.02, 1.5)
-    mesh = ngsolve.Mesh(occ.OCCGeometry(rod).GenerateMesh(maxh=0.1, curvaturesafety=0.5))
-    rotor = SolidRotor.from_ngsolve(mesh, STEEL, axis="z")
-    found = campbell(rotor.reduce(11), [100.0], accuracy=None)
-    straight = np.isin(found.whirl[0], ("torsional", "axial"))
-    assert np.count_nonzero(~straight) == 4 + 2 * 5
-    assert np.all(found.nodal_diameters[0, ~straight] == 1)
-    assert np.all(found.nodal_diameters[0, straight] == 0)
-    more = campbell(rotor.reduce(20), [100.0], accuracy=None)
-    assert set(more.nodal_diameters.ravel()) <= {-1, 0, 1}  # rather none than a wrong one
-
-
-def test_a_coarse_bar_has_the_names_of_a_fine_one():
-    """Its nodes are at twelve angles, which hardly tell one nodal diameter from three.
-
-    It turns, twists, stretches and bends; bending has one nodal diameter.
-    """
-    bar = occ.Box((-0.03, -0.02, -0.5), (0.03, 0.02, 0.5))
-    bar.faces.Min(occ.Z).name, bar.faces.Max(occ.Z).name = "left", "right"
-    mesh = ngsolve.Mesh(occ.OCCGeometry(bar).GenerateMesh(maxh=0.05))
-    reduced = SolidRotor.from_ngsolve(mesh, STEEL, axis="z").reduce(8)
-    supports = [Support(name, 1e7) for name in ("left", "right")]
-    spin, axial, *bending, torsion = range(12)
-    found = campbell(reduced, [100.0], supports=supports, modes=12, accuracy=None)
-    assert [found.whirl[0, j] for j in (spin, axial, torsion)] == [
-        "torsional",
-        "axial",
-        "torsional",
-    ]
-    assert found.nodal_diameters[0].tolist() == [0, 0, *[1] * len(bending), 0]
-    assert found.frequencies_inertial[0, spin] == 0.0
-    shifts = found.frequencies_inertial[0, bending] - found.frequencies_rotor[0, bending]
-    np.testing.assert_allclose(np.abs(shifts), 100.0, rtol=1e-9)

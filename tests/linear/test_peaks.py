@@ -160,22 +160,28 @@ def test_a_resonance_without_damping_is_left_out_where_points_are_added():
     np.testing.assert_allclose(response.semi_axes()[0], exact, rtol=1e-11)
 
 
-@pytest.mark.parametrize("bearing", [1e10, 3e10, 1e11])
-def test_beside_a_resonance_on_rigid_bearings_without_damping(bearing):
-    """A shaft of 100 N/m between rigid bearings: ``e Ω² / (ω² − Ω²)`` of two masses and springs.
+@pytest.mark.parametrize(
+    ("bending", "bearing", "share"), [(100.0, 1e10, 0.998), (100.0, 1e11, 0.998), (1.0, 1e12, 0.5)]
+)
+def test_beside_a_resonance_on_rigid_bearings_without_damping(bending, bearing, share):
+    """A shaft between rigid bearings: ``e Ω² / (ω² − Ω²)`` of two masses and springs.
 
-    Stiffnesses round by ε of the bearings', which is seen beside ``100 N/m (1 − 0.998²)``.
+    Stiffnesses round by ε of the bearings', which is seen beside ``k (1 − share²)``.
     """
-    bending, disc, end, share = 100.0, 10.0, 1.0, 0.998
+    disc, end = 10.0, 1.0
     rotor = shaft_rotor(disc, end, (bending, bending)).with_interface("disc", range(4)).reduce(8)
     speed = share * shaft_frequencies(disc, end, bending, bearing)[0]
     stiffness = np.array([[bending, -bending], [-bending, bending + 2.0 * bearing]])
-    exact = np.linalg.solve(stiffness - speed**2 * np.diag([disc, 2.0 * end]), [speed**2, 0.0])[0]
+    exact = np.linalg.solve(stiffness - speed**2 * np.diag([disc, 2.0 * end]), [1.0, 0.0])[0]
     supports = [Support(name, bearing) for name in ("left", "right")]
-    given = {"own": False, "supports": supports, "at": "disc", "accuracy": None}
-    response = unbalance_response(rotor, [speed], [Unbalance("disc", 1.0)], **given)
+    given = {"supports": supports, "at": "disc", "accuracy": None}
+    load = [Unbalance("disc", 1.0)]
+    response = unbalance_response(rotor, [speed], load, own=False, **given)
     rounding = np.finfo(float).eps * bearing / (bending * (1.0 - share**2))
-    assert response.semi_axes()[0][0] == pytest.approx(exact, rel=10.0 * rounding)
+    assert response.semi_axes()[0][0] == pytest.approx(exact * speed**2, rel=10.0 * rounding)
+    forced = harmonic_response(rotor, [0.0, speed], HarmonicForce("disc", (1.0, 0.0)), **given)
+    expected = [1.0 / bending, exact]
+    assert forced.phasor().real == pytest.approx(expected, rel=10.0 * rounding)
 
 
 def test_a_larger_motion_along_the_axis_is_not_the_main_one():

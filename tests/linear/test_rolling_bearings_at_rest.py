@@ -20,6 +20,8 @@ pytestmark = pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn
 
 MASS, RADIUS, ARM, HEAVY = 10.0, 0.1, 0.15, 5e-4
 COUNTS, CLEARANCES = {"left": 7, "right": 12}, {"left": 3e-6, "right": 1e-5}
+pytestmark = pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn")
+
 STIFFNESS = {"balls": 7e9, "rollers": 2e9}
 UPRIGHT = (0.0, 0.0, 1.0)
 

@@ -11,7 +11,6 @@ from scipy.spatial.transform import Rotation
 from exudyn_rotor import (
     HarmonicForce,
     Support,
-    Unbalance,
     UnbalanceResponse,
     add_rotor,
     harmonic_response,
@@ -132,31 +131,6 @@ def test_run_begins_in_steady_whirl(translation, axis, stiffness):
     stays(response, speed, build)
 
 
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn")
-@pytest.mark.parametrize("translation", ["none", "free"])
-def test_run_with_a_free_spin_begins_in_steady_whirl(translation):
-    """A skew axis, and a first angle; the torque of unbalance and supports is of second order."""
-    K = STIFFNESS * np.array([1.0, 1.4, 1.0])
-    reduced, speed = rotor("skew"), 0.7 * CRITICAL
-    response = unbalance_response(reduced, [speed], supports=supports(K), frame="rotor")
-    expected = unbalance_response(reduced, [speed], supports=supports(K))
-
-    def build():
-        mbs, body = scene(
-            reduced,
-            K,
-            spin="free",
-            initial_angle=0.4,
-            initial_speed=speed,
-            translation=translation,
-            markers="position",
-        )
-        body.start_from(response.state(speed, body))
-        return mbs, body
-
-    stays(expected, speed, build)
-
-
 @pytest.mark.parametrize("translation", ["none", "free"])
 def test_response_of_a_scene_starts_its_runs(translation):
     """The unbalance is the scene's own; what stands on the ground stands still."""
@@ -211,34 +185,6 @@ def test_run_under_a_harmonic_force_begins_in_its_response(translation, whole_sc
         return mbs, body
 
     stays(response, rate, started)
-
-
-@pytest.mark.filterwarnings("ignore:the centre of mass is")
-def test_start_of_an_eccentric_rotor_is_that_of_the_response():
-    """Centre of mass 6 mm off the axis; rotations of second order are the tilts squared, 1e-6."""
-    reduced, speed = rotor(excess=0.5), 0.2 * CRITICAL
-    across = [Unbalance(name, 0.02, 0.5 * np.pi) for name in ENDS]
-    on = supports(STIFFNESS * np.ones(3))
-    response = unbalance_response(reduced, [speed], across, supports=on)
-    mbs, body = scene(reduced, STIFFNESS * np.ones(3), initial_speed=speed, translation="none")
-    body.start_from(response.state(speed, body))
-    for name in ENDS:
-        turn = mbs.GetMarkerOutput(body.marker(name), exu.OutputVariableType.RotationMatrix)
-        twist = response.phasor(name, "twist", order=0).real[0]
-        assert np.arctan2(turn[3], turn[0]) == pytest.approx(twist, abs=1e-5)
-        shift = response.motion[0, response.places.index(name)].sum(axis=0).real[:3]
-        # turned by the frame, a shift of 2e-4 m differs by 3e-8 m
-        assert mbs.GetMarkerOutput(body.marker(name), POSITION) == pytest.approx(shift, abs=1e-7)
-
-
-def test_stored_response_starts_a_run_too(tmp_path):
-    reduced, speed = rotor(), 0.7 * CRITICAL
-    response = unbalance_response(reduced, [0.0, speed], supports=supports(STIFFNESS * np.ones(3)))
-    response.save(tmp_path / "response.npz")
-    loaded = UnbalanceResponse.load(tmp_path / "response.npz")
-    _, body = scene(reduced, STIFFNESS * np.ones(3), spin=speed)
-    assert np.array_equal(loaded.state(speed, body).q, response.state(speed, body).q)
-    assert not np.any(loaded.state(0.0, body).q_t)
 
 
 def test_responses_that_cannot_start_a_run_are_refused():

@@ -5,17 +5,13 @@ import numpy as np
 import pytest
 from apart import distance
 from asymmetric import LENGTH, asymmetric_shaft
-from exudyn.itemInterface import GenericJoint, MarkerBodyRigid, SensorNode
+from exudyn.itemInterface import SensorNode
 from exudyn.rigidBodyUtilities import InertiaCuboid
-from models import centered_disc
 from point_rotors import ring_rotor
-from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import PrescribedMotion, add_rotor, linear_model
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.over import motions_over
-from exudyn_rotor.linear.solve.forced import forced_motions
-from exudyn_rotor.multibody.evaluation import evaluating
 
 BEARING = np.array([2.0e6, 1.2e6, 3e6]), np.array([300.0, 200.0, 100.0])
 SPEED = 200.0
@@ -80,34 +76,6 @@ def test_springs_are_supports(markers, options, modes, axes):
 
 
 @pytest.mark.parametrize("modes", [0, 2])
-def test_elastic_drive_keeps_the_rotors_own_spin(modes):
-    mbs, body = on_springs(spin=SPEED, translation="none", drive="elastic", modes=modes)
-    model, expected = linear_model(mbs, body=body), in_a_list(modes=modes)
-    assert model.size == expected.size
-    found, given = model.at(SPEED), expected.at(SPEED)
-    assert found.K.keys() == given.K.keys()
-    for one, other in ((found.K, given.K), (found.D, given.D), ({0: found.M}, {0: given.M})):
-        largest = max(np.abs(X).max() for X in other.values())
-        assert all(np.abs(one[n] - other[n]).max() < 1e-10 * largest for n in other)
-
-
-def test_an_axis_skew_in_space():
-    turn = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
-    mbs, body = on_springs(rotation=turn, translation="in-plane", locking="constraints")
-    assert distance(linear_model(mbs, body=body), in_a_list(turn), SPEED) < 1e-8
-
-
-def test_a_round_scene_has_constant_matrices():
-    mbs, body = on_springs(initial_speed=5.0, modes=0)
-    model = linear_model(mbs, body=body)
-    assert model.axes == "inertial"
-    M, D, K, names, _ = model.matrices(SPEED)
-    assert M.shape == D.shape == K.shape == (len(names), len(names))
-    assert model.at(0.0).is_constant
-    assert not linear_model(mbs, body=body, axes="rotor").at(SPEED).is_constant
-
-
-@pytest.mark.parametrize("modes", [0, 2])
 def test_interface_motion_and_unbalance_agree_with_the_list(modes):
     mbs, body = on_springs("rigid", spin=SPEED, translation="none", drive="elastic", modes=modes)
     model, expected = linear_model(mbs, body=body), in_a_list(modes=modes)
@@ -117,22 +85,6 @@ def test_interface_motion_and_unbalance_agree_with_the_list(modes):
     found, load = model.unbalance(), expected.unbalance()
     assert all(np.allclose(found[n], load[n], rtol=0.0, atol=1e-15) for n in load)
     assert max(np.abs(each).max() for each in load.values()) > 1e-6
-
-
-def test_unbalance_response_with_a_moving_frame():
-    mbs, body = on_springs("rigid", spin=SPEED, law=isotropic)
-    supports = [Support(name, 2e6 * np.eye(3)) for name in ("left", "right")]
-    motions = []
-    for model in (linear_model(mbs, body=body), linear_model(rings(), supports=supports)):
-        model = model.for_responses
-        load = {n: SPEED**2 * each for n, each in model.unbalance().items()}
-        [x] = forced_motions([model.at(SPEED)], [load], [0.0], held=model.held_basis)
-        motions.append(model.seen("right")[1] @ x[0])
-    np.testing.assert_allclose(motions[0], motions[1], atol=1e-7 * np.abs(motions[1]).max())
-
-
-def isotropic(mbs, t, item, displacement, velocity, stiffness, damping, offset):
-    return [2e6 * x for x in displacement]
 
 
 def foundation_scene(speed, node=exu.NodeType.RotationRxyz):
@@ -229,24 +181,6 @@ def test_growth_is_that_of_the_transient_simulation(speed, stable):
     assert limit == pytest.approx(growth, rel=1e-4)
 
 
-def test_euler_parameters_and_their_constraint():
-    found = []
-    for node in (exu.NodeType.RotationRxyz, exu.NodeType.RotationEulerParameters):
-        mbs, body = foundation_scene(20.0, node)
-        found.append(linear_model(mbs, body=body))
-    assert mbs.systemData.AEsize() == 1
-    assert found[0].size == found[1].size
-    assert distance(found[1], found[0], 160.0) < 1e-9
-
-
-def test_speed_of_the_scene_plays_no_part():
-    found = []
-    for speed in (10.0, 160.0):
-        mbs, body = foundation_scene(speed)
-        found.append(linear_model(mbs, body=body))
-    assert distance(found[0], found[1], 160.0) < 1e-9
-
-
 HARDENING, WEIGHT = 1e13, 9.81  # [N/m³], [m/s²]
 
 
@@ -280,38 +214,6 @@ def test_nonlinear_bearings_are_linearised_at_the_sag():
     assert distance(given, expected, SPEED) > 1e-2
 
 
-def all_states(mbs):
-    """Return every state of a system with its time, as one list of arrays."""
-    kinds = exu.ConfigurationType
-    data = mbs.systemData
-    return [
-        np.array([*part, data.GetTime(kind)])
-        for kind in (kinds.Initial, kinds.Current, kinds.StartOfStep, kinds.Visualization)
-        for part in data.GetSystemState(kind)
-    ]
-
-
-def scene_forces(mbs):
-    """Return the forces of all items at the current state."""
-    with evaluating(mbs) as solver:
-        solver.ComputeODE2RHS(mbs)
-        return np.array(solver.GetSystemResidual())
-
-
-def test_the_scene_is_left_as_it_was():
-    mbs, body = on_springs(spin=40.0, gravity=[0.0, -9.81, 0.0])
-    settings = exu.SimulationSettings()
-    settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 10, 1e-3
-    settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write = False
-    mbs.SolveDynamic(settings)
-    before, forces = all_states(mbs), scene_forces(mbs)
-    assert np.abs(forces).max() > 1.0
-    linear_model(mbs, body=body).at(SPEED)
-    assert all(np.array_equal(a, b) for a, b in zip(all_states(mbs), before, strict=True))
-    np.testing.assert_array_equal(scene_forces(mbs), forces)
-
-
 def test_refused_scenes():
     mbs, body = on_springs()
     other, _ = on_springs()
@@ -331,45 +233,3 @@ def test_refused_scenes():
     mbs.Assemble()
     with pytest.raises(ValueError, match="second rotor"):
         linear_model(mbs, body=body)
-
-
-def test_a_joint_that_turns_with_the_rotor_is_refused():
-    mbs, body = on_springs("rigid")
-    base = mbs.CreateRigidBody(
-        inertia=InertiaCuboid(2500.0, [0.3, 0.1, 0.5]), referencePosition=[0.1, 0.0, 0.15]
-    )
-    marker = mbs.AddMarker(MarkerBodyRigid(bodyNumber=base))
-    mbs.AddObject(GenericJoint(markerNumbers=[body.marker("right"), marker]))
-    mbs.Assemble()
-    with pytest.raises(ValueError, match="constraint turns with the rotor"):
-        linear_model(mbs, body=body)
-
-
-def test_a_load_that_nothing_holds_has_no_steady_motion():
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rings(), gravity=[0.0, 0.0, -9.81])
-    mbs.Assemble()
-    with pytest.raises(ValueError, match="no steady motion"):
-        linear_model(mbs, body=body).at(SPEED)
-
-
-@pytest.mark.parametrize("translation", ["free", "none"])
-def test_free_axial_motion_without_a_load_stays_at_rest(translation):
-    """Bearings without axial stiffness: the axial motion is free, and nothing pushes it."""
-    rotor = centered_disc()
-    reduced = rotor.add_point_mass([0.1, 0.0, 0.25], 0.005).reduce(2)
-    SC = exu.SystemContainer()
-    mbs = SC.AddSystem()
-    body = add_rotor(mbs, reduced, translation=translation, spin=100.0)
-    ground = mbs.CreateGround()
-    for name, interface in reduced.interfaces.items():
-        mbs.CreateCartesianSpringDamper(
-            itemNumbers=[ground, body.marker(name)],
-            localPosition0=list(interface.reference),
-            stiffness=[1e6, 2e6, 0.0],
-            damping=[100.0, 100.0, 0.0],
-        )
-    mbs.Assemble()
-    for speed in (50.0, 100.0, 150.0):
-        scene = linear_model(mbs, body=body).at(speed)
-        assert all(np.all(np.isfinite(term)) for term in scene.K.values())

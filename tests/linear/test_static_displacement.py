@@ -1,7 +1,6 @@
 """The stiffness per Ω⁴ of a static displacement in reduced rotors, files and critical speeds."""
 
 import numpy as np
-import pytest
 
 from exudyn_rotor import Prestress, ReducedRotor, SolidRotor, critical_speeds
 from exudyn_rotor.theory.stiffening import stiffening
@@ -28,19 +27,6 @@ def test_critical_speeds_are_zeros_of_a_polynomial_of_degree_four():
         point_mass(), stiffening="full", nodal_diameters=[1], max_speed=4000.0
     ).speeds
     np.testing.assert_allclose(np.unique(found.round(6)), np.unique(expected.round(6)), rtol=1e-9)
-
-
-def test_critical_speeds_need_a_largest_speed():
-    with pytest.raises(ValueError, match="max_speed: a system that varies with the speed"):
-        critical_speeds(point_mass(), stiffening="full")
-
-
-def test_file_holds_it(tmp_path):
-    rotor = point_mass()
-    rotor.save(tmp_path / "rotor.npz")
-    loaded = ReducedRotor.load(tmp_path / "rotor.npz").invariants.K4
-    assert np.array_equal(loaded, rotor.invariants.K4)
-    np.testing.assert_allclose(loaded, FOURTH * np.eye(3), rtol=1e-12, atol=1e-20)
 
 
 def test_a_rotor_that_tilts_takes_its_static_state_along():

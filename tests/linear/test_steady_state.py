@@ -1,7 +1,5 @@
 """The steady motion of a scene: closed forms, runs that start from it, and static solutions."""
 
-from types import SimpleNamespace
-
 import exudyn as exu
 import numpy as np
 import pytest
@@ -11,7 +9,6 @@ from scipy.optimize import brentq
 
 from exudyn_rotor import (
     SqueezeFilmDamper,
-    StartState,
     Support,
     add_rotor,
     add_supports,
@@ -21,7 +18,6 @@ from exudyn_rotor import (
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene import steady_motion as search
 from exudyn_rotor.linear.model.scene.probe import linearised
-from exudyn_rotor.linear.model.scene.scene_checks import check_period
 
 RADIUS, LENGTH, MASS, ADDED = 0.1, 0.2, 8.0, 0.01
 TOTAL = MASS + 2 * ADDED  # kg
@@ -134,92 +130,6 @@ def test_run_from_the_steady_state_stays_on_it(reduced, translation):
     assert fine == pytest.approx(coarse / 4.0, rel=0.2)
 
 
-@pytest.mark.parametrize("direction", [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])
-@pytest.mark.parametrize("spin", [50.0, -50.0, "free"])
-@pytest.mark.parametrize("turned", ["x", "y"])
-def test_revolution_from_the_steady_state_ends_where_it_began(direction, spin, turned):
-    """Any axis in mesh and space, either sense.
-
-    The step errs by (Ωh)²/12 of a phase of 2π, which the resonance 1/(1 − (Ω/ω)²) = 2 enlarges,
-    at the end and at the start.
-    """
-    rotor = ring_rotor(RADIUS, LENGTH, MASS, direction).add_point_mass([RADIUS, 0, LENGTH], ADDED)
-    for name, z in ENDS.items():
-        rotor = rotor.with_interface(name, np.flatnonzero(np.isclose(rotor.nodes[:, 2], z)))
-    turn = {"x": [[0, 0, 1], [1, 0, 0], [0, 1, 0]], "y": [[1, 0, 0], [0, 0, 1], [0, -1, 0]]}
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(
-        mbs,
-        rotor.reduce(2),
-        spin=spin,
-        initial_speed=50.0 if spin == "free" else None,
-        rotation=turn[turned],
-        markers="position",
-        gravity=[3.0, -6.0, 2.0],
-    )
-    for name, z in ENDS.items():
-        mbs.CreateCartesianSpringDamper(
-            itemNumbers=[mbs.CreateGround(), body.marker(name)],
-            localPosition0=np.array(turn[turned]) @ [0.0, 0.0, z],
-            stiffness=[STIFFNESS] * 3,
-            damping=[DAMPING] * 3,
-        )
-    mbs.Assemble()
-    body.start_from(steady_state(body).state())
-
-    def motion():
-        return np.array([mbs.GetMarkerOutput(body.marker(name), DISPLACEMENT) for name in ENDS])
-
-    start, steps = motion(), 100
-    simulated(mbs, np.pi / 50.0, np.pi / 50.0 / (steps / 2))
-    half = motion()
-    mbs.Assemble()
-    simulated(mbs, 2 * np.pi / 50.0, 2 * np.pi / 50.0 / steps)
-    whirl = np.abs(half - start).max()
-    assert whirl > 1e-5
-    assert np.abs(motion() - start).max() < 4.0 * (2 * np.pi / steps) ** 2 / 12 * 2 * np.pi * whirl
-
-
-def test_long_damped_run_ends_in_the_steady_state(reduced):
-    """Transients decay by exp(−ct/m) with c/m = 10 1/s: to 1e-6 in 1.4 s."""
-    speed = 1.2 * CRITICAL
-    mbs, body = build(reduced, speed, gravity=[0.0, -GRAVITY, 0.0])
-    mbs.Assemble()
-    steady = steady_state(body)
-    simulated(mbs, 1.4, 5e-4)
-    found = mbs.GetMarkerOutput(body.marker("left"), DISPLACEMENT)
-    expected = steady.interface_motion("left", 1.4 * speed)[:3]
-    # the step errs by (Ωh)²/6 of the inertia, which is 3.3 times what is left of the stiffness
-    assert found == pytest.approx(expected, abs=0.55 * (5e-4 * speed) ** 2 * abs(expected[1]))
-
-
-def test_other_bodies_start_from_the_steady_state_too(reduced):
-    """A foundation of 20 kg on springs carries the bearings."""
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(
-        mbs, reduced, spin=40.0, translation="none", markers="position", gravity=[0, -GRAVITY, 0]
-    )
-    base = mbs.CreateMassPoint(mass=20.0, gravity=[0.0, -GRAVITY, 0.0])
-    mbs.CreateCartesianSpringDamper(
-        itemNumbers=[mbs.CreateGround(), base], stiffness=[1e6] * 3, damping=[100.0] * 3
-    )
-    for name, z in ENDS.items():
-        mbs.CreateCartesianSpringDamper(
-            itemNumbers=[base, body.marker(name)],
-            offset=[0.0, 0.0, z],
-            stiffness=[STIFFNESS] * 3,
-            damping=[DAMPING] * 3,
-        )
-    mbs.Assemble()
-    body.start_from(steady_state(body).state())
-    node = mbs.GetObject(base)["nodeNumber"]
-    start = mbs.GetNodeOutput(node, DISPLACEMENT)
-    # k/(k − 20 Ω²) bounds how much its own whirl may differ from a rigid base: below 4 % of 25 µm
-    assert start[1] == pytest.approx(-(TOTAL + 20.0) * GRAVITY / 1e6, abs=1e-5)
-    simulated(mbs, 2 * np.pi / 40.0, 2 * np.pi / 40.0 / 400)
-    assert mbs.GetNodeOutput(node, DISPLACEMENT) == pytest.approx(start, abs=1e-3 * abs(start[1]))
-
-
 # ------------------------------------------------------------------ refusals
 
 
@@ -236,19 +146,6 @@ def test_load_that_varies_by_itself_is_refused(reduced):
         steady_state(body)
 
 
-def test_rounding_beside_the_wall_of_a_bearing_is_no_load_that_varies():
-    """A force that is nearly zero where its slope by the angle is 1e14 N/rad."""
-    angles = np.array([0.5, 2.5, 4.5])
-    probe = SimpleNamespace(
-        speed=1.0,
-        force=lambda theta, x, v: np.array([1e14 * np.prod(np.sin(theta - angles))]),
-        rotor_terms=lambda theta: (None, None, None, np.array([1.0])),
-    )
-    whole_turn = probe.force(angles[1] + 2.0 * np.pi, None, None)
-    assert np.abs(whole_turn).max() > 1e-3  # N, by rounding of the angle
-    check_period(SimpleNamespace(free=np.zeros(1), mass=1.0), probe)
-
-
 @pytest.mark.parametrize("held", [[], ["left"]])
 def test_load_that_nothing_holds_is_refused(reduced, held, monkeypatch):
     """Without smaller and smaller shares of it: at 12 angles, three times, and at 48, twice."""
@@ -261,22 +158,6 @@ def test_load_that_nothing_holds_is_refused(reduced, held, monkeypatch):
     with pytest.raises(UnconvergedError, match="nothing holds"):
         steady_state(body)
     assert len(angles) <= 3 * 12 + 2 * 48
-
-
-def test_states_that_do_not_belong_are_refused(reduced):
-    mbs, body = build(reduced, 40.0)
-    mbs.Assemble()
-    steady = steady_state(body)
-    with pytest.raises(ValueError, match="spin starts at 0 rad and 40 rad/s"):
-        body.start_from(steady.state(0.3))
-    with pytest.raises(ValueError, match="spin starts at 0 rad and 40 rad/s"):
-        body.start_from(steady_state(body, 41.0).state())
-    with pytest.raises(ValueError, match="has 2 coordinates"):
-        body.start_from(StartState([0.0, 0.0], [0.0, 0.0], 0.0, 40.0))
-    with pytest.raises(TypeError, match="state: needs"):
-        body.start_from(steady)
-    with pytest.raises(ValueError, match="one velocity for each"):
-        StartState([0.0, 0.0], [0.0], 0.0, 40.0)
 
 
 # ------------------------------------------------------------------ static solutions
@@ -297,33 +178,6 @@ def test_static_solution_under_gravity_across_the_axis_is_refused(reduced, trans
     with pytest.raises(ValueError, match=r"steady_state\(body\) finds the motion"):
         static(mbs)
     assert np.array_equal(mbs.systemData.GetODE2Coordinates(), before)
-
-
-def test_static_solution_on_supports_that_differ_is_refused(reduced):
-    mbs, _ = build(reduced, 40.0, "none", (STIFFNESS, 2 * STIFFNESS, STIFFNESS))
-    mbs.Assemble()
-    with pytest.raises(ValueError, match="loads on it change with its angle"):
-        static(mbs)
-
-
-def test_static_solution_that_holds_at_every_angle_stays(reduced):
-    """Gravity along the axis: m g/k there, and the whirl of a Jeffcott rotor across it."""
-    mbs, body = build(reduced, 40.0, gravity=[0.0, 0.0, -GRAVITY])
-    mbs.Assemble()
-    assert static(mbs)
-    whirl = UNBALANCE * 40.0**2 / (2 * STIFFNESS - TOTAL * 40.0**2 + 80.0j * DAMPING)
-    # the weight of the masses at the rim tilts the rotor: their mean is the middle
-    found = np.mean([mbs.GetMarkerOutput(body.marker(name), DISPLACEMENT) for name in ENDS], axis=0)
-    assert np.hypot(*found[:2]) == pytest.approx(abs(whirl), rel=1e-3)
-    assert found[2] == pytest.approx(-TOTAL * GRAVITY / (2 * STIFFNESS), rel=1e-3)
-
-
-def test_static_solution_at_rest_is_that_of_gravity(reduced):
-    mbs, body = build(reduced, 0.0, gravity=[0.0, -GRAVITY, 0.0])
-    mbs.Assemble()
-    assert static(mbs)
-    found = mbs.GetMarkerOutput(body.marker("left"), DISPLACEMENT)
-    assert found[1] == pytest.approx(-TOTAL * GRAVITY / (2 * STIFFNESS), rel=1e-3)
 
 
 # -------------------------------------------------- the own spin of a rotor with an elastic drive
@@ -357,19 +211,6 @@ def test_own_spin_on_a_torsional_spring_twists_by_the_torque_over_its_stiffness(
     found = steady_state(with_own_spin(0.0, torsion, torque)).interface_motion("left")[5]
     free = steady_state(with_own_spin(0.0, torsion)).interface_motion("left")[5]
     assert found - free == pytest.approx(torque / torsion, rel=1e-5)
-
-
-@pytest.mark.parametrize("heavy", [1e-8, 1e-4])
-def test_own_spin_that_nothing_holds_does_not_twist_in_bearings_off_the_axis(heavy):
-    """Damping with the friction of a whirl, cΩe², acts on their stiffness mΩ²e² alone."""
-    state = steady_state(with_own_spin(heavy, damping=DAMPING))
-    assert abs(state.interface_motion("left")[5]) < 1e-6
-
-
-@pytest.mark.parametrize("heavy", [0.0, 1e-4])
-def test_own_spin_that_nothing_holds_against_a_torque_is_refused(heavy):
-    with pytest.raises(UnconvergedError, match="nothing holds"):
-        steady_state(with_own_spin(heavy, torque=10.0))
 
 
 # ------------------------------------------------------------------ where the search begins
@@ -411,18 +252,6 @@ def test_a_second_branch_is_found_from_a_motion_on_it():
     for start, expected in ((None, small), (near, large), (near.state(), large)):
         motion = steady_state(body, start=start).interface_motion("left", 0.0)
         assert np.hypot(*motion[:2]) / c == pytest.approx(expected, rel=1e-3)
-
-
-def test_a_start_of_another_scene_is_refused(reduced):
-    mbs, body = build(reduced, 50.0)
-    mbs.Assemble()
-    other, another = build(reduced, 50.0, "free")
-    other.Assemble()
-    start = steady_state(another)
-    with pytest.raises(ValueError, match=r"start: has .* it is of another scene"):
-        steady_state(body, start=start)
-    with pytest.raises(TypeError, match="start: needs"):
-        steady_state(body, start=1.0)
 
 
 def test_a_frozen_spin_has_the_steady_motion_of_a_free_one(reduced):

@@ -7,27 +7,20 @@ import ngsolve as ngs
 import numpy as np
 import pytest
 from models import ALUMINIUM, STEEL, two_material_cylinder
-from point_rotors import random_rotor, ring_rotor
 
 from exudyn_rotor import (
     HarmonicForce,
-    ReducedRotor,
     SolidRotor,
     Support,
-    Unbalance,
     add_rotor,
     campbell,
     critical_speeds,
     harmonic_response,
-    keep_modes,
     linear_model,
-    select_modes,
     stability,
     stability_threshold,
-    unbalance_response,
     unstable_ranges,
 )
-from exudyn_rotor.theory.formulation import Formulation
 
 MASS, K, ETA = 3.0, 1.2e5, 0.04  # critical speed √(K/MASS) = 200 rad/s
 OMEGA = np.sqrt(K / MASS)
@@ -81,61 +74,6 @@ def test_whirl_of_a_turning_rotor(kind, speed):
         assert close(whirl, 1.0 / (stiffness - MASS * omega**2))
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_synchronous_whirl_is_not_damped_on_isotropic_supports(kind):
-    """The rotor frame sees a constant bend: ``U Ω²/(k + k_s − mΩ² + icΩ)`` without η."""
-    speeds, supports = np.array([50.0, 150.0, 400.0]), (Support("disc", 1e4, 40.0),)
-    response = unbalance_response(
-        model_of(kind, supports, loss=ETA), speeds, Unbalance("disc", 1e-4)
-    )
-    expected = 1e-4 * speeds**2 / (K + 1e4 - MASS * speeds**2 + 40.0j * speeds)
-    assert close(response.phasor(), expected)
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_unbalance_on_anisotropic_supports(kind):
-    """Forward p and backward q, which the rotor sees with ν = −2Ω, and their energy.
-
-    ``(k + k_m − mΩ²) p + k_d q̄ = U Ω²`` and ``(k (1 − iη) + k_m − mΩ²) q + k_d p̄ = 0`` with the
-    mean k_m and half the difference k_d of the supports' stiffnesses: Newton's law in the inertial
-    frame. The power −U Ω³ Im p of the unbalance is what the shaft takes in, Ω η k |q|².
-    """
-    speeds = np.array([50.0, 190.0, 210.0, 230.0, 400.0])
-    kx, ky = 1e4, 6e4
-    supports = (Support("disc", np.diag([kx, ky, 0.0])),)
-    response = unbalance_response(
-        model_of(kind, supports, loss=ETA), speeds, Unbalance("disc", 1e-4)
-    )
-    p, q = response.whirl()
-    mean, half, load = 0.5 * (kx + ky), 0.5 * (kx - ky), 1e-4 * speeds**2
-    direct = K + mean - MASS * speeds**2
-    damped = direct - 1j * ETA * K
-    expected = load / (direct - half**2 / damped.conj())
-    # the harmonics are given to 1e-9
-    assert close(p, expected, 1e-9)
-    assert close(q, -half * expected.conj() / damped, 1e-9)
-    power = -1e-4 * speeds**3 * p.imag
-    # beside the apparent power U Ω³ |p|, of which it is a share above 1e-5
-    assert np.all(
-        np.abs(power - speeds * ETA * K * np.abs(q) ** 2) <= 2e-9 * 1e-4 * speeds**3 * np.abs(p)
-    )
-    assert np.all(power > 1e-5 * 1e-4 * speeds**3 * np.abs(p))
-
-
-def test_viscous_damping_of_one_frequency_is_equal_there():
-    """``i ν (η/ν) K = i η K``, as the docstrings and the warning say."""
-    rotor = random_rotor(3).with_interface("a", [0, 1, 2, 3]).reduce(9)
-    supports = [Support("a", np.diag([2.0, 3.0, 4.0]), 0.1, np.diag([1.0, 2.0, 3.0]), 0.1)]
-    force = HarmonicForce("a", (1.0, 0.5j, 0.2), (0, 0, 0.3))
-    for nu in (0.3, 1.7):
-        found, viscous = (
-            harmonic_response(damped, [nu], force, supports=supports).motion
-            for damped in (rotor.with_damping(loss=0.1), rotor.with_damping(stiffness=0.1 / nu))
-        )
-        # 24 equations of order 1 to 10, damped by 0.1: 1e-15 · 24 · 100
-        assert np.abs(found - viscous).max() < 3e-12 * np.abs(viscous).max()
-
-
 # ------------------------------------------------------------------ materials
 
 
@@ -178,70 +116,7 @@ def test_materials_have_loss_factors_of_their_own(cylinder, damped):
 # ------------------------------------------------------------------ reduced rotors
 
 
-def test_the_order_of_damping_and_reduction_does_not_matter():
-    rotor = random_rotor(6)
-    first, last = rotor.with_damping(loss=0.1).reduce(4), rotor.reduce(4).with_damping(loss=0.1)
-    for one, other in ((first, last), (first.with_attachments, last.with_attachments)):
-        H = other.invariants.H
-        np.testing.assert_array_equal(H, 0.1 * other.invariants.K)
-        # sums of 18 products of order 1
-        np.testing.assert_allclose(one.invariants.H, H, rtol=0.0, atol=1e-13 * np.abs(H).max())
-    assert not np.any(first.invariants.H[:6])  # no rigid motion, not even by rounding
-    twice = last.with_damping(loss=0.2).invariants.H
-    np.testing.assert_array_equal(twice, 0.2 * last.invariants.K + last.invariants.H)
-
-
-def test_other_bases_and_files_keep_it(tmp_path):
-    rotor = random_rotor(6).with_damping(loss=0.1).reduce(4)
-    H = rotor.invariants.H
-    np.testing.assert_array_equal(
-        keep_modes(rotor, [1, 3]).invariants.H, H[np.ix_([*range(6), 7, 9], [*range(6), 7, 9])]
-    )
-    selection = select_modes(rotor, Formulation("free", 10.0))
-    T = selection.T
-    # sums of 12 products
-    np.testing.assert_allclose(selection.invariants.H, T.T @ H @ T, rtol=0.0, atol=1e-14)
-    rotor.save(tmp_path / "rotor.npz")
-    loaded = ReducedRotor.load(tmp_path / "rotor.npz")
-    np.testing.assert_array_equal(loaded.invariants.H, H)
-    np.testing.assert_array_equal(
-        loaded.with_attachments.invariants.H, rotor.with_attachments.invariants.H
-    )
-
-
 # ------------------------------------------------------------------ scenes and analyses in time
-
-
-@pytest.mark.filterwarnings("ignore:structural damping")
-@pytest.mark.parametrize("translation", ["none", "free"])
-def test_a_scene_has_it_in_the_frequency_domain(translation):
-    """Springs between the ground and markers of a scene are the supports of a linear rotor."""
-    rotor, spring = ring_rotor(0.1, 0.15, 5.0), (2e7, 1.2e7, 3e7)
-    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(9)
-    answers = []
-    for made in (rotor.with_damping(loss=0.2), rotor):
-        mbs = exudyn.SystemContainer().AddSystem()
-        kinds = {"left": "position", "right": "position"}
-        body = add_rotor(mbs, made, spin=200.0, translation=translation, markers=kinds)
-        ground = mbs.CreateGround()
-        for name in kinds:
-            mbs.CreateCartesianSpringDamper(
-                itemNumbers=[ground, body.marker(name)],
-                localPosition0=list(made.interfaces[name].reference),
-                stiffness=list(spring),
-                damping=[300.0] * 3,
-            )
-        mbs.Assemble()
-        supports = [Support(name, np.diag(spring), 300.0) for name in kinds]
-        force = HarmonicForce("right", (1.0, 0.3j))
-        for target, more in ((mbs, {"body": body}), (made, {"supports": supports})):
-            response = harmonic_response(target, [900.0, 3000.0], force, speed=200.0, **more)
-            answers.append(response.phasor("right", "n1", 0))
-    in_scene, on_supports, in_scene_without, on_supports_without = answers
-    # what a scene's locks and differences of forces make differ is there without the damping, too
-    error = np.abs(in_scene_without - on_supports_without)
-    assert np.all(np.abs(in_scene - on_supports) <= 2.0 * error)
-    assert np.all(np.abs(on_supports - on_supports_without) > 100.0 * error)
 
 
 def test_analyses_in_time_say_that_they_leave_it_out():

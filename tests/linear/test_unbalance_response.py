@@ -21,7 +21,14 @@ from forced_models import (
 from point_rotors import random_rotor, ring_rotor
 from train_models import two_discs
 
-from exudyn_rotor import Support, Unbalance, add_rotor, permissible_unbalance, unbalance_response
+from exudyn_rotor import (
+    SpinAxis,
+    Support,
+    Unbalance,
+    add_rotor,
+    permissible_unbalance,
+    unbalance_response,
+)
 
 
 def test_own_unbalance_is_the_jeffcott_rotor():
@@ -222,6 +229,16 @@ def test_nothing_of_an_uneven_rotor_is_averaged(supports):
         off = inner - force - speed**2 * inv.h
         lateral = [i for i, kind in enumerate(rotor.kinds) if kind.value != "spin"]
         assert np.abs(off[lateral]).max() < 1e-6 * speed**2 * np.abs(inv.h).max()
+
+
+@pytest.mark.parametrize("arm", [3e-6, 1e-4])
+def test_bearings_micrometres_off_the_axis_do_not_hold_the_spin(arm):
+    """By that arm, as a mesh has it, they hold it next to nothing: the rotor would turn far."""
+    rotor = ring_rotor(RADIUS, LENGTH, MASS, SpinAxis([0, 0, 1], [arm, 0, 0]))
+    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10))
+    supports = [Support(name, np.diag([1e4, 1.5e4]), 100.0) for name in ("left", "right")]
+    found = unbalance_response(rotor, [150.0], Unbalance("left", 1e-4), supports=supports)
+    assert np.abs(found.motion[..., 5]).max() < 1e-6
 
 
 def test_tables_that_end_early_give_what_they_cover():

@@ -28,11 +28,6 @@ def worst(row):
     return max(row[name] for name in ("lateral", "axial", "rim"))
 
 
-def test_rotor_tilts_as_far_as_asked(rows):
-    for (_, tilt), row in rows.items():
-        assert 0.6 * tilt < row["tilt"] < 1.1 * tilt
-
-
 def test_relative_deviation_falls_with_the_tilt(rows):
     """First-order agreement: a tenth of the tilt, a tenth of the relative deviation."""
     found = [worst(rows["tilt", tilt]) for tilt in (1e-2, 1e-3, 1e-4)]
@@ -46,14 +41,6 @@ def test_bodies_agree_at_small_tilts(rows):
     assert row["lateral"] < 1e-4
     assert row["rim"] < 1e-4
     assert row["step error"] < 2e-4
-
-
-def test_papers_terms_deviate_at_every_tilt(rows):
-    for tilt in (1e-2, 1e-3, 1e-4):
-        row = rows["none", tilt]
-        assert row["lateral"] > 0.1
-        assert row["rim"] > 0.05
-        assert row["lateral"] > 1e3 * rows["tilt", tilt]["lateral"]
 
 
 @pytest.fixture(
@@ -70,23 +57,8 @@ def test_papers_terms_grow_at_the_predicted_rate(unstable):
     np.testing.assert_allclose(unstable["growth"], unstable["expected growth"], rtol=5e-3)
 
 
-@pytest.mark.parametrize("body", ["3D", "tilt", "tilt, free spin"])
-def test_real_rotor_stays_bounded_there(unstable, body):
-    assert unstable[f"peak {body}"] < 2e-4
-
-
 def test_stiffened_body_swings_as_far_as_the_3d_body(unstable):
     np.testing.assert_allclose(unstable["peak tilt, free spin"], unstable["peak 3D"], rtol=1e-3)
-
-
-def test_3d_body_depends_on_the_frame_of_its_basis_and_ours_does_not():
-    """Craig–Bampton modes fix the 3D body's frame to the first end; its orbit shifts with that."""
-    at_rest, spinning = against_3d.basis_effect(
-        [(0.0, 1e-3), (against_3d.SPEED, 1e-3)], DURATION / 2, 2 * STEP
-    )
-    assert at_rest["3D first end, lateral"] < 1e-4
-    assert spinning["3D first end, lateral"] > 1e-3
-    assert spinning["fixed axis, lateral"] < 1e-4
 
 
 def test_family_is_one_motion_up_to_the_step(model):

@@ -7,21 +7,13 @@ import scipy.sparse as sp
 from exudyn.itemInterface import SensorMarker
 from exudyn.utilities import InertiaSphere
 from models import centered_disc
-from point_rotors import ring_rotor
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
-    ConstantSpeed,
-    Formulation,
     PrescribedMotion,
     SolidRotor,
-    Support,
     add_rotor,
-    add_supports,
-    recommended_settings,
-    select_modes,
 )
-from exudyn_rotor.theory.kernel import Kernel
 
 TO_X = Rotation.from_euler("y", np.pi / 2).as_matrix()
 TO_Y = Rotation.from_euler("x", -np.pi / 2).as_matrix()
@@ -182,48 +174,6 @@ def test_directions_of_mesh_and_scene_change_nothing_else(
 
 # ------------------------------------------------------------------ without the marker body
 
-BARE = {
-    "free": ({"initial_speed": 300.0, "initial_angle": 0.3}, UNIT),
-    "free, moving": ({"initial_speed": 300.0, "initial_velocity": [0.1, 0.2, -0.1]}, SKEW),
-    "in-plane": (
-        {"translation": "in-plane", "initial_speed": 300.0, "initial_velocity": [0.1, 0.2, 0.0]},
-        UNIT,
-    ),
-    "in-plane, skew": ({"translation": "in-plane", "initial_speed": 300.0}, SKEW),
-    "none": ({"translation": "none", "initial_speed": 300.0}, UNIT),
-    "none, skew": ({"translation": "none", "initial_speed": 300.0}, SKEW),
-    "none, constant": ({"translation": "none", "spin": 300.0}, SKEW),
-}
-
-
-@pytest.mark.parametrize("case", BARE)
-def test_without_the_marker_body_the_motion_is_the_same(reduced, case):
-    options, rotation = BARE[case]
-    results = []
-    for marker_body in (True, False):
-        mbs = exu.SystemContainer().AddSystem()
-        form = Formulation(options.get("translation", "free"), options.get("spin", "free"))
-        count = len(select_modes(reduced, form).labels)
-        body = add_rotor(
-            mbs,
-            reduced,
-            rotation=rotation,
-            gravity=[1.0, -9.81, 2.0],
-            marker_body=marker_body,
-            modal_coordinates=1e-4 * np.arange(1, count + 1),
-            modal_velocities=1e-2 * np.arange(count, 0, -1),
-            **options,
-        )
-        mbs.Assemble()
-        mbs.SolveDynamic(settings(60, 3e-3))
-        q, q_t, _ = body.coordinates()
-        directions = body.motion.free_directions
-        split = directions.shape[1]
-        results.append([directions @ q[:split], q[split:], directions @ q_t[:split], q_t[split:]])
-    for expected, actual in zip(*results, strict=True):
-        scale = max(abs(expected).max(), 1e-12)
-        assert abs(actual - expected).max() < 1e-8 * scale
-
 
 # ------------------------------------------------------------------ several bodies
 
@@ -252,83 +202,3 @@ def test_several_rotors_do_not_know_each_other(reduced):
 
 
 # ------------------------------------------------------------------ reports
-
-
-def test_report_says_what_was_added(reduced):
-    mbs = exu.SystemContainer().AddSystem()
-    report = add_rotor(
-        mbs, reduced, name="fan", translation="in-plane", initial_speed=1.0, rotation=SKEW
-    ).report()
-    assert "rotor 'fan': Sect. 2.3, stiffening 'tilt'" in report
-    assert "two in the plane of rotation" in report
-    assert "7: translation along axis, tilt 1, tilt 2, mode 1" in report
-    assert "locked         tilt a, tilt b" in report
-    assert "Python user functions" in report
-    bare = add_rotor(mbs, reduced, name="bare", spin=3.0, marker_body=False)
-    assert bare.locked == ()
-    assert "no Python call" in bare.report()
-
-
-@pytest.mark.parametrize(
-    ("options", "python", "locked"),
-    [
-        ({"spin": 300.0}, False, {"tilt a", "tilt b", "spin"}),
-        ({"spin": 300.0, "locking": "constraints"}, False, {"tilt a", "tilt b", "spin"}),
-        (
-            {"spin": 300.0, "translation": "none"},
-            False,
-            {"x", "y", "z", "tilt a", "tilt b", "spin"},
-        ),
-        ({"initial_speed": 300.0}, True, {"tilt a", "tilt b"}),
-        (
-            {"translation": "in-plane", "initial_speed": 1.0},
-            True,
-            {"z", "tilt a", "tilt b"},
-        ),
-    ],
-)
-def test_python_is_called_only_where_the_report_says_so(
-    reduced, monkeypatch, options, python, locked
-):
-    calls = []
-    forces = Kernel.forces
-
-    def counted(self, *arguments):
-        calls.append(arguments)
-        return forces(self, *arguments)
-
-    monkeypatch.setattr(Kernel, "forces", counted)
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, reduced, gravity=[0.0, -9.81, 0.0], **options)
-    assert body.uses_python == python
-    assert set(body.locked) == locked
-    mbs.Assemble()
-    mbs.SolveDynamic(settings(5, 1e-4))
-    assert bool(calls) == python
-    physics = mbs.GetObject(body.objects["physics"])
-    assert all(bool(physics[f"{kind}UserFunction"]) == python for kind in ("force", "massMatrix"))
-
-
-@pytest.mark.parametrize("angle", [0.0, 2.0])
-def test_an_eccentric_rotor_starts_alike_with_and_without_translation(angle):
-    """With the velocity Ω e × d of the centre of mass at d from the axis, to the order h²."""
-    speed, spread = 100.0, []
-    rotor = ring_rotor(0.1, 0.1, 2.0).add_point_mass([0.1, 0.0, 0.0], 0.1)
-    reduced = rotor.with_interface("all", range(10)).reduce(0)
-    turned = np.cross([0.0, 0.0, speed], rotor.axis.rotation(angle) @ rotor.center_of_mass)
-    for step in (2e-4, 1e-4):
-        found = []
-        for given in ({"initial_velocity": turned}, {"translation": "none"}):
-            mbs = exu.SystemContainer().AddSystem()
-            body = add_rotor(mbs, reduced, spin=ConstantSpeed(speed, angle), **given)
-            add_supports(body, Support("all", 1e5, 20.0, tilt_stiffness=1e3))
-            sensor = body.add_interface_sensor("all", exu.OutputVariableType.Displacement)
-            mbs.Assemble()
-            settings = recommended_settings(end_time=0.02, step=step)
-            settings.timeIntegration.verboseMode, settings.solution.file.write = 0, False
-            settings.solution.sensors.writePeriod = 2e-4
-            mbs.SolveDynamic(settings)
-            found.append(mbs.GetSensorStoredData(sensor)[:, 1:])
-        spread.append(np.abs(found[0] - found[1]).max() / np.abs(found[1]).max())
-    assert spread[0] < 0.02
-    assert spread[1] < 0.3 * spread[0]

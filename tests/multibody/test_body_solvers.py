@@ -6,14 +6,13 @@ import exudyn as exu
 import numpy as np
 import pytest
 from exudyn.itemInterface import SensorUserFunction
-from models import centered_disc, two_masses
+from models import centered_disc
 from scipy.integrate import simpson
 
 from exudyn_rotor import (
     ConstantSpeed,
     Motion,
     PrescribedMotion,
-    SolidRotor,
     SpinAxis,
     add_rotor,
 )
@@ -21,7 +20,6 @@ from exudyn_rotor.theory.stiffening import stiffening
 
 SOLVERS = exu.DynamicSolverType
 IMPLICIT = (SOLVERS.GeneralizedAlpha, SOLVERS.TrapezoidalIndex2)
-EXPLICIT = (SOLVERS.RK44, SOLVERS.DOPRI5)
 RUN_UP = PrescribedMotion.run_up(100.0, 400.0, 8e-3)
 SHAKE = PrescribedMotion(
     lambda t: np.array([1e-5 * (1 - np.cos(600.0 * t)), 0.0, 2e-5 * np.sin(300.0 * t)]),
@@ -69,7 +67,7 @@ def scene(reduced, **options):
 
 def final_state(reduced, solver, options, steps=400, end_time=4e-3):
     """Return unknowns, the right end's place and the disc's angle at the end of a short run."""
-    by_mass = {"locking": "mass"} if solver in EXPLICIT else {}
+    by_mass = {} if solver in IMPLICIT else {"locking": "mass"}
     mbs, body = scene(reduced, **by_mass | options)
     mbs.Assemble()
     run = settings(steps, end_time)
@@ -101,41 +99,12 @@ def test_solvers_agree(reduced, case):
         assert abs(place - reference[1]).max() < limit
 
 
-@pytest.mark.parametrize(
-    "motion", [{"spin": RUN_UP}, {"spin": 300.0, "translation": SHAKE}, {"spin": 300.0}]
-)
-@pytest.mark.parametrize("solver", IMPLICIT)
-def test_constraints_and_servo_give_the_same_prescribed_motion(reduced, motion, solver):
-    held, driven = (
-        final_state(reduced, solver, motion | {"locking": locking})
-        for locking in ("constraints", "mass")
-    )
-    assert abs(held[1] - driven[1]).max() < 2e-5
-    assert abs(held[0] - driven[0]).max() < 1e-3 * abs(held[0]).max()
-
-
-@pytest.mark.parametrize("motion", [{}, {"spin": 300.0}, {"spin": RUN_UP}])
-@pytest.mark.parametrize("solver", EXPLICIT)
-def test_explicit_solvers_ask_for_locking_by_mass(reduced, motion, solver):
-    """They would leave the marker body at rest without a word; an implicit solver may follow."""
-    mbs, body = scene(reduced, **motion)
+@pytest.mark.parametrize("motion", [{}, {"spin": 300.0}])
+def test_explicit_solvers_ask_for_locking_by_mass(reduced, motion):
+    mbs, _ = scene(reduced, **motion)
     mbs.Assemble()
     with pytest.raises(Exception, match="constraints that cannot be solved"):
-        mbs.SolveDynamic(settings(20, 1e-3), solverType=solver)
-    mbs.SolveDynamic(settings(20, 1e-3), solverType=SOLVERS.GeneralizedAlpha)
-    if motion:
-        angle = mbs.GetNodeOutput(body.nodes["rigid"], exu.OutputVariableType.Coordinates)[5]
-        assert angle == pytest.approx(body.formulation.spin.value(1e-3), rel=1e-9)
-
-
-@pytest.mark.parametrize("locking", ["mass", "constraints"])
-def test_constant_speed_is_exact_over_many_turns(reduced, locking):
-    mbs, body = scene(reduced, spin=300.0, locking=locking)
-    mbs.Assemble()
-    mbs.SolveDynamic(settings(300, 1.0))
-    coordinates = mbs.GetNodeOutput(body.nodes["rigid"], exu.OutputVariableType.Coordinates)
-    assert coordinates[5] == pytest.approx(300.0, abs=1e-9)
-    assert abs(coordinates[3:5]).max() < 1e-12
+        mbs.SolveDynamic(settings(20, 1e-3), solverType=SOLVERS.RK44)
 
 
 # ------------------------------------------------------------------ static solutions
@@ -253,20 +222,3 @@ def test_work_of_the_drive_is_change_of_energy_plus_losses(reduced, case):
     work = simpson(torque * speed, x=t)
     scale = simpson(abs(torque * speed), x=t)
     assert abs(work - simpson(lost, x=t) - (energy[-1] - energy[0])) < limit * scale
-
-
-def test_rotor_without_polar_inertia_spins_at_constant_speed():
-    """Two masses on the axis: nothing resists the spin, and its locked coordinate still follows."""
-    rotor = SolidRotor.from_matrices(**two_masses(), axis="x")
-    SC = exu.SystemContainer()
-    mbs = SC.AddSystem()
-    body = add_rotor(mbs, rotor.reduce(6), translation="none", spin=300.0)
-    mbs.Assemble()
-    settings = exu.SimulationSettings()
-    settings.timeIntegration.numberOfSteps = 100
-    settings.timeIntegration.endTime = 0.01
-    settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write = False
-    mbs.SolveDynamic(settings)
-    angle = mbs.GetNodeOutput(body.nodes["rigid"], exu.OutputVariableType.Coordinates)[3]  # about x
-    assert angle == pytest.approx(3.0, rel=1e-12)

@@ -1,7 +1,5 @@
 """Runs end where a journal leaves its clearance in an accepted step, not in a trial."""
 
-import re
-
 import exudyn as exu
 import numpy as np
 import pytest
@@ -11,9 +9,7 @@ from point_rotors import ring_rotor
 
 from exudyn_rotor import (
     AnnularSeal,
-    ClearanceStop,
     JournalBearing,
-    LinearActuator,
     MagneticBearing,
     OilFilm,
     PIDController,
@@ -105,28 +101,6 @@ def run(mbs, end_time=4e-3, step=1e-4, change=None, **how):
     return mbs.SolveDynamic(settings, **how)
 
 
-@pytest.mark.parametrize(
-    ("kind", "options"),
-    [
-        ("short journal", {"spin": SPEED}),
-        ("film", {"initial_speed": SPEED}),
-        ("lemon bore", {"spin": -SPEED, "translation": "none"}),
-        ("squeeze film", {"spin": SPEED, "rotation": TO_X}),
-        ("seal", {"spin": SPEED}),
-        ("tilting pads", {"initial_speed": SPEED, "rotation": TO_X}),
-        ("magnets", {"spin": SPEED}),
-        ("magnets", {"initial_speed": -SPEED, "rotation": TO_X}),
-    ],
-)
-def test_a_run_ends_where_a_journal_leaves(kind, options):
-    mbs, _, _ = scene([KINDS[kind]], -3e6, **options)
-    with pytest.raises(ValueError, match="left its bearing at 'left' at t = ") as error:
-        run(mbs)
-    beyond = float(re.search(r"centre, (\S+) m beyond the clearance", str(error.value))[1])
-    assert beyond > 0.0
-    assert 0.0 < mbs.systemData.GetTime() < 4e-3
-
-
 def adaptive_steps(integration):
     integration.adaptiveStep, integration.numberOfSteps = True, 4
     integration.newton.maxIterations = 5  # takes a sixteenth of the first step
@@ -138,7 +112,10 @@ CASES = {  # kind, options of the scene, start, and of the run
     "braked": ("film", {"load": -3e5, "initial_speed": 1.0}, {"place": -0.98 * CLEARANCE}, {}),
     "another axis": ("seal", {"load": -3e4, "spin": SPEED, "rotation": TO_X}, {}, {}),
     "explicit steps": (
-        "seal", {"load": -3e4, "spin": SPEED, "locking": "mass"}, {}, {"solverType": exu.DynamicSolverType.DOPRI5}
+        "seal",
+        {"load": -3e4, "spin": SPEED, "locking": "mass"},
+        {},
+        {"solverType": exu.DynamicSolverType.DOPRI5},
     ),
     "adaptive steps": ("short journal", {"load": -3e5}, {}, {"change": adaptive_steps}),
     "a base that leaves": ("seal", {"base": sled}, {}, {}),
@@ -153,14 +130,10 @@ def test_a_run_ends_at_the_first_step_outside(case, monkeypatch):
     kind, options, beginning, how = CASES[case]
     mbs, body, added = scene([KINDS[kind]], **options)
     start(mbs, body, **beginning)
-    markers = mbs.GetObject(added[0].objects[0])["markerNumbers"]
     distances = {}
 
     def own(mbs, t):
-        seat, journal = (
-            mbs.GetMarkerOutput(each, exu.OutputVariableType.Position) for each in markers
-        )
-        distances[t] = np.linalg.norm((journal - seat) @ body.standing_axes[:, :2])
+        distances[t] = np.hypot(*added[0].values()[0][:2])
         return distances[t] < CLEARANCE
 
     with monkeypatch.context() as patch:
@@ -175,49 +148,3 @@ def test_a_run_ends_at_the_first_step_outside(case, monkeypatch):
         with pytest.raises(ValueError, match="left its bearing") as error:
             run(mbs, **how)
         assert f" at t = {time:g} s: its journal is {distance:.3g} m from" in str(error.value)
-
-
-def test_trial_states_outside_do_not_end_a_run(monkeypatch):
-    """The first trial of a step takes the velocity of its beginning, 1.5 clearances a step."""
-    law, tried = SqueezeFilmDamper._law, []
-
-    def noted(self, x, y, *motion):
-        tried.append(np.hypot(x, y))
-        return law(self, x, y, *motion)
-
-    monkeypatch.setattr(SqueezeFilmDamper, "_law", noted)
-    mbs, body, _ = scene([KINDS["squeeze film"]])
-    start(mbs, body, 1.5)
-    assert run(mbs, 5e-4)
-    assert max(tried) > 1.2 * CLEARANCE
-
-
-def test_a_rub_is_meant_where_there_is_a_stop():
-    stop = ClearanceStop(interface="left", radius=0.1, clearance=CLEARANCE, stiffness=1e8)
-    mbs, _, added = scene([KINDS["seal"], stop], -3e4)
-    assert run(mbs)
-    place = mbs.GetObjectOutput(added[0].objects[0], exu.OutputVariableType.Displacement)
-    assert np.hypot(*place[:2]) > CLEARANCE
-
-
-def test_linear_magnets_have_no_gap():
-    """What they do is the same everywhere, so that a run that leaves them goes on."""
-    actuator = LinearActuator(force_current=500.0, negative_stiffness=2.5e6)
-    far = MagneticBearing(
-        interface="left", actuator=actuator, controller=KINDS["magnets"].controller
-    )
-    mbs, _, added = scene([far], -3e7)
-    assert run(mbs)
-    place = mbs.GetObjectOutput(added[0].objects[0], exu.OutputVariableType.Displacement)
-    assert np.hypot(*place[:2]) > CLEARANCE
-
-
-def test_items_of_a_scene_that_is_no_more_are_not_looked_at():
-    mbs, _, _ = scene([KINDS["short journal"]])
-    mbs.Reset()
-    ground = mbs.CreateGround()
-    point = mbs.CreateMassPoint(mass=1.0, initialVelocity=[1.0, 0.0, 0.0])
-    for _ in range(12):
-        mbs.CreateCartesianSpringDamper(itemNumbers=[ground, point], stiffness=[1.0] * 3)
-    mbs.Assemble()
-    assert run(mbs)

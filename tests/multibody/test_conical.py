@@ -30,16 +30,3 @@ def test_frequency_error_is_the_integrators(model):
         for step in (STEP, STEP / 2)
     ]
     np.testing.assert_allclose(errors[0] / errors[1], 4.0, rtol=0.02)
-
-
-def test_papers_terms_miss_the_conical_frequencies(model):
-    speed = 150.0
-    exact = conical.conical_frequencies(model, speed)
-    measured = conical.measured_frequencies(model, speed, STEP, "none")
-    assert np.all(np.abs(measured / exact - 1.0) > 2e-3)
-
-
-def test_prony_finds_two_known_frequencies():
-    time = 0.01 * np.arange(200)
-    signal = 2.0 * np.exp(-31.4j * time) + (0.3 + 0.1j) * np.exp(95.2j * time)
-    np.testing.assert_allclose(conical.prony_frequencies(signal, 0.01), [-31.4, 95.2], rtol=1e-10)

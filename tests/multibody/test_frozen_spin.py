@@ -1,6 +1,5 @@
 """A free spin whose mass matrix leaves out what varies with the deflection."""
 
-import re
 from dataclasses import replace
 
 import exudyn
@@ -10,7 +9,7 @@ from point_rotors import random_invariants, ring_rotor
 from run_scenes import solve
 from scipy.integrate import solve_ivp
 
-from exudyn_rotor import Formulation, Motion, add_rotor, check_run, propose, select_modes
+from exudyn_rotor import Formulation, Motion, add_rotor, check_run
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.theory.stiffening import stiffening
 
@@ -108,31 +107,6 @@ def test_run_errs_by_what_the_check_reports(rings):
         check_run(bodies["full"], warn=False)["frozen spin"]
 
 
-def test_the_share_is_that_of_the_momentum(rings):
-    """Against the momenta of the whole and of the frozen equations at the start."""
-    mbs = exudyn.SystemContainer().AddSystem()
-    zeta, zeta_t = np.linspace(0.02, -0.03, 8), np.linspace(-0.5, 0.7, 8)
-    body = add_rotor(
-        mbs,
-        rings,
-        initial_speed=20.0,
-        spin_coupling="frozen",
-        modal_coordinates=zeta,
-        modal_velocities=zeta_t,
-    )
-    mbs.Assemble()
-    motion = body.motion
-    q, v, _ = body.coordinates(exudyn.ConfigurationType.Initial)
-    terms, spin = motion.spin_terms, motion.formulation.translation_count
-    whole = Motion(motion.invariants, Formulation("free"), stiffening(motion.invariants, "tilt"))
-    left = whole.momentum(0.0, q, v)[spin] - motion.momentum(0.0, q, v)[spin]
-    # of ω c only half is an error of the speed
-    change = 2.0 * zeta @ terms.h + zeta @ terms.C_hat @ zeta
-    expected = abs(left - 0.5 * 20.0 * change) / (motion.invariants.Theta * 20.0)
-    found = check_run(body, warn=False)["frozen spin"].value
-    assert found == pytest.approx(expected, rel=1e-9)
-
-
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -146,22 +120,3 @@ def test_what_cannot_be_frozen_is_refused(rings, arguments, message):
     mbs = exudyn.SystemContainer().AddSystem()
     with pytest.raises(ValueError, match=message):
         add_rotor(mbs, rings, **arguments)
-
-
-@pytest.mark.filterwarnings("ignore::exudyn_rotor.AssumptionWarning")
-def test_proposal_weighs_a_frozen_spin(rings):
-    """Against the steady state at a constant speed, which is the static stretch."""
-    speed = 100.0
-    reasons = [r for r in propose(rings, speeds=(0.0, speed)).reasons if "frozen" in r]
-    assert len(reasons) == 1
-    assert "saves half the Python calls" in reasons[0]
-    assert not any("frozen" in reason for reason in propose(rings, speeds=speed).reasons)
-    found = float(re.search(r"leaves out (\S+) by", reasons[0]).group(1))
-    selection = select_modes(rings, Formulation("free", "free"))
-    invariants = selection.invariants
-    stiff = np.flatnonzero(np.diag(invariants.K) > 1.0)
-    K, h = invariants.K[np.ix_(stiff, stiff)], invariants.h[stiff]
-    share = h @ np.linalg.solve(K, speed**2 * h) / invariants.Theta
-    assert found == pytest.approx(share, rel=0.05)  # printed with two digits
-    tight = propose(rings, speeds=(0.0, speed), accuracy=share)
-    assert any("errs by too much" in reason for reason in tight.reasons)

@@ -9,17 +9,12 @@ from exudyn.itemInterface import SensorNode
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
-    ClearanceStop,
     PrescribedMotion,
-    ShortJournalBearing,
     SolidRotor,
     SpinAxis,
-    Support,
     add_rotor,
     add_supports,
-    linear_model,
     recommended_settings,
-    steady_state,
 )
 from exudyn_rotor.multibody.full import full_memory
 from exudyn_rotor.solvers.memory import TooLittleMemoryError
@@ -156,43 +151,6 @@ def test_full_and_reduced_with_all_modes_agree(bar, name, axis, level):
         assert np.abs(one - other).max() < (1e-8 if index < 4 else 1e-5) * size
 
 
-CROSSED = np.array([[2e5, 4e4, 1e4], [-3e4, 1e5, 2e4], [5e3, -1e4, 3e5]])
-SUPPORTS = {
-    "number": Support("left", 1e5, 20.0),
-    "cross-coupled": Support("left", CROSSED, 1e-4 * CROSSED),
-    "tilts": Support("left", 0.0, 0.0, [[4e3, 1e3], [-5e2, 2e3]]),
-    "tilts, damped": Support("left", 1e5, 0.0, 300.0, [[0.9, 0.2], [0.1, 0.5]]),
-    "about the axis": Support("left", 1e5, 0.0, np.diag([3e2, 2e2, 4e2]), np.diag([0.3, 0.2, 0])),
-    "in the rotor": Support("left", CROSSED, 30.0, 200.0, 0.1, frame="rotor"),
-    "table": Support("left", ([0.0, 900.0], [CROSSED, 2.0 * CROSSED]), lambda speed: 0.1 * speed),
-    "film": ShortJournalBearing(
-        interface="left", radius=0.02, length=0.02, clearance=1e-4, viscosity=0.02
-    ),
-    "stop": ClearanceStop(
-        interface="left", radius=0.03, clearance=1e-7, stiffness=1e5, friction=0.2
-    ),
-}
-HELD = "about the axis"
-
-
-@pytest.mark.parametrize("kind", SUPPORTS)
-def test_full_and_reduced_stand_on_the_same_supports(bar, kind):
-    """As above; under a free spin about a skew axis, where the support does not need a held one."""
-    rotor, turn = turned(bar, SKEW), Rotation.from_rotvec([0.3, 0.5, -0.2]).as_matrix()
-    name = "2.5" if kind == HELD else "2.2"
-    options = FAMILY[name][0] | {"stiffening": "none", "rotation": turn}
-    reduced = rotor.reduce(3 * rotor.node_count - 6)
-    support = SUPPORTS[kind]
-    histories = [run(rotor, source, [support], **options)[1] for source in (reduced, rotor)]
-    without = run(rotor, rotor, **options)[1]
-    *places, _, _ = zip(*histories, without, strict=True)
-    sizes = [np.abs(few - few[0]).max() for few, _, _ in places]
-    apart = [[np.abs(all_ - other).max() for other in (few, bare)] for few, all_, bare in places]
-    found, acting = (np.array(apart) / np.array(sizes)[:, None]).T
-    assert found.max() < 1e-8
-    assert acting.max() > 5e-3
-
-
 def swinging(rotor, options):
     """Displacements and rates of two bending modes that keep the conditions, 2 mm and 4 m/s."""
     body = add_rotor(exudyn.SystemContainer().AddSystem(), rotor, **options)
@@ -293,30 +251,6 @@ def test_stress_is_that_of_the_rotation(bar):
     assert np.abs(body.stress() - known).max() < 1e-4 * np.abs(known).max()
 
 
-@pytest.mark.parametrize("options", [{}, {"marker_body": False}])
-def test_one_run_stores_displacement_and_stress_at_instants(bar, options):
-    """What one run stores is what runs that end there end with."""
-    mbs, body = scene(bar, spin=RUN_UP, **options)
-    body.start_recording([0.0, 5e-4, 1.2e-3])
-    mbs.Assemble()
-    mbs.SolveDynamic(tight_settings(body, STEP))
-    stored = body.recorded()
-    np.testing.assert_allclose(stored.time, [0.0, 5e-4, 1.2e-3], atol=1e-12)
-    for index, steps in ((1, 5), (2, 12)):
-        mbs, other = scene(bar, spin=RUN_UP, **options)
-        mbs.Assemble()
-        mbs.SolveDynamic(tight_settings(other, STEP, steps))
-        np.testing.assert_allclose(stored.displacement[index], other.displacement(), rtol=1e-9)
-        stress = other.stress()
-        np.testing.assert_allclose(
-            stored.stress[index], stress, rtol=1e-9, atol=1e-9 * np.abs(stress).max()
-        )
-    assert not np.any(stored.displacement[0])
-    body.mbs.SolveDynamic(tight_settings(body, STEP, 6))
-    with pytest.raises(ValueError, match=r"stored 2 of 3 instants, and nothing for 0\.0012 s"):
-        body.recorded()
-
-
 def test_instants_that_cannot_be_stored_are_refused(bar):
     mbs, body = scene(bar)
     for wrong, match in (([1.0, 0.5], "ascending"), ([-1.0], "before the start")):
@@ -337,46 +271,3 @@ def test_too_little_memory_is_said_before_anything_is_added(bar, monkeypatch):
     assert mbs.systemData.NumberOfNodes() == 0
     monkeypatch.setattr(full_memory, "available_memory", lambda: 1e9)
     add_rotor(mbs, bar, spin=10.0)
-
-
-def test_analyses_name_the_reduced_rotor(bar):
-    mbs, body = scene(bar)
-    mbs.Assemble()
-    for analysis in (steady_state, lambda body: linear_model(mbs, body=body)):
-        with pytest.raises(TypeError, match=r"full body.*rotor\.reduce"):
-            analysis(body)
-    number = mbs.AddMarker({"markerType": "NodeRigid", "nodeNumber": body.nodes["rigid"]})
-    mbs.CreateForce(itemNumber=number, loadVector=[1.0, 0.0, 0.0])
-    with pytest.warns(UserWarning, match="the node of a full body does not tilt"):
-        mbs.Assemble()
-
-
-def test_what_the_frame_describes_is_no_displacement(bar):
-    sideways = np.tile([1e-3, 0.0, 0.0], (bar.node_count, 1))
-    mbs = exudyn.SystemContainer().AddSystem()
-    with pytest.raises(ValueError, match=r"modal_coordinates: .*mean motion"):
-        add_rotor(mbs, bar, translation="free", modal_coordinates=sideways)
-    assert mbs.systemData.NumberOfNodes() == 0
-
-
-@pytest.mark.parametrize("options", [{}, {"gravity": GRAVITY}, {"marker_body": False}])
-def test_no_markers_are_needed(bar, options):
-    """Nothing but its spin moves the rotor outwards, whatever else it has."""
-    mbs, body = scene(bar, markers={}, stiffening="tilt", **options)
-    mbs.Assemble()
-    settings = recommended_settings(1e-3, 1e-4, body=body)
-    settings.timeIntegration.verboseMode = 0
-    mbs.SolveDynamic(settings)
-    assert np.isfinite(body.displacement()).all()
-    assert body.displacement()[bar.nearest_node([0.03, -0.025, 0.3])] @ [1.0, -1.0, 0.0] > 0.0
-
-
-def test_supports_that_python_evaluates_count(bar):
-    """A turning support has the script's force; its body says so, as a reduced one does."""
-    mbs = exudyn.SystemContainer().AddSystem()
-    body = add_rotor(mbs, bar, spin=300.0, translation="none")
-    assert not body.uses_python
-    assert "no Python call" in body.report()
-    add_supports(body, [Support("left", 1e5, damping=10.0, frame="rotor")])
-    assert body.uses_python
-    assert "Python user functions" in body.report()

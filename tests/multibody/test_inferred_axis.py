@@ -5,13 +5,9 @@ import numpy as np
 import pytest
 from models import STEEL, block_beam, disc_fem, disc_rotor
 from point_rotors import free_stiffness
-from scipy.spatial.transform import Rotation
-from test_twin import turned
 
 from exudyn_rotor import SolidRotor
-from exudyn_rotor.multibody.twins.axis_of_body import axis_at_rest, axis_of_motion
-
-SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
+from exudyn_rotor.multibody.twins.axis_of_body import axis_at_rest
 
 
 def rings(count=6, height=0.3, extra=(), seats=2):
@@ -72,42 +68,3 @@ def test_angular_velocity_shows_the_axis_but_not_its_direction():
         mbs.Assemble()
         rates = mbs.GetNodeOutput(parts["nRigidBody"], exu.OutputVariableType.Coordinates_t)
         assert rates[5] == 40.0 * sign
-
-
-def test_angular_velocity_off_the_principal_axes_asks_for_it():
-    """A body turned by 5° still spins about z, one turned by 15° would tumble."""
-    for degrees in (5.0, 15.0):
-        rotor = rings(height=0.3)
-        tilt = Rotation.from_euler("x", degrees, degrees=True).as_matrix()
-        omega = 30.0 * tilt @ [0.0, 0.0, -1.0]
-        if degrees < 10.0:
-            np.testing.assert_allclose(axis_of_motion(rotor, omega).direction, -omega / 30.0)
-            continue
-        with pytest.raises(
-            ValueError, match=r"axis: initialAngularVelocity is 15° off .* axis='x'"
-        ):
-            axis_of_motion(rotor, omega)
-
-
-def test_every_axis_across_a_round_body_is_principal():
-    """A pendulum swings about any of them, wherever it hangs."""
-    for angle in (0.0, 0.3, 1.0):
-        omega = np.array([np.cos(angle), np.sin(angle), 0.0])
-        np.testing.assert_allclose(axis_of_motion(rings(), omega).direction, omega)
-
-
-def test_pendulum_at_rest_is_asked_for_its_axis():
-    """The links of a double pendulum hang on the line through their bolts."""
-    model = turned(disc_fem(), SKEW)
-    places = np.asarray(model.nodes["Position"]) @ SKEW
-    ends = [np.flatnonzero(abs(places[:, 2] - z) < 0.02) for z in (0.0, 0.5)]
-    # a bolt across the shaft: its hole reaches along one direction
-    sets = [nodes[abs(places[nodes, 0]) < 0.008] for nodes in ends]
-    model.nodeSets = [
-        {"Name": name, "NodeNumbers": nodes, "NodeWeights": np.full(len(nodes), 1 / len(nodes))}
-        for name, nodes in zip(("one", "two"), sets, strict=True)
-    ]
-    mbs = exu.SystemContainer().AddSystem()
-    with pytest.raises(ValueError, match="axis: is not known: the rotor starts at rest"):
-        mbs.CreateFixedAxisFFRFReducedOrderObject("link", model)
-    assert mbs.systemData.NumberOfNodes() == 0

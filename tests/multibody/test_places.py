@@ -3,42 +3,23 @@
 import exudyn as exu
 import numpy as np
 import pytest
-from exudyn.itemInterface import MarkerBodyRigid, MarkerNodeRigid
+from exudyn.itemInterface import MarkerBodyRigid
 from point_rotors import SKEW_AXIS
 from rings import rings, run
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
-    CardanJoint,
-    ConstantSpeed,
-    Drag,
-    FlexibleCoupling,
     Foundation,
     Mount,
     Support,
-    add_drive,
     add_foundation,
     add_rotor,
     add_supports,
-    connect_rotors,
     linear_model,
 )
-from exudyn_rotor.solid.places import off_place
 
 NEAR, FAR = 3e-4, 3e-3  # m: what a mesh does to its middle, and more than that
 SPRING = Support("left", 1e6 * np.eye(3), 500.0 * np.eye(3))
-
-
-def test_a_part_along_the_axis_is_left_out_if_it_is_short():
-    e, across = np.array([0.0, 0.6, 0.8]), np.array([1e-5, 0.0, 0.0])
-    for along, expected in ((NEAR, 0.0), (-NEAR, 0.0), (FAR, FAR), (-FAR, -FAR)):
-        found = off_place(across + along * e, 1e-3 * e)
-        np.testing.assert_allclose(found, across + expected * e, atol=1e-18)
-    np.testing.assert_array_equal(off_place(NEAR * e, 0.0 * e), NEAR * e)
-    skew = np.array([0.0, 0.0, 1.0])
-    found = off_place(across + NEAR * e - NEAR * skew, 1e-3 * e, 1e-3 * skew)
-    np.testing.assert_allclose(found, across, atol=1e-18)
-    np.testing.assert_allclose(off_place(NEAR * e, 1e-3 * e, 1e-3 * e), 0.0, atol=1e-18)
 
 
 def on_a_marker(shift, axis):
@@ -65,14 +46,6 @@ def test_a_marker_beside_the_middle_of_a_seat_pushes_nothing(axis):
         run(mbs, 2e-3, 10)
         moved.append(body.coordinates()[0])
     np.testing.assert_allclose(moved[1], moved[0], atol=1e-6 * np.abs(moved[0]).max())
-
-
-def test_markers_of_the_axis_elsewhere_are_refused():
-    mbs, body, marker = on_a_marker(FAR, [0.0, 0.0, 1.0])
-    before = mbs.systemData.NumberOfMarkers(), mbs.systemData.NumberOfObjects()
-    with pytest.raises(ValueError, match=r"is 0\.003 m off the interface 'left'"):
-        add_supports(body, SPRING, base=marker)
-    assert before == (mbs.systemData.NumberOfMarkers(), mbs.systemData.NumberOfObjects())
 
 
 def block(shift):
@@ -105,47 +78,3 @@ def test_a_foundation_takes_seats_of_a_mesh():
         with pytest.raises(ValueError, match=r"foundation: its point 'left' is .* m off"):
             add_supports(body, supports, base=base)
         assert before == (mbs.systemData.NumberOfMarkers(), mbs.systemData.NumberOfObjects())
-
-
-@pytest.mark.parametrize(
-    "coupling",
-    [
-        FlexibleCoupling(torsion=1e3, lateral=1e6, axial=1e6, angular=1e3),
-        CardanJoint(joint_angle=0.3, stiffness=1e3),
-    ],
-    ids=["flexible", "cardan"],
-)
-@pytest.mark.parametrize("first", [True, False], ids=["along the first axis", "the second"])
-def test_couplings_take_seats_of_a_mesh(coupling, first):
-    """Nothing is deformed where both start."""
-    axis, along = coupling.law.second_axis, np.array([0.0, 0.0, 1.0])
-    turn = Rotation.align_vectors([axis], [along])[0].as_matrix()
-    for shift, across, fits in ((NEAR, 0.0, True), (FAR, 0.0, False), (0.0, NEAR, False)):
-        mbs, rotor = exu.SystemContainer().AddSystem(), rings().reduce(0)
-        one = add_rotor(mbs, rotor, name="one")
-        place = 0.15 * along + 0.15 * axis + shift * (along if first else axis)
-        place += across * np.cross(along, [1.0, 0.0, 0.0])
-        two = add_rotor(mbs, rotor, name="two", position=place, rotation=turn)
-        if not fits:
-            with pytest.raises(ValueError, match="other: the interface of the second rotor is"):
-                connect_rotors(coupling, one, "right", two, "left")
-            continue
-        connect_rotors(coupling, one, "right", two, "left")
-        run(mbs, 1e-3, 2)
-        assert np.abs(mbs.systemData.GetODE2Coordinates()).max() < 1e-15
-
-
-def test_a_rotor_does_not_carry_its_own_bearing():
-    mbs = exu.SystemContainer().AddSystem()
-    body, other = (add_rotor(mbs, rings().reduce(0), name=name) for name in ("one", "two"))
-    node = mbs.AddMarker(MarkerNodeRigid(nodeNumber=body.nodes["rigid"]))
-    own = [body.marker("left"), body.add_marker("left"), node, body.objects["marker_body"]]
-    before = mbs.systemData.NumberOfMarkers(), mbs.systemData.NumberOfObjects()
-    for base in (*own, body.objects["physics"]):
-        with pytest.raises(ValueError, match="belongs to rotor 'one' itself"):
-            add_supports(body, SPRING, base=base)
-        with pytest.raises(ValueError, match="belongs to rotor 'one' itself"):
-            add_drive(body, Drag(linear=1.0), at="left", base=base)
-    assert before == (mbs.systemData.NumberOfMarkers(), mbs.systemData.NumberOfObjects())
-    add_supports(body, SPRING, base=other.marker("left"))
-    connect_rotors(FlexibleCoupling(torsion=1.0), body, "right", ConstantSpeed(0.0))

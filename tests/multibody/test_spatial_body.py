@@ -6,13 +6,11 @@ import pytest
 from point_rotors import random_rotor
 from scipy.spatial.transform import Rotation
 
-from exudyn_rotor.multibody import spatial_body
 from exudyn_rotor.multibody.spatial_body import add_spatial_rotor
 from exudyn_rotor.theory.nodal import rotations, translations
 
 KINDS = exudyn.OutputVariableType
 TURN = Rotation.from_rotvec([0.3, -0.5, 0.8]).as_matrix()
-PLACE = np.array([0.1, 0.2, -0.3])
 
 
 def settings(duration: float, steps: int) -> exudyn.SimulationSettings:
@@ -31,18 +29,6 @@ def settings(duration: float, steps: int) -> exudyn.SimulationSettings:
 @pytest.fixture(scope="module")
 def rotor():
     return random_rotor(1).with_interface("end", [1, 4], [1.0, 3.0])
-
-
-def test_body_stands_where_it_is_put(rotor):
-    mbs = exudyn.SystemContainer().AddSystem()
-    body = add_spatial_rotor(mbs, rotor, position=PLACE, rotation=TURN)
-    places = {body.add_node_sensor(node, KINDS.Position): rotor.nodes[node] for node in (0, 5)}
-    places[body.add_interface_sensor("end", KINDS.Position)] = rotor.interfaces["end"].center
-    mbs.Assemble()
-    for sensor, place in places.items():
-        found = mbs.GetSensorValues(sensor)
-        np.testing.assert_allclose(found, PLACE + TURN @ place, atol=1e-14)
-    assert body.marker("end") == body.markers["end"]
 
 
 def test_fall_with_a_spin(rotor):
@@ -68,16 +54,6 @@ def test_fall_with_a_spin(rotor):
     rigid = np.hstack([translations(len(nodes)), rotations(nodes, np.zeros(3))])
     moments = rigid.T @ (rotor.mass @ flexible)
     np.testing.assert_allclose(moments, 0.0, atol=1e-9)
-
-
-def test_what_exudyn_cannot_carry_is_refused(rotor, monkeypatch):
-    mbs = exudyn.SystemContainer().AddSystem()
-    monkeypatch.setattr(spatial_body, "LARGEST", 5)
-    with pytest.raises(ValueError, match="has 6 nodes, and Exudyn's full 3D body cannot carry"):
-        add_spatial_rotor(mbs, rotor)
-    with pytest.raises(TypeError, match="rotor: needs SolidRotor"):
-        add_spatial_rotor(mbs, rotor.reduce(2))
-    assert mbs.systemData.NumberOfNodes() == 0
 
 
 def test_bad_arguments(rotor):

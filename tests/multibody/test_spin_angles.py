@@ -1,11 +1,8 @@
 """Which angle of the marker body's node is the spin angle."""
 
-import itertools
-
 import exudyn as exu
 import numpy as np
 import pytest
-from exudyn.rigidBodyUtilities import RotXYZ2RotationMatrix
 from point_rotors import random_arrays
 from scipy.spatial.transform import Rotation
 
@@ -13,64 +10,12 @@ from exudyn_rotor import (
     ConstantSpeed,
     PrescribedMotion,
     SolidRotor,
-    SpinAxis,
     add_rotor,
     recommended_settings,
 )
-from exudyn_rotor.multibody.rotor.frame import BodyFrame
 
 KINDS = exu.OutputVariableType
-COORDINATE_AXES = [sign * unit for unit in np.eye(3) for sign in (1, -1)]
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
-# all 24 ways to mount coordinate axes along coordinate axes
-UPRIGHT = Rotation.create_group("O").as_matrix().round()
-
-
-def turned_frame(frame, theta):
-    """Return the orientation of the node for a spin angle."""
-    angles = frame.angles.copy()
-    angles[frame.spin - 3] += theta
-    return RotXYZ2RotationMatrix(angles)
-
-
-def check_frame(frame, e, space):
-    for theta in (0.0, 0.4, 2.0, -40.0):
-        expected = space @ SpinAxis(e).rotation(theta) @ frame.B.T
-        np.testing.assert_allclose(turned_frame(frame, theta), expected, rtol=0, atol=1e-13)
-
-
-@pytest.mark.parametrize("e", COORDINATE_AXES, ids=str)
-def test_coordinate_axes_along_coordinate_axes(e):
-    """Mesh axes but for those against mesh z and along −x of space."""
-    for space in UPRIGHT:
-        frame = BodyFrame.of(e, np.zeros(3), np.zeros(3), space)
-        n = space @ e
-        along_z, along_x = abs(e[2]) > 0.5, abs(n[0]) > 0.5
-        kept = (e[2] > 0.5) if along_z and not along_x else True
-        if along_x:
-            kept = n[0] > 0.5 or e[2] > 0.5
-        assert frame.has_mesh_axes == kept
-        check_frame(frame, e, space)
-
-
-def test_mesh_z_keeps_the_mesh_axes_wherever_it_is_mounted():
-    e = np.array([0.0, 0.0, 1.0])
-    frame = BodyFrame.of(e, np.zeros(3), np.zeros(3), SKEW)
-    assert frame.has_mesh_axes
-    assert frame.spin == 5
-    check_frame(frame, e, SKEW)
-
-
-def test_skew_axes_are_turned_where_no_angle_serves():
-    for e, space in itertools.product((SKEW[:, 0], -SKEW[:, 1]), (np.eye(3), SKEW)):
-        frame = BodyFrame.of(e, np.zeros(3), np.zeros(3), space)
-        assert not frame.has_mesh_axes
-        np.testing.assert_allclose(frame.B @ e, [0, 0, 1], atol=1e-15)
-        check_frame(frame, e, space)
-    along_x = Rotation.align_vectors([[1.0, 0, 0]], [SKEW[:, 0]])[0].as_matrix()
-    frame = BodyFrame.of(SKEW[:, 0], np.zeros(3), np.zeros(3), along_x)
-    assert frame.has_mesh_axes
-    check_frame(frame, SKEW[:, 0], along_x)
 
 
 def rotor(direction):
@@ -213,22 +158,3 @@ def test_force_at_an_added_marker_has_its_lever(skew_scene):
     for end in ends[1:]:
         # levers change with the deflection, 1e-6 here
         np.testing.assert_allclose(end, ends[0], atol=1e-5 * abs(ends[0]).max())
-
-
-@pytest.mark.parametrize(
-    ("where", "change", "message"),
-    [
-        ([0, 1], {}, "where: the nodes"),
-        ([0, 99], {}, "where"),
-        ([0, 0, 1], {}, "different nodes"),
-        ("nowhere", {}, "where: interface"),
-        ("a", {"weights": [1.0]}, "weights: are for mesh nodes"),
-        ([0, 1, 2], {"weights": [1.0, -1.0, 1.0]}, "weights: needs"),
-    ],
-)
-def test_markers_that_cannot_be_are_refused(skew_scene, where, change, message):
-    _, mbs, body = skew_scene
-    before = mbs.systemData.NumberOfMarkers()
-    with pytest.raises(ValueError, match=message):
-        body.add_marker(where, **change)
-    assert mbs.systemData.NumberOfMarkers() == before

@@ -6,7 +6,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 from apart import distance
-from exudyn.itemInterface import MarkerBodyRigid, MarkerNodePosition, NodePoint
+from exudyn.itemInterface import MarkerBodyRigid
 from exudyn.rigidBodyUtilities import InertiaCuboid
 from point_rotors import ring_rotor
 from scipy.spatial.transform import Rotation
@@ -90,24 +90,6 @@ def test_scene_and_linear_rotor_have_the_same_exponents(kind):
 
 TO_X, TO_Y = (Rotation.from_euler(a, 90.0, degrees=True).as_matrix() for a in ("y", "x"))
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
-
-
-@pytest.mark.parametrize("kind", ["3 x 3", "tilt, damped", "tilt", "rotor frame", "table"])
-@pytest.mark.parametrize(
-    ("turn", "rotation", "options"),
-    [
-        (TO_X, None, {"translation": "in-plane"}),
-        (TO_Y, None, {"spin": SPEED, "translation": "none"}),
-        (-TO_Y, TO_X, {"spin": 40.0}),
-        (SKEW, None, {"initial_angle": 0.4}),
-        (None, SKEW, {"initial_angle": 0.4}),
-        (SKEW, SKEW, {"spin": 9.0, "translation": "none"}),
-    ],
-    ids=["x", "y", "-y upright", "skew mesh", "skew mounting", "both skew"],
-)
-def test_axes_and_formulations_change_nothing(kind, turn, rotation, options):
-    turn = turn if turn is None or np.linalg.det(turn) > 0 else turn @ np.diag([1.0, 1.0, -1.0])
-    assert compared(kind, turn, rotation, **options) < 1e-7
 
 
 MIXED = [
@@ -206,60 +188,14 @@ def run_up(supports, torque=200.0, end_time=0.02):
 def test_a_table_follows_a_free_spin():
     """The connector's force at the end is that of the table at the speed of the end."""
     table = Support("left", RISING, 50.0)
-    mbs, body, added = run_up([table, HELD])
+    _, body, added = run_up([table, HELD])
     _, q_t, _ = body.coordinates()
     speed = q_t[3]
     assert 50.0 < speed < 100.0
-    get, number = mbs.GetObjectOutput, added[0].objects[0]
-    kinds = exu.OutputVariableType
-    u, v = get(number, kinds.Displacement)[:2], get(number, kinds.Velocity)[:2]
+    u, v, force = (each[:2] for each in added[0].values())
     stiffness = (
         np.array(RISING[1][0]) * (1.0 - speed / 100.0) + np.array(RISING[1][1]) * speed / 100.0
     )
-    expected = stiffness @ u + 50.0 * v
-    np.testing.assert_allclose(get(number, kinds.Force)[:2], expected, rtol=1e-6)
+    np.testing.assert_allclose(force, -stiffness @ u - 50.0 * v, rtol=1e-6)
     assert body.uses_python
     assert "left by Python function; right by Exudyn" in body.report()
-
-
-def test_a_run_beyond_a_table_stops():
-    with pytest.raises(Exception, match="holds 0 to 100 rad/s"):
-        run_up([Support("left", RISING), HELD], torque=4000.0)
-    _, body, _ = run_up([Support("left", RISING, extrapolate=True), HELD], torque=4000.0)
-    assert body.coordinates()[1][3] > 200.0
-
-
-def test_refused_calls_leave_the_scene_as_it_was():
-    mbs = exu.SystemContainer().AddSystem()
-    body, good = add_rotor(mbs, rings(), initial_speed=9.0), KINDS["number"]
-    bare = add_rotor(mbs, rings(), name="bare", marker_body=False)
-    point = mbs.AddMarker(MarkerNodePosition(nodeNumber=mbs.AddNode(NodePoint())))
-    off = mbs.AddMarker(MarkerBodyRigid(bodyNumber=mbs.CreateGround()))
-    particle = mbs.CreateMassPoint(mass=1.0)
-
-    def counts():
-        data = mbs.systemData
-        return data.NumberOfObjects(), data.NumberOfMarkers(), len(body.supports)
-
-    before = counts()
-    held, turning = KINDS["about the axis"], KINDS["rotor frame, tilts"]
-    for error, match, arguments in (
-        (TypeError, "body: needs RotorBody", (mbs, good)),
-        (TypeError, r"supports\[1\]: needs Support", (body, [good, "right"])),
-        (ValueError, "support at 'top': no such interface", (body, [good, Support("top", 1.0)])),
-        (ValueError, "marker_body=False", (bare, good)),
-        (ValueError, "tilt_stiffness about the spin axis needs a prescribed", (body, [good, held])),
-        (ValueError, "tilt_stiffness about the spin axis needs a prescribed", (body, [turning])),
-        (TypeError, "base: needs MarkerIndex or ObjectIndex", (body, good, "ground")),
-        (ValueError, r"marker \d+ is 0.15 m off the interface 'left'", (body, good, off)),
-        (ValueError, "has no place and orientation", (body, good, point)),
-        (ValueError, "is a point without orientation", (body, good, particle)),
-        (ValueError, "this system has no", (body, good, exu.ObjectIndex(99))),
-        (ValueError, "base: has nothing for the interface 'left'", (body, good, {"right": off})),
-        (ValueError, "base: 'disc' is no interface", (body, good, {"left": None, "disc": None})),
-    ):
-        with pytest.raises(error, match=match):
-            add_supports(*arguments)
-        assert counts() == before
-    add_supports(body, [])
-    assert counts() == before

@@ -1,7 +1,5 @@
 """The twin of Exudyn's own call: one script, the name of the call swapped."""
 
-import inspect
-
 import exudyn as exu
 import exudyn.utilities
 import numpy as np
@@ -9,7 +7,6 @@ import pytest
 import scipy.sparse as sp
 from exudyn.FEM import FEMinterface
 from models import disc_fem
-from run_scenes import item_counts
 from scipy.spatial.transform import Rotation
 
 import exudyn_rotor  # noqa: F401  adds the call to MainSystem
@@ -126,22 +123,6 @@ def run_script(call, fem, mesh, space):
     return {name: mbs.GetSensorStoredData(s)[:, 1:] for name, s in scene["sensors"].items()}
 
 
-def test_signature_is_that_of_exudyn_with_more_at_the_end():
-    own, twin = (
-        inspect.signature(getattr(exu.MainSystem, call)).parameters for call in (OWN, TWIN)
-    )
-    assert list(twin)[: len(own)] == list(own)
-    for name, parameter in own.items():
-        default = twin[name].default
-        if isinstance(parameter.default, (list, np.ndarray)):
-            assert np.array_equal(default, parameter.default), name
-        else:
-            assert default is parameter.default or default == parameter.default, name
-    extra = list(twin.values())[len(own) :]
-    assert extra
-    assert all(parameter.default is not inspect.Parameter.empty for parameter in extra)
-
-
 def test_returned_keys_are_those_of_exudyn(fem):
     given = [
         getattr(exu.SystemContainer().AddSystem(), call)(
@@ -164,63 +145,6 @@ def test_swapping_the_name_of_the_call_gives_the_same_motion(fem, direction):
     for name, signal in own.items():
         change = abs(signal - signal[0]).max()
         assert abs(twin[name] - signal).max() < AGREEMENT[name] * change, name
-
-
-@pytest.mark.parametrize("direction", DIRECTIONS)
-def test_marker_frames_follow_those_of_the_3d_body(fem, direction):
-    """Offsets, positions and orientations of markers at rest and over one full turn."""
-    mesh, space = DIRECTIONS[direction]
-    offsets = np.array([[0.01, 0.0, 0.02], [0.0, -0.03, 0.0]]) @ mesh.T
-    results = []
-    for call in (OWN, TWIN):
-        mbs = exu.SystemContainer().AddSystem()
-        d = getattr(mbs, call)(
-            "rotor",
-            turned(fem, mesh),
-            referencePosition=[1.0, 2.0, 3.0],
-            referenceRotationMatrix=space,
-            initialAngularVelocity=(space @ mesh @ [0.0, 0.0, 100.0]).tolist(),
-            superElementRigidMarkersOffsets=offsets,
-        )
-        mbs.Assemble()
-        kinds = exu.OutputVariableType.Position, exu.OutputVariableType.RotationMatrix
-        rest = [
-            mbs.GetMarkerOutput(d[name], kind, exu.ConfigurationType.Reference)
-            for name in ("rotor:left", "rotor:right")
-            for kind in kinds
-        ]
-        sensors = [
-            mbs.AddSensor(
-                exudyn.utilities.SensorMarker(
-                    markerNumber=d[name], outputVariableType=kind, storeInternal=True
-                )
-            )
-            for name in ("rotor:left", "rotor:right")
-            for kind in kinds
-        ]
-        mbs.Assemble()
-        mbs.SolveDynamic(settings(400, 2 * np.pi / 100.0))
-        results.append((rest, [mbs.GetSensorStoredData(s)[:, 1:] for s in sensors]))
-    (rest, motion), (twin_rest, twin_motion) = results
-    for own, twin in zip(rest, twin_rest, strict=True):
-        assert abs(own - twin).max() < 1e-12
-    for own, twin in zip(motion, twin_motion, strict=True):
-        # Euler parameters lag by (Ω h)² / 12 of the angle, which the rotor does not
-        assert abs(own - twin).max() < 1.2 * (2 * np.pi / 400) ** 2 / 12 * 2 * np.pi
-
-
-def test_a_script_without_names(fem):
-    """As in Exudyn: markers are called like their boundaries, which must not be there already."""
-    mbs = exu.SystemContainer().AddSystem()
-    d = mbs.CreateFixedAxisFFRFReducedOrderObject(None, fem, axis="z")
-    assert set(d) == {"FFRFReducedOrderObjectDict", "left", "right"}
-    assert int(mbs.GetMarkerNumber("left")) == int(d["left"])
-    with pytest.raises(ValueError, match="already has an item 'left'"):
-        mbs.CreateFixedAxisFFRFReducedOrderObject(None, fem, axis="z")
-    other = turned(fem, TO_X)
-    other.nodeSets = [s | {"Name": s["Name"] + " 2"} for s in fem.nodeSets]
-    mbs.CreateFixedAxisFFRFReducedOrderObject(None, other, axis="x")
-    mbs.Assemble()
 
 
 def test_rotor_beside_a_3d_body(fem):
@@ -249,121 +173,3 @@ def test_rotor_beside_a_3d_body(fem):
         (alone,) = run(call)
         # both share the tolerance of Newton's method
         assert abs(signal - alone).max() < 1e-7 * abs(alone).max()
-
-
-def test_verbose_prints_a_report(fem, capfd):
-    exu.SystemContainer().AddSystem().CreateFixedAxisFFRFReducedOrderObject(
-        "r", fem, axis="z", verbose=True
-    )
-    assert "Sect. 2.2" in capfd.readouterr().out
-
-
-def bare_interface(fem):
-    model = turned(fem, TO_X)
-    model.modeBasis = {}
-    return model
-
-
-WRONG = {
-    "transverse velocity": (
-        {"axis": "z", "initialAngularVelocity": [1.0, 0.0, 100.0]},
-        "1 rad/s across the spin axis",
-    ),
-    "spin twice": (
-        {"axis": "z", "spin": 100.0, "initialAngularVelocity": [0.0, 0.0, 90.0]},
-        "spin given twice",
-    ),
-    "offsets": (
-        {"axis": "z", "superElementRigidMarkersOffsets": [[0.0, 0.0, 0.0]]},
-        "needs 2 × 3 finite numbers for the interfaces left, right",
-    ),
-    "ragged offsets": (
-        {"axis": "z", "superElementRigidMarkersOffsets": [[0.0], [0.0, 0.0]]},
-        "superElementRigidMarkersOffsets",
-    ),
-    "color": ({"axis": "z", "color": [1.0, 0.0, 0.0]}, r"color: needs finite .* shape \(4,\)"),
-    "reflection": (
-        {"axis": "z", "referenceRotationMatrix": np.diag([1.0, 1.0, -1.0])},
-        "referenceRotationMatrix: needs a rotation matrix",
-    ),
-    "nan": ({"axis": "z", "initialVelocity": [0.0, np.nan, 0.0]}, "initialVelocity"),
-    "held": (
-        {"axis": "z", "translation": "none", "initialVelocity": [1.0, 0.0, 0.0]},
-        "translation='none' holds the rotor",
-    ),
-    "taken name": ({"axis": "z", "name": "taken"}, "give the second rotor another name"),
-    "empty name": ({"axis": "z", "name": ""}, "name: needs a name that is not empty"),
-    "no modes": ({"axis": "z", "femInterface": bare_interface}, "holds no modes"),
-    "nothing imported": (
-        {"axis": "z", "femInterface": lambda fem: FEMinterface()},
-        "fem: massMatrix is missing",
-    ),
-    "no FEMinterface": ({"axis": "z", "femInterface": lambda fem: "rotor.npz"}, "FEMinterface"),
-}
-
-
-@pytest.mark.parametrize("case", WRONG)
-def test_wrong_input_changes_nothing(fem, case):
-    arguments, message = WRONG[case]
-    mbs = exu.SystemContainer().AddSystem()
-    mbs.CreateFixedAxisFFRFReducedOrderObject("taken", fem, axis="z")
-    before = item_counts(mbs)
-    arguments = {"name": "rotor", "femInterface": lambda fem: fem} | arguments
-    arguments["femInterface"] = arguments["femInterface"](fem)
-    with pytest.raises((ValueError, TypeError), match=message):
-        mbs.CreateFixedAxisFFRFReducedOrderObject(**arguments)
-    assert item_counts(mbs) == before
-
-
-@pytest.mark.parametrize("turn", [np.eye(3), TO_X, TO_Y, SKEW], ids=["z", "x", "y", "skew"])
-def test_rotor_at_rest_turns_about_the_line_through_its_seats(fem, turn):
-    """The unevenness of the mesh is left out where the line is a mesh axis, and is small else."""
-    mbs = exu.SystemContainer().AddSystem()
-    made = mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", turned(fem, turn))
-    axis = made["FFRFReducedOrderObjectDict"]["rotorBody"].axis
-    expected = turn @ [0.0, 0.0, 1.0]
-    expected = expected * np.sign(expected[np.argmax(np.abs(expected))])
-    tolerance = 1e-3 if turn is SKEW else 1e-15
-    np.testing.assert_allclose(axis.direction, expected, atol=tolerance)
-
-
-def test_rotor_at_rest_without_seats_needs_an_axis(fem):
-    model = turned(fem, TO_X)
-    model.nodeSets = model.nodeSets[:1]
-    mbs = exu.SystemContainer().AddSystem()
-    before = item_counts(mbs)
-    with pytest.raises(ValueError, match="give axis='x'"):
-        mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", model)
-    assert item_counts(mbs) == before
-
-
-def test_the_translation_that_auto_stands_for(fem):
-    """It must not depend on what comes later: free, unless the stiffness holds the rotor."""
-    held = FEMinterface()
-    held.nodes = {"Position": np.array([[0.1, 0.0, 0.0], [-0.1, 0.0, 0.0]])}
-    held.massMatrix, held.stiffnessMatrix = sp.eye(6).tocsr(), 1e6 * sp.eye(6).tocsr()
-    held.modeBasis = {"matrix": np.eye(6), "type": "NormalModes"}
-    system = exu.SystemContainer().AddSystem
-    for model, given, expected in (
-        (fem, {}, "free"),
-        (fem, {"gravity": [0, 0, 9.81], "initialVelocity": [1.0, 0, 0]}, "free"),
-        (fem, {"translation": "in-plane"}, "in-plane"),
-        (held, {"spin": 30.0}, "none"),
-    ):
-        made = getattr(system(), TWIN)(name=None, femInterface=model, axis="z", **given)
-        body = made["FFRFReducedOrderObjectDict"]["rotorBody"]
-        assert body.formulation.translation == expected
-    with pytest.raises(ValueError, match="a prescribed spin"):
-        getattr(system(), TWIN)(name=None, femInterface=held, axis="z")
-    with pytest.raises(ValueError, match=r"translation.*auto"):
-        getattr(system(), TWIN)(name=None, femInterface=fem, axis="z", translation="axial")
-
-
-def test_what_is_returned_prints_short(fem):
-    mbs = exu.SystemContainer().AddSystem()
-    made = mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", fem, axis="z")
-    body = made["FFRFReducedOrderObjectDict"]["rotorBody"]
-    assert repr(body) == (
-        "RotorBody('rotor', Sect. 2.2, stiffening 'tilt', 8 modes, markers: left, right)"
-    )
-    assert len(repr(made)) < 400

@@ -1,20 +1,15 @@
 """The twin of Exudyn's class ObjectFFRFreducedOrderInterface: one script, one name swapped."""
 
-import inspect
-
 import exudyn as exu
 import exudyn.utilities as eu
 import numpy as np
 import pytest
 from exudyn.FEM import CMSObjectComputeNorm, ObjectFFRFreducedOrderInterface
 from models import disc_fem
-from run_scenes import item_counts
 
-import exudyn_rotor
 from exudyn_rotor import ObjectFixedAxisFFRFreducedOrderInterface
 
 CLASSES = ObjectFFRFreducedOrderInterface, ObjectFixedAxisFFRFreducedOrderInterface
-METHODS = "__init__", "AddObjectFFRFreducedOrder"
 UNIT = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 
 
@@ -93,29 +88,6 @@ def run_script(kind, fem, **more):
     return motion, np.array(peaks)
 
 
-def test_names_and_defaults_are_those_of_exudyn():
-    for method in METHODS:
-        own, twin = (inspect.signature(getattr(kind, method)).parameters for kind in CLASSES)
-        assert list(twin)[: len(own)] == list(own)
-        for name, parameter in own.items():
-            default = twin[name].default
-            if isinstance(parameter.default, list):
-                assert np.array_equal(default, parameter.default), (method, name)
-            else:
-                assert default == parameter.default, (method, name)
-
-
-def test_both_twins_take_the_same_of_their_own():
-    """But for markers, which Exudyn's class does not add."""
-    call = exu.MainSystem.CreateFixedAxisFFRFReducedOrderObject
-    of_call = list(inspect.signature(call).parameters.values())
-    of_call = of_call[[parameter.name for parameter in of_call].index("axis") :]
-    of_class = list(inspect.signature(CLASSES[1]).parameters.values())[-len(of_call) :]
-    for one, other in zip(of_call, of_class, strict=True):
-        assert one.name == other.name
-        assert one.default == other.default or one.name == "markers"
-
-
 def test_returned_keys_and_attributes_are_those_of_exudyn(fem):
     own, twin = (made(kind, fem, axis="z") for kind in CLASSES)
     for name in ("nModes", "nNodes", "dim3D"):
@@ -152,79 +124,3 @@ def test_stress_modes_of_a_fem_interface_come_before_the_rotor(fem):
     mbs.SetObjectParameter(made["oFFRFreducedOrder"], "outputVariableModeBasis", columns)
     with pytest.raises(ValueError, match=r"outputVariableModeBasis: .* needs the shape"):
         mbs.Assemble()
-
-
-def test_the_axis_is_that_of_the_initial_spin(fem):
-    for omega in ([0.0, 0.0, 30.0], [0.0, 0.0, 0.0]):
-        cms = ObjectFixedAxisFFRFreducedOrderInterface(fem)
-        made = cms.AddObjectFFRFreducedOrder(
-            exu.SystemContainer().AddSystem(), initialAngularVelocity=omega
-        )
-        assert made["rotorBody"].axis.direction.tolist() == [0.0, 0.0, 1.0]
-
-
-WRONG = {
-    "position": ({"positionRef": [0.0, np.nan, 0.0]}, "positionRef"),
-    "reflection": ({"rotationMatrixRef": -np.eye(3)}, "rotationMatrixRef: needs a rotation"),
-    "across": ({"initialAngularVelocity": [0.0, 1.0, 9.0]}, "across the spin axis"),
-    "name": ({"name": " "}, "name: needs a name"),
-}
-
-
-@pytest.mark.parametrize("case", WRONG)
-def test_wrong_input_changes_nothing(fem, case):
-    arguments, message = WRONG[case]
-    mbs = exu.SystemContainer().AddSystem()
-    cms = ObjectFixedAxisFFRFreducedOrderInterface(fem, axis="z")
-    before = item_counts(mbs)
-    with pytest.raises((ValueError, TypeError), match=message):
-        cms.AddObjectFFRFreducedOrder(mbs, **arguments)
-    assert item_counts(mbs) == before
-
-
-def test_a_rotor_body_kept_over_a_reset_says_so(fem):
-    """Its numbers and names then belong to another rotor."""
-    reduced = exudyn_rotor.SolidRotor.from_fem_interface(fem, "z").reduce(fem)
-    mbs = exu.SystemContainer().AddSystem()
-
-    def add():
-        return exudyn_rotor.add_rotor(mbs, reduced, spin=10.0, translation="none")
-
-    old = add()
-    old.start_recording()
-    mbs.Reset()
-    kinds = exu.OutputVariableType
-    uses = {
-        "coordinates": lambda: old.coordinates(),
-        "marker": lambda: old.marker("left"),
-        "add_marker": lambda: old.add_marker("left"),
-        "check_connections": lambda: old.check_connections(),
-        "energy sensor": lambda: old.add_energy_sensor(),
-        "start_recording": lambda: old.start_recording(),
-        "recorded": lambda: old.recorded(),
-        "check_run": lambda: exudyn_rotor.check_run(old, warn=False),
-        "node sensor": lambda: old.add_node_sensor(0, kinds.Position),
-        "interface sensor": lambda: old.add_interface_sensor("left", kinds.Position),
-        "spin sensor": lambda: old.add_spin_sensor(),
-        "drive torque": lambda: old.add_drive_torque_sensor(),
-        "linear model": lambda: exudyn_rotor.linear_model(mbs, body=old),
-    }
-    for again in (False, True):
-        if again:
-            new = add()
-            mbs.Assemble()
-            assert list(map(int, new.markers.values())) == list(map(int, old.markers.values()))
-            assert len(new.coordinates()[0]) == len(new.selection.labels)
-        for use in uses.values():
-            with pytest.raises(ValueError, match="no longer holds rotor 'rotor'"):
-                use()
-
-
-def test_a_rotor_body_whose_numbers_moved_says_so(fem):
-    reduced = exudyn_rotor.SolidRotor.from_fem_interface(fem, "z").reduce(fem)
-    mbs = exu.SystemContainer().AddSystem()
-    ground = mbs.CreateGround()
-    body = exudyn_rotor.add_rotor(mbs, reduced)
-    mbs.DeleteObject(ground)
-    with pytest.raises(ValueError, match="objects were deleted"):
-        body.marker("left")

@@ -1,7 +1,6 @@
 """Shapes of modes and responses, their files; spectra and orbits of runs."""
 
 import dataclasses
-import re
 from functools import cache
 
 import numpy as np
@@ -9,26 +8,21 @@ import pytest
 from matplotlib import pyplot
 from models import centered_disc, disc_rotor
 from PIL import Image
-from point_rotors import SKEW_AXIS
 
 from exudyn_rotor import (
     MotionShapes,
     ReducedRotor,
     SolidRotor,
     Spectra,
-    SpinAxis,
     StressField,
     Support,
     Unbalance,
     campbell,
     mode_shapes,
-    plot_orbit,
     response_shapes,
     spectra,
     unbalance_response,
 )
-from exudyn_rotor.plotting import COLORS
-from exudyn_rotor.theory.nodal import block_diagonal
 
 SPEED = 300.0
 EQUAL = [Support(name, 2e7, damping=200.0) for name in ("left", "right")]
@@ -99,55 +93,6 @@ def test_orbits_of_whirl_are_circles_of_their_sense(speed):
         assert (turn > 0.0) == (word == "forward")
 
 
-def test_shapes_of_any_axis():
-    """The same orbits about a skew axis that does not pass through the origin."""
-    axis = SpinAxis(SKEW_AXIS, [0.3, -0.2, 0.5])
-    turn = np.column_stack([axis.plane, axis.direction])
-    plain = centered_disc(order=1)
-    blocks = block_diagonal(turn, plain.node_count)
-    rotor = SolidRotor.from_matrices(
-        plain.mass, blocks @ plain.stiffness @ blocks.T, plain.nodes @ turn.T + axis.point, axis,
-        interfaces={name: (i.nodes, i.weights) for name, i in plain.interfaces.items()},
-        triangles=plain.triangles,
-    ).center_interfaces()  # fmt: skip
-    shapes = mode_shapes(rotor.reduce(4), SPEED, supports=EQUAL, modes=6, stiffening="tilt")
-    np.testing.assert_allclose(shapes.frequencies, modes().frequencies, rtol=1e-6, atol=1e-3)
-    for index in (2, 3):
-        pairs = zip(shapes.orbits(index), modes().orbits(index), strict=True)
-        for (center, orbit), (plain_center, plain_orbit) in pairs:
-            np.testing.assert_allclose(center, turn @ plain_center + axis.point, atol=1e-9)
-            sizes = [np.hypot(*(part @ axes).T[:2]) for part, axes in
-                     ((orbit, turn), (plain_orbit, np.eye(3)))]  # fmt: skip
-            # a node on the edge of two slices may be in either
-            np.testing.assert_allclose(sizes[0], sizes[1], atol=1e-2 * sizes[1].max())
-
-
-def test_full_models_have_shapes():
-    rotor = centered_disc(order=1)
-    shapes = mode_shapes(rotor, SPEED, supports=EQUAL, modes=4)
-    np.testing.assert_allclose(shapes.frequencies[2:], modes().frequencies[2:4], rtol=2e-2)
-
-
-def test_pictures_colour_forward_and_backward():
-    for word, color in (("forward", COLORS[0]), ("backward", COLORS[1])):
-        index = next(i for i, label in enumerate(modes().labels) if word in label)
-        ax = modes().plot(index)
-        assert {line.get_color() for line in ax.lines[:-1]} == {color}
-        pyplot.close(ax.figure)
-
-
-def test_shapes_in_engineering_units():
-    """300 rad/s are 2864.8 rpm and 47.746 Hz."""
-    shown = modes().frequencies[3] / (2.0 * np.pi)
-    ax = modes().plot(3, units="rpm")
-    titles = [text.get_text() for text in ax.figure.texts]
-    assert f"{modes().labels[3]}\n{shown:.5g} Hz at a spin of 2864.8 rpm" in titles
-    pyplot.close(ax.figure)
-    assert "47.746" in modes().table()
-    assert "2864.8" in modes().table(units="rpm").splitlines()[1]
-    assert "[rad/s]" in modes().table(units="SI").splitlines()[0]
-
-
 def test_responses_tell_their_size_and_speed(tmp_path):
     """Masses of 2 kg on springs of 20 kN/m at the ends of a rod, U Ω²/(k − m Ω²) of one of them."""
     meshio = pytest.importorskip("meshio")
@@ -167,16 +112,6 @@ def test_responses_tell_their_size_and_speed(tmp_path):
     for index, speed in enumerate(speeds):
         assert any(name.startswith(f"{index} unbalance") and f"{speed:g} rad" in name
                    for name in names)  # fmt: skip
-
-
-@pytest.mark.parametrize("share", [0.01, 0.04])
-def test_captions_tell_the_extents_of_the_rotor_at_rest(share):
-    """Of a shaft along z from 0 to 0.5 m and a disc of 0.3 m, however large its motion is drawn."""
-    figure = modes().plot(3, share=share).figure
-    words = [text.get_text() for text in figure.texts]
-    sizes = r"z from 0 m to 0\.5 m, left to right; 0\.(3|29\d*) m in x, 0\.(3|29\d*) m in y"
-    assert any(re.fullmatch(sizes, line) for line in words), words
-    pyplot.close(figure)
 
 
 @pytest.mark.parametrize("frame", ["inertial", "rotor"])
@@ -201,15 +136,6 @@ def test_files_for_paraview(tmp_path):
     np.testing.assert_allclose(read.point_data[name], expected, atol=1e-12)
 
 
-def test_old_files_for_paraview_have_no_spaces_in_names(tmp_path):
-    meshio = pytest.importorskip("meshio")
-    modes().to_vtk(tmp_path / "modes.vtk")
-    read = meshio.read(tmp_path / "modes.vtk")
-    name = f"3 {modes().labels[3]}, order 0, real".replace(" ", "_")
-    expected = modes().displacement(3, 0.0)[np.unique(modes().triangles)]
-    np.testing.assert_allclose(read.point_data[name], expected, atol=1e-12)
-
-
 def test_stress_in_the_order_of_paraview(tmp_path):
     meshio = pytest.importorskip("meshio")
     nodes = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [9, 9, 9]]
@@ -220,25 +146,6 @@ def test_stress_in_the_order_of_paraview(tmp_path):
     field.to_vtk(tmp_path / "stress.vtu", [2.0], 0.0)
     read = meshio.read(tmp_path / "stress.vtu")
     assert read.point_data["stress"].tolist() == [[2, 4, 6, 12, 8, 10]] * 3
-
-
-def test_files_without_meshio_say_what_to_install(tmp_path, monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "meshio", None)
-    with pytest.raises(ImportError, match=r"exudyn-rotor\[vtk\]"):
-        modes().to_vtk(tmp_path / "modes.vtu")
-
-
-def test_wrong_requests_are_refused(tmp_path):
-    with pytest.raises(ValueError, match="ending"):
-        modes().to_vtk(tmp_path / "modes.stl")
-    with pytest.raises(ValueError, match=r"ending .gif"):
-        modes().animate(tmp_path / "modes.mp4")
-    with pytest.raises(ValueError, match="index"):
-        modes().plot(99)
-    with pytest.raises(ValueError, match="no mesh nodes"):
-        mode_shapes(reduced().without_shapes(), SPEED, supports=EQUAL)
-    with pytest.raises(ValueError, match="above zero"):
-        response_shapes(reduced(), [0.0, 1.0], [Unbalance("left", 1e-4)], supports=EQUAL)
 
 
 def run_up() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -282,20 +189,6 @@ def test_spectra_in_engineering_units(units, per_speed, per_rate):
     pyplot.close(figure)
 
 
-@pytest.mark.parametrize(("orders", "last"), [((1.0,), 60.0), ((1.0, 3.0), 180.0)])
-def test_pictures_end_where_nothing_is_left(orders, last):
-    """20 to 60 Hz in samples of 1 kHz: not 500 Hz, of which the spectra would be a tenth.
-
-    Windows of 0.2 s widen a line by 4/0.2 s at most.
-    """
-    found = spectra(*run_up(), length=0.2)
-    low, high = found.plot(orders=orders).get_xlim()
-    assert 1.1 * last < high == pytest.approx(-low, rel=0.1)
-    assert high < 1.2 * (last + 20.0)
-    assert found.plot(highest=2.0 * np.pi * 300.0).get_xlim()[1] == pytest.approx(300.0, rel=0.1)
-    assert found.plot_spectrogram().get_ylim()[1] < 500.0
-
-
 def test_amplitude_of_one_signal():
     """A harmonic on a line of the spectrum, and a constant that is taken out."""
     time = np.arange(0.0, 1.0, 1e-3)
@@ -315,32 +208,3 @@ def test_cascade_and_spectrogram_are_drawn():
     np.testing.assert_allclose(axes[0].get_xlim(), (-100.0, 100.0), atol=3.0)
     assert len(axes[0].collections[0].get_paths()) == len(found.times)
     pyplot.close(figure)
-
-
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"length": 0.004}, "steps"),
-        ({"overlap": 1.0}, "overlap"),
-        ({"time": [0.0, 1.0, 3.0, 4.0]}, "motion: needs the shape"),
-        ({"time": np.geomspace(1.0, 2.0, 100)}, "even steps"),
-        ({"speed": [1.0, 2.0]}, "speed: needs one number"),
-    ],
-)
-def test_records_that_make_no_spectra_are_refused(change, words):
-    time = np.arange(100) * 1e-3
-    given = {"time": time, "motion": np.sin(time), "speed": 1.0, "length": 0.05, **change}
-    with pytest.raises(ValueError, match=words):
-        spectra(**given)
-
-
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_keyphasor_marks_stand_at_whole_turns(sign):
-    angle = sign * np.linspace(-1.0, 20.0, 4000)
-    ax = plot_orbit(1e-6 * np.column_stack([np.cos(angle), 0.5 * np.sin(angle)]), angle)
-    marks = ax.lines[1].get_xydata()
-    np.testing.assert_allclose(marks, [[1.0, 0.0]] * 4, atol=1e-5)
-    assert (ax.get_xlabel(), ax.get_ylabel()) == ("n1 [µm]", "n2 [µm]")  # of any axis
-    pyplot.close(ax.figure)
-    with pytest.raises(ValueError, match="one way"):
-        plot_orbit(np.zeros((3, 2)), [0.0, 1.0, 0.5])

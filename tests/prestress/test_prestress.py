@@ -6,7 +6,7 @@ import ngsolve as ngs
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from models import ALUMINIUM, STEEL, block_beam, disc_rotor
+from models import STEEL, block_beam, disc_rotor
 from netgen.occ import Cylinder, OCCGeometry, Pnt, Z
 
 from exudyn_rotor import Prestress, SolidRotor, SpinAxis, free_modes
@@ -59,40 +59,6 @@ def test_displacement_is_in_equilibrium_with_the_balanced_load(unbalanced):
     assert np.abs(left).max() < 1e-9 * np.abs(load).max()
     momentum = unbalanced.mass @ displacement
     assert np.abs(rotations(unbalanced.nodes, (0, 0, 0)).T @ momentum).max() < 1e-20
-
-
-def test_stress_turned_with_a_rotation_is_the_load_turned(unbalanced):
-    # virtual work of σ⁰ on ∇(aᵀ×v): K_G (a × x) = a × f at every node
-    matrix = unbalanced.prestress().matrix
-    load = balanced_load(unbalanced).reshape(-1, 3)
-    turns = rotations(unbalanced.nodes, unbalanced.center_of_mass)
-    for axis, turn in zip(np.eye(3), turns.T, strict=True):
-        expected = np.cross(axis, load).ravel()
-        np.testing.assert_allclose(
-            matrix @ turn, expected, rtol=0, atol=1e-10 * np.abs(expected).max()
-        )
-    shifts = np.tile(np.eye(3), (unbalanced.node_count, 1))
-    assert np.abs(matrix @ shifts).max() < 1e-12 * abs(matrix).max()
-
-
-@pytest.mark.parametrize("order", [1, 2])
-def test_positions_give_the_elastic_force_back(order):
-    # ∇x = I, so K_G x = ∫ σ : ∇v = K u
-    rotor = thin_disc(order)
-    u = np.random.default_rng(3).normal(size=3 * rotor.node_count)
-    force = rotor.stiffness @ u
-    found = rotor.elements.geometric_stiffness(u) @ rotor.nodes.ravel()
-    np.testing.assert_allclose(found, force, rtol=0, atol=1e-11 * np.abs(force).max())
-
-
-def test_nodal_stress_gives_the_matrix_of_its_displacement(beam):
-    gradient = 1e-3 * np.random.default_rng(1).normal(size=(3, 3))
-    u = (beam.nodes @ gradient.T)[:, :, None].reshape(-1)
-    stress = beam.stress_recovery(u[:, None])[:, :, 0]
-    of_stress = beam.elements.geometric_stiffness_of_stress(stress)
-    of_displacement = beam.elements.geometric_stiffness(u)
-    assert abs(of_stress - of_displacement).max() < 1e-11 * abs(of_stress).max()
-    np.testing.assert_allclose(beam.elements.load_of_stress(stress), beam.stiffness @ u, atol=1e-3)
 
 
 # ------------------------------------------------------------------ closed solutions
@@ -180,90 +146,7 @@ def test_both_parts_are_the_derivative_of_the_tangent(beam):
     assert abs(geometric - expected).max() > 0.1 * abs(expected).max()
 
 
-def test_rotation_turns_shape_and_force_together(unbalanced):
-    # g(R(x + u) − x) = R g(u) of elastic forces g, linear in the angle and in u
-    matrix = unbalanced.prestress(initial_displacement=True).per_square
-    displacement = unbalanced.prestress().displacement.reshape(-1, 3)
-    load = balanced_load(unbalanced).reshape(-1, 3)
-    turns = rotations(unbalanced.nodes, unbalanced.center_of_mass)
-    for axis, turn in zip(np.eye(3), turns.T, strict=True):
-        force = np.cross(axis, load).ravel()
-        expected = force - unbalanced.stiffness @ np.cross(axis, displacement).ravel()
-        np.testing.assert_allclose(matrix @ turn, expected, rtol=0, atol=1e-9 * abs(force).max())
-
-
-def test_turned_static_state_is_not_strained(unbalanced):
-    """``E`` of the deformed rotor is that of the turned one, in every power of the displacement.
-
-    ``a × (x + u⁰)`` gives ``K_uu (a × x) = −K_u (a × u⁰)`` and ``K_uu (a × u⁰) = 0``.
-    """
-    prestress = unbalanced.prestress(initial_displacement=True)
-    K_u, K_uu = prestress.initial_displacement
-    displacement = prestress.displacement.reshape(-1, 3)
-    turns = rotations(unbalanced.nodes, unbalanced.center_of_mass)
-    for axis, turn in zip(np.eye(3), turns.T, strict=True):
-        turned = np.cross(axis, displacement).ravel()
-        expected = -K_u @ turned
-        limit = 1e-9 * np.abs(expected).max()
-        np.testing.assert_allclose(K_uu @ turn, expected, rtol=0, atol=limit)
-        rounding = 1e-12 * abs(K_uu).max() * np.abs(turned).max()
-        assert np.abs(K_uu @ turned).max() < rounding
-
-
-def test_initial_displacement_is_added_when_asked_for(disc):
-    plain, more = disc.prestress(), disc.prestress(initial_displacement=True)
-    part = disc.elements.initial_displacement_stiffness(plain.displacement)
-    assert plain.initial_displacement is None
-    assert plain.per_fourth_power is None
-    assert abs(more.matrix - plain.matrix).max() == 0.0
-    assert abs(more.per_square - plain.per_square - part).max() < 1e-11 * abs(part).max()
-
-
 # ------------------------------------------------------------------ stress at rest
-
-
-def test_stress_out_of_balance_is_put_into_equilibrium(disc):
-    stress = 1e8 * np.random.default_rng(5).normal(size=(1, 6)) * np.ones((disc.node_count, 1))
-    stress *= 1 + np.cos(20 * disc.nodes[:, :1])
-    with pytest.warns(UserWarning, match="not in equilibrium"):
-        constant = disc.prestress(stress=stress).constant
-    turned = constant @ rotations(disc.nodes, (0, 0, 0))
-    assert np.abs(turned).max() < 1e-10 * abs(constant).max() * RADIUS
-
-
-def test_stress_of_bending_springs_back(beam):
-    """Linear over the height and held by nothing: none of it is left, but for rounding.
-
-    Quadratic elements show it exactly; solutions lose the condition of a beam, some 1e6 eps.
-    """
-    bending = np.zeros((beam.node_count, 6))
-    bending[:, 2] = 1e9 * beam.nodes[:, 0]
-    with pytest.warns(UserWarning, match="100% of it is not in equilibrium"):
-        left = beam.prestress(stress=bending).constant_stress
-    assert np.abs(left).max() < 1e-8 * np.abs(bending).max()
-
-
-def test_stress_in_equilibrium_gives_no_warning(beam):
-    held = beam.clamped(["left", "right"])
-    tension = np.zeros((held.node_count, 6))
-    tension[:, 2] = 1e7
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        held.prestress(stress=tension)
-
-
-@pytest.mark.parametrize("shape", [(5, 6), (6,), None])
-def test_stress_of_another_mesh_is_refused(beam, shape):
-    shape = shape or (beam.node_count, 3)
-    with pytest.raises(
-        ValueError, match=r"stress: needs finite numbers \[Pa\] of shape \(132, 6\), got"
-    ):
-        beam.prestress(stress=np.zeros(shape))
-
-
-def test_stress_must_be_finite(beam):
-    with pytest.raises(ValueError, match="stress: needs finite numbers"):
-        beam.prestress(stress=np.full((beam.node_count, 6), np.nan))
 
 
 # ------------------------------------------------------------------ yielding
@@ -312,66 +195,3 @@ def test_imported_matrix_is_taken_as_it_is(disc):
     assert abs(more.per_square - 3.0 * computed.matrix).max() < 1e-12 * abs(K_u).max()
     assert abs(more.per_fourth_power - K_uu).max() == 0.0
     assert "initial displacement" in repr(more)
-
-
-def test_initial_displacement_needs_both_matrices(disc):
-    matrix = disc.prestress().matrix
-    for given, error, message in (
-        (matrix, TypeError, r"needs the two matrices \(K_u, K_uu\)"),
-        (True, TypeError, "got True"),
-        ((matrix, np.eye(5)), ValueError, "initial_displacement: K_uu: the shape must be"),
-    ):
-        with pytest.raises(error, match=message):
-            Prestress.from_matrix(matrix, disc.nodes, initial_displacement=given)
-
-
-@pytest.mark.parametrize(
-    ("matrix", "message"),
-    [
-        (np.eye(5), "shape must be"),
-        (np.triu(np.ones((9, 9))), "not symmetric"),
-        (np.full((9, 9), np.nan), "not finite"),
-    ],
-)
-def test_wrong_matrices_are_refused(matrix, message):
-    with pytest.raises(ValueError, match=f"prestress matrix: .*{message}"):
-        Prestress.from_matrix(matrix, np.eye(3))
-
-
-def test_matrix_in_another_unit_is_refused(disc):
-    per_rpm = disc.prestress().matrix * (np.pi / 30) ** 2
-    with pytest.raises(ValueError, match=r"mesh axes z and z with 0\.00173084 kg m².*0\.157833"):
-        disc.with_prestress(Prestress.from_matrix(per_rpm, disc.nodes))
-    softened = disc.prestress().matrix - disc.mass
-    with pytest.raises(ValueError, match="no spin softening"):
-        disc.with_prestress(Prestress.from_matrix(softened, disc.nodes))
-
-
-def test_prestress_of_another_mesh_or_kind_is_refused(disc, beam):
-    with pytest.raises(ValueError, match="another mesh"):
-        beam.with_prestress(disc.prestress())
-    with pytest.raises(TypeError, match=r"prestress: needs Prestress, got 1; rotor\.prestress\(\)"):
-        beam.with_prestress(1)
-    carrying = disc.with_prestress(disc.prestress())
-    for change in (
-        carrying.prestress,
-        lambda: carrying.with_prestress(carrying.carried_prestress),
-        lambda: carrying.add_point_mass((0, 0, 0), 0.1),
-        lambda: carrying.clamped("left"),
-    ):
-        with pytest.raises(ValueError, match="carries a prestress already"):
-            change()
-
-
-def test_rotor_without_elements_offers_other_ways(disc):
-    plain = SolidRotor.from_matrices(disc.mass, disc.stiffness, disc.nodes, "z")
-    with pytest.raises(ValueError, match=r"Prestress.from_matrix, or use stiffening='tilt'"):
-        plain.prestress()
-
-
-def test_changed_mesh_is_refused():
-    mesh = block_beam()
-    rotor = SolidRotor.from_ngsolve(mesh, ALUMINIUM, "z")
-    mesh.ngmesh.Scale(1.1)
-    with pytest.raises(ValueError, match="mesh was changed"):
-        rotor.prestress()

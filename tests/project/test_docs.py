@@ -94,12 +94,3 @@ def test_every_script_of_validation_has_a_place():
     pages = "".join(text for page, text in PAGES.items() if page.startswith("docs/validation"))
     for name in SCRIPTS:
         assert f"python -m validation {name}" in pages, name
-
-
-@pytest.mark.parametrize("page", [page for page in PAGES if "{code-line}" in PAGES[page]])
-def test_equations_lead_to_one_line(page):
-    """What the role ``code-line`` does, without a build."""
-    for link in re.findall(r"\{code-line\}`([^`]+)`", PAGES[page]):
-        path, _, text = link.partition(": ")
-        lines = (ROOT / "exudyn_rotor" / path).read_text(encoding="utf-8").splitlines()
-        assert sum(text in line for line in lines) == 1 or not text, link

@@ -3,7 +3,6 @@
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 
-import numpy as np
 import pytest
 from dask.distributed import Client, LocalCluster
 
@@ -51,22 +50,3 @@ def test_errors_name_the_value(executor):
         sweep(inverse, [1.0, 2.0, 3.0], executor=executor, label="inverse")
     with pytest.raises(RuntimeError, match=r"sweep at 0\.0: ZeroDivisionError"):
         sweep(inverse, [1.0, 0.0], executor=executor)
-
-
-def test_errors_here_name_the_value_too():
-    with pytest.raises(ValueError, match=r"inverse at 3\.0: three is not allowed"):
-        sweep(inverse, [1.0, 3.0], label="inverse")
-
-
-def test_a_lambda_does_not_reach_other_processes():
-    with (
-        ProcessPoolExecutor(1) as pool,
-        pytest.raises(RuntimeError, match="cannot be sent to this executor"),
-    ):
-        sweep(lambda value: value, [1.0, 2.0], executor=pool)
-
-
-def test_progress_counts_all_values(executor, capsys):
-    for chosen in (None, executor):
-        sweep(inverse, np.linspace(4.0, 5.0, 130), executor=chosen, progress=True, label="counted")
-        assert "counted: 100%" in capsys.readouterr().err

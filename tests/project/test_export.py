@@ -1,7 +1,6 @@
 """Results in other units, in Campbell diagrams of engineers, and in files of other programs."""
 
 import csv
-import sys
 
 import numpy as np
 import pytest
@@ -9,13 +8,8 @@ from matplotlib import pyplot
 from small_results import STORED
 
 from exudyn_rotor import SolidRotor, Support, campbell, critical_speeds
-from exudyn_rotor.linear.modal.excitation import crossings
 from exudyn_rotor.results import Result
-from exudyn_rotor.storage import write_text
 from exudyn_rotor.units import Units
-
-RESULTS = {name: kept for name, kept in STORED.items() if isinstance(kept, Result)}
-EVERY = pytest.mark.parametrize("name", RESULTS)
 
 
 @pytest.fixture(scope="module")
@@ -25,6 +19,10 @@ def diagram():
         np.eye(3), np.zeros((3, 3)), [[0, 0, 0]], axis="z", interfaces={"at": [0]}
     )
     return campbell(point, [0.0, 30.0, 70.0, 110.0], supports=[Support("at", 1e4 * np.eye(3))])
+
+
+RESULTS = {name: kept for name, kept in STORED.items() if isinstance(kept, Result)}
+EVERY = pytest.mark.parametrize("name", RESULTS)
 
 
 # ------------------------------------------------------------------ units
@@ -54,31 +52,7 @@ def test_tables_and_columns_carry_their_units(name):
         assert any("[rpm]" in label for label in columns)
 
 
-def test_frequencies_stay_in_hertz_beside_turns_a_minute(diagram):
-    ax = diagram.plot(units="rpm")
-    assert ax.get_xlabel() == "spin speed [rpm]"
-    assert ax.get_ylabel() == "frequency in the inertial frame [Hz]"
-    heights = np.concatenate([line.get_ydata() for line in ax.lines[:-1]])
-    assert np.allclose(heights, 100.0 / (2.0 * np.pi))
-    assert np.max(ax.lines[0].get_xdata()) == pytest.approx(110.0 * 30.0 / np.pi)
-
-
 # ------------------------------------------------------------------ excitation
-
-
-def test_engine_orders_cross_modes_in_the_rotor_frame(diagram):
-    """Forward whirl has ω − Ω there, backward ω + Ω, axial motion ω: 2Ω at ω/3, ω and ω/2."""
-    expected = np.array([100.0 / 3.0, 50.0, 100.0])
-    speeds, modes = diagram.crossings(2.0, frame="rotor")
-    np.testing.assert_allclose(speeds, expected, rtol=1e-12)
-    assert sorted(modes) == [0, 1, 2]
-    ax = diagram.plot(frame="rotor", orders=2.0, units="rpm")
-    marks = next(line for line in ax.lines if line.get_label() == "crossing")
-    places = np.column_stack([30.0 / np.pi * expected, expected / np.pi])  # [rpm], [Hz]
-    np.testing.assert_allclose(marks.get_xydata(), places, rtol=1e-12)
-    with pytest.raises(ValueError, match="frame: 'rotating' is unknown"):
-        diagram.crossings(2.0, frame="rotating")
-    pyplot.close(ax.figure)
 
 
 def test_crossings_agree_with_critical_speeds():
@@ -91,33 +65,6 @@ def test_crossings_agree_with_critical_speeds():
     wanted = critical_speeds(rotor, supports=held, nodal_diameters=[1]).speeds
     found, _ = campbell(rotor, np.linspace(0.0, 250.0, 26), supports=held).crossings()
     np.testing.assert_allclose(np.unique(found.round(6)), np.unique(wanted.round(6)), rtol=1e-7)
-
-
-def test_broken_lines_and_modes_on_the_line_do_not_cross_it():
-    speeds, values = np.array([0.0, 100.0, 200.0]), np.array([[150.0], [150.0], [150.0]])
-    whole = np.array([[False], [True], [True]])
-    assert crossings(speeds, values, whole, 1.0)[0] == pytest.approx(150.0)
-    whole[2] = False
-    assert crossings(speeds, values, whole, 1.0)[0].size == 0
-    rounded = speeds[:, None] * (1.0 + 1e-14 * np.array([[1.0], [-1.0], [1.0]]))
-    assert crossings(speeds, rounded, whole | True, 1.0)[0].size == 0
-
-
-def test_operating_range_and_margins_are_shaded(diagram):
-    ax = diagram.plot(units="SI", operating_range=(40.0, 80.0), margins=(0.1, 0.25))
-    spans = [(patch.get_x(), patch.get_x() + patch.get_width()) for patch in ax.patches]
-    np.testing.assert_allclose(spans, [(40.0, 80.0), (36.0, 40.0), (80.0, 100.0)])
-    across = STORED["CriticalSpeedMap"].plot(units="SI", operating_range=(12.0, 15.0))
-    assert [patch.get_y() for patch in across.patches] == [12.0]
-    for given, message in (
-        ({"operating_range": (80.0, 40.0)}, "operating_range: needs the lowest and the highest"),
-        ({"margins": (0.1, 0.1)}, "margins: are beside an operating range"),
-        ({"margins": (-0.1, 0.1), "operating_range": (4.0, 8.0)}, "margins: needs shares"),
-        ({"orders": [1.0, 0.0]}, "orders: needs positive numbers"),
-    ):
-        with pytest.raises(ValueError, match=message):
-            diagram.plot(**given)
-    pyplot.close("all")
 
 
 # ------------------------------------------------------------------ files and other libraries
@@ -134,19 +81,6 @@ def test_csv_holds_every_number_as_it_is(name, tmp_path):
     for values, read in zip(columns.values(), zip(*rows, strict=True), strict=True):
         back = np.array(read) if values.dtype.kind in "Ub" else np.array(read, dtype=float)
         assert np.array_equal(back, values.astype(back.dtype), equal_nan=back.dtype.kind == "f")
-
-
-def test_a_file_is_replaced_by_a_complete_one_only(tmp_path, monkeypatch):
-    path = tmp_path / "kept.csv"
-    write_text(path, "a Größe\n")
-    assert path.read_text(encoding="utf-8") == "a Größe\n"
-    monkeypatch.setattr("os.fsync", lambda handle: (_ for _ in ()).throw(OSError("disk full")))
-    with pytest.raises(OSError, match="disk full"):
-        STORED["StabilityMap"].to_csv(path)
-    assert path.read_text(encoding="utf-8") == "a Größe\n"
-    assert [file.name for file in tmp_path.iterdir()] == ["kept.csv"]
-    with pytest.raises(FileNotFoundError, match=r"path: the folder .* does not exist"):
-        STORED["StabilityMap"].to_csv(tmp_path / "nowhere" / "table.csv")
 
 
 @EVERY
@@ -169,13 +103,18 @@ def test_data_sets_hold_the_fields(name):
         assert float(data["growth"].sel(speeds=20.0)[0]) == result.growth[1, 0]
 
 
-def test_a_missing_library_is_named(monkeypatch):
-    for name, method in (("pandas", "to_dataframe"), ("xarray", "to_xarray")):
-        monkeypatch.setitem(sys.modules, name, None)
-        with pytest.raises(ImportError, match=rf"{method}: needs {name}, .*exudyn-rotor\[{name}\]"):
-            getattr(STORED["Campbell"], method)()
-
-
-def test_a_result_without_a_table_says_so():
-    with pytest.raises(TypeError, match="columns: a Result has none"):
-        Result.columns(Result())
+def test_operating_range_and_margins_are_shaded(diagram):
+    ax = diagram.plot(units="SI", operating_range=(40.0, 80.0), margins=(0.1, 0.25))
+    spans = [(patch.get_x(), patch.get_x() + patch.get_width()) for patch in ax.patches]
+    np.testing.assert_allclose(spans, [(40.0, 80.0), (36.0, 40.0), (80.0, 100.0)])
+    across = STORED["CriticalSpeedMap"].plot(units="SI", operating_range=(12.0, 15.0))
+    assert [patch.get_y() for patch in across.patches] == [12.0]
+    for given, message in (
+        ({"operating_range": (80.0, 40.0)}, "operating_range: needs the lowest and the highest"),
+        ({"margins": (0.1, 0.1)}, "margins: are beside an operating range"),
+        ({"margins": (-0.1, 0.1), "operating_range": (4.0, 8.0)}, "margins: needs shares"),
+        ({"orders": [1.0, 0.0]}, "orders: needs positive numbers"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            diagram.plot(**given)
+    pyplot.close("all")

@@ -145,16 +145,3 @@ def test_no_circle_within_a_folder(folder):
 
 def _entry(module: str, folder: str) -> str:
     return module.removeprefix(f"{folder}.").partition(".")[0]
-
-
-def test_a_circle_and_a_wrong_way_would_be_seen(tmp_path, monkeypatch):
-    """The reading of imports itself: in functions, for types, relative, of whole modules."""
-    (tmp_path / "low.py").write_text(
-        "from typing import TYPE_CHECKING\n"
-        "if TYPE_CHECKING:\n    from exudyn_rotor.high import x\n"
-        "def f():\n    from . import middle\n    import exudyn_rotor.top\n"
-        "from exudyn_rotor import checks\nimport numpy\n"
-    )
-    known = {name: tmp_path / f"{name}.py" for name in ("low", "middle", "high", "top", "checks")}
-    monkeypatch.setattr("test_layout.MODULES", known)
-    assert sorted(imports("low")) == ["checks", "high", "middle", "top"]

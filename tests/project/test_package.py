@@ -1,13 +1,9 @@
 """What the package says about itself agrees."""
 
-import ast
-import importlib
 import re
 import subprocess
 import sys
 from pathlib import Path
-
-import pytest
 
 import exudyn_rotor
 
@@ -41,43 +37,10 @@ def test_types_are_published():
     assert 'exudyn_rotor = ["py.typed"]' in read("pyproject.toml")
 
 
-def test_licence_is_the_one_of_the_file():
-    assert 'license = "BSD-3-Clause"' in read("pyproject.toml")
-    assert "license: BSD-3-Clause" in read("CITATION.cff")
-    assert read("LICENSE").startswith("BSD 3-Clause License")
-
-
 def test_public_names_are_there_sorted_and_with_an_example():
     assert exudyn_rotor.__all__ == sorted(exudyn_rotor.__all__)
     for name in exudyn_rotor.__all__:
         assert ">>> " in getattr(exudyn_rotor, name).__doc__, f"{name} lacks an example"
-
-
-def told_to_type_checkers() -> dict[str, str]:
-    """Return public names by module, as they stand in the block for type checkers."""
-    tree = ast.parse(read("exudyn_rotor/__init__.py"))
-    [block] = (part for part in tree.body if isinstance(part, ast.If))
-    assert ast.unparse(block.test) == "TYPE_CHECKING"
-    pairs = [(line.module, alias) for line in block.body for alias in line.names]
-    assert all(alias.name == alias.asname for _, alias in pairs)  # which makes it public
-    return {alias.name: module.removeprefix("exudyn_rotor.") for module, alias in pairs}
-
-
-def test_type_checkers_see_what_is_imported_when_it_is_used():
-    assert told_to_type_checkers() == exudyn_rotor._MODULES
-    assert set(exudyn_rotor.__all__) <= set(dir(exudyn_rotor))
-    for name, module in exudyn_rotor._MODULES.items():
-        home = importlib.import_module(f"exudyn_rotor.{module}")
-        assert getattr(exudyn_rotor, name) is getattr(home, name)
-
-
-def test_modules_are_there_and_other_names_are_not():
-    """Of the package alone: a name that is misspelt is an AttributeError."""
-    fresh = "import exudyn_rotor as er; print(er.plotting.save.__name__, er.linear.__name__)"
-    assert run(fresh) == "save exudyn_rotor.linear"
-    for name in ("Rotor", "linear.modal", "_plotting", "__wrapped__"):
-        with pytest.raises(AttributeError, match=f"exudyn_rotor' has no attribute '{name}'"):
-            getattr(exudyn_rotor, name)
 
 
 def run(script: str) -> str:
@@ -111,18 +74,6 @@ print(*sorted(others))
     ]
 
 
-def test_scenes_without_rotors_load_no_modules_of_rotors():
-    script = """
-import exudyn, sys, exudyn_rotor
-mbs = exudyn.SystemContainer().AddSystem()
-ground = mbs.CreateGround()
-mbs.AddMarker(exudyn.itemInterface.MarkerBodyPosition(bodyNumber=ground))
-mbs.Assemble()
-print(mbs.SolveStatic.__wrapped__.__module__, "exudyn_rotor.solid_rotor" in sys.modules)
-"""
-    assert run(script) == "exudyn.solver False"
-
-
 def test_models_need_no_matplotlib():
     script = "import sys, exudyn_rotor as er; er.SolidRotor, er.add_rotor, er.craig_bampton_modes"
     assert run(script + "; print('matplotlib' in sys.modules)") == "False"
@@ -133,10 +84,3 @@ def test_contributing_names_files_that_exist():
     assert len(files) > 20
     for name in files:
         assert (ROOT / name).exists() or (ROOT / "exudyn_rotor" / name).exists(), name
-
-
-def test_importing_the_package_leaves_slow_modules_alone():
-    """SciPy's signals and statistics, needed by few functions, would take a fifth of the time."""
-    slow = re.compile(r"^(from|import) scipy\.(signal|stats)\b", re.MULTILINE)
-    files = sorted((ROOT / "exudyn_rotor").rglob("*.py"))
-    assert [file.name for file in files if slow.search(file.read_text(encoding="utf-8"))] == []

@@ -1,35 +1,26 @@
 """The report is one file, holds what was given, and nothing in it is taken for HTML."""
 
-import base64
-import csv
-import io
 import re
-import warnings
 from html.parser import HTMLParser
 
 import exudyn
 import numpy as np
 import pytest
-from matplotlib import pyplot, rc_context
+from matplotlib import pyplot
 from point_rotors import ring_rotor
 from small_results import STORED
 from test_controlled_trains import MAGNETIC, PADS
 
-import exudyn_rotor
 from exudyn_rotor import (
     Foundation,
     GearMesh,
     Link,
     RotorTrain,
     ShortJournalBearing,
-    SolidRotor,
     Support,
-    Unbalance,
     add_rotor,
     linear_model,
-    plotting,
     report,
-    unbalance_response,
 )
 from exudyn_rotor.results import Result
 
@@ -73,13 +64,6 @@ def ring():
     return ring_rotor(0.1, 0.2, 10.0).with_interface("mid", range(10))
 
 
-def test_pictures_do_not_have_the_font_that_other_plots_set(written):
-    """Exudyn's plots leave a large one behind."""
-    plain = written(RESULTS[:1], title="All")
-    with rc_context({"font.size": 30.0}):
-        assert written(RESULTS[:1], title="All") == plain
-
-
 def test_every_result_is_shown_by_table_picture_and_columns(written):
     """A stress field needs modal coordinates, a list of critical speeds has no picture."""
     before = pyplot.get_fignums()
@@ -91,41 +75,6 @@ def test_every_result_is_shown_by_table_picture_and_columns(written):
     assert text.count("<pre>") == text.count('download="') == len(RESULTS)
     assert page.tags.count("img") == len(RESULTS) - 2
     assert pyplot.get_fignums() == before
-
-
-def test_the_file_needs_nothing_beside_it(written, ring):
-    page = Page(written([ring, ring.reduce(2), STORED["StabilityMap"], STORED["Stability"]]))
-    assert all(link.startswith(("data:", "#s")) for link in page.links)
-    pictures = [link for link in page.links if link.startswith("data:image/png;base64,")]
-    assert all(base64.b64decode(one.split(",")[1]).startswith(b"\x89PNG") for one in pictures)
-
-
-def test_it_says_which_versions_made_it_and_which_unbalance_was_applied(written, ring):
-    """42.5 g mm at 30 degrees; a report without them could not be checked."""
-    given = {"supports": Support("mid", 1e5, 50.0), "accuracy": None, "own": False}
-    response = unbalance_response(ring, [50.0], Unbalance("mid", 4.25e-5, np.pi / 6), **given)
-    text = written([response])
-    assert f"exudyn_rotor {exudyn_rotor.__version__}, Exudyn {exudyn.__version__}" in text
-    assert "unbalance of 42.5 g mm at &#x27;mid&#x27;, angle 30 deg" in text
-    assert response.loads == ("unbalance of 42.5 g mm at 'mid', angle 30 deg",)
-    own = unbalance_response(ring, [50.0], Unbalance("mid", 1e-5), **given | {"own": True})
-    assert own.loads[1].startswith("eccentricity of the rotor")
-
-
-def test_columns_are_those_of_the_result(written):
-    kept = STORED["StabilityMap"]
-    text = written({"Growth, both": kept})
-    name, data = re.search(r'download="(.+?)" href="data:text/csv;base64,(.+?)"', text).groups()
-    assert name == "growth,_both.csv"
-    header, *rows = csv.reader(io.StringIO(base64.b64decode(data).decode("utf-8")))
-    assert header == list(kept.columns("rpm"))
-    assert [float(row[2]) for row in rows] == kept.growth.ravel().tolist()
-
-
-def test_units_reach_tables_and_pictures(written):
-    kept = STORED["CriticalSpeeds"]  # 10 rad/s is 95.493 rpm
-    assert "95.493" in written(kept)
-    assert "95.493" not in written(kept, units="SI")
 
 
 def test_rotor_supports_and_model_are_described(written, ring):
@@ -147,19 +96,6 @@ def test_rotor_supports_and_model_are_described(written, ring):
     assert "centrifugal stiffening: tilt\nfree motions: translation along axis" in text
     assert "Foundation(1 coordinates, 47.75 to 47.75 Hz, points: mid)" in text
     assert Page(text).headings[1:] == ["Rotor", "Rotor", "Supports", *["Linear model"] * 2]
-
-
-@pytest.mark.parametrize(
-    ("axis", "told"),
-    [
-        ("x", "n1 [0, 1, 0], n2 [0, 0, 1]"),
-        ([0.0, -0.6, 0.8], "n1 [1, 0, 0], n2 [0, 0.8, 0.6]"),  # n1 × n2 is the axis
-    ],
-)
-def test_directions_across_the_axis_are_told(written, axis, told):
-    """Those in which supports and motions are, which are others than x and y in general."""
-    rotor = SolidRotor.from_matrices(np.eye(3), 1e6 * np.eye(3), [[0.0, 0.0, 0.0]], axis)
-    assert written([rotor, rotor.reduce(3)]).count(told) == 2
 
 
 def test_every_model_of_a_campbell_diagram_is_described(written):
@@ -201,49 +137,6 @@ def test_every_model_of_a_campbell_diagram_is_described(written):
         assert found in re.sub(r"\n +", " ", text)
     with pytest.raises(TypeError, match=r"give a scene as linear_model\(mbs, body=…\)"):
         written([mbs])
-
-
-def test_own_pictures_take_the_place_of_the_usual_one(written):
-    kept = STORED["Campbell"]
-    ax = kept.plot(units="SI")
-    assert Page(written({"Campbell": [kept, ax]})).tags.count("img") == 1
-    assert ax.figure.number in pyplot.get_fignums()  # it is the caller's
-    bode = STORED["UnbalanceResponse"].plot()
-    assert Page(written([bode])).tags.count("img") == 1
-    pyplot.close("all")
-
-
-def test_pictures_in_parts_of_a_figure_are_shown_once_and_whole(written, tmp_path):
-    made = pyplot.figure()
-    axes = [part.subplots() for part in made.subfigures(1, 2)]
-    labels = [
-        axes[0].annotate("AF 2.0", (0.5, 0.5), textcoords="offset points", xytext=(4, 3))
-        for _ in range(3)
-    ]
-    plotting.keep_apart(labels)
-    assert len({label.get_position() for label in labels}) == 3
-    plotting.save(np.array(axes), tmp_path / "parts.png")
-    assert (tmp_path / "parts.png").stat().st_size > 1000
-    assert Page(written({"Parts": axes})).tags.count("img") == 1
-    pyplot.close(made)
-
-
-def test_text_is_never_taken_for_html(written):
-    text = written({"a < b": "<script>alert(1)</script> & more"}, title="R&D", raised=["<b>"])
-    assert "script" not in Page(text).tags
-    assert Page(text).headings == ["R&D", "a < b", "Warnings"]
-    assert "&lt;script&gt;alert(1)&lt;/script&gt; &amp; more" in text
-
-
-def test_warnings_are_listed_once(written):
-    with warnings.catch_warnings(record=True) as raised:
-        warnings.simplefilter("always")
-        for _ in range(3):
-            warnings.warn("the table ends at 300 rad/s", UserWarning, stacklevel=1)
-    text = written("text", raised=[*raised, UserWarning("second")])
-    assert text.count("the table ends at 300 rad/s") == 1
-    assert "second" in text
-    assert "Warnings" not in written("text")
 
 
 def test_wrong_input_leaves_the_old_file(written, tmp_path):

@@ -1,10 +1,7 @@
 """Results are small, readable, stored without pickle, and drawn without a display."""
 
 import inspect
-import subprocess
-import sys
 from dataclasses import dataclass
-from typing import get_type_hints
 
 import numpy as np
 import pytest
@@ -13,14 +10,13 @@ from point_rotors import ring_rotor
 from small_results import STORED
 
 import exudyn_rotor
-from exudyn_rotor import plotting, results
+from exudyn_rotor import results
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
 from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse
 from exudyn_rotor.linear.response.steady_response import harmonic_response, unbalance_response
 from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.results import Result, load_result, numbers, storable, words
-from exudyn_rotor.storage import read_arrays, write_arrays
 
 
 @storable
@@ -38,13 +34,6 @@ class Everything(Result):
     marks: np.ndarray = numbers("pairs", dtype=bool)
     titles: tuple[str, ...] = words(2, default=("x", "y"))
     absent: np.ndarray | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class Unstorable(Result):
-    """Not registered."""
-
-    value: float
 
 
 def everything(**changes) -> Everything:
@@ -86,53 +75,6 @@ def test_every_kind_of_field_comes_back(tmp_path):
     assert Everything.load(tmp_path / "empty.npz").names == ()
 
 
-@pytest.mark.parametrize("order", ["C", "F"])
-def test_arrays_come_back_from_either_memory_order(tmp_path, order):
-    """Columns of modes are stored one after the other by some solvers, rows by others."""
-    table = np.array(np.arange(24.0).reshape(2, 3, 4), order=order)
-    write_arrays(tmp_path / "table.npz", "test", {"table": table, "slice": table[:, ::2]})
-    found = read_arrays(tmp_path / "table.npz", "test")
-    assert np.array_equal(found["table"], table)
-    assert np.array_equal(found["slice"], table[:, ::2])
-
-
-def test_one_changed_value_is_damage(tmp_path):
-    """Beside the checksum of what was written; shape and type are the same."""
-    path = tmp_path / "table.npz"
-    write_arrays(path, "test", {"table": np.arange(24.0).reshape(2, 3, 4)})
-    with np.load(path) as file:
-        entries = {name: file[name] for name in file.files}
-    np.savez(path, **entries)
-    read_arrays(path, "test")
-    entries["table"][1, 2, 3] = np.nextafter(23.0, 24.0)
-    np.savez(path, **entries)
-    with pytest.raises(ValueError, match="its checksum is not that of its content"):
-        read_arrays(path, "test")
-
-
-@pytest.mark.parametrize("name", ["ellipses", "shaken"])
-def test_responses_come_back(name, request, tmp_path):
-    kept = request.getfixturevalue(name)
-    kept.save(tmp_path / "response.npz")
-    back = load_result(tmp_path / "response.npz")
-    assert type(back) is type(kept)
-    assert np.array_equal(back.motion, kept.motion, equal_nan=True)
-    assert back.table() == kept.table()
-    assert not back.motion.flags.writeable
-
-
-def test_repr_names_fields_and_shapes_in_one_line(ellipses):
-    text = repr(everything(names=("long name",) * 50))
-    assert text.startswith("Everything(reals=array(2,), counts=array(3,), name='Läufer', names=(")
-    assert "…, number=0.1, flag=True, pairs=array(1, 2), marks=array(1,), " in text
-    assert text.endswith("absent=None)")
-    assert len(text) < 250
-    text = repr(ellipses)
-    assert text.startswith("UnbalanceResponse(places=('mid', 'node 2'), orders=array(1,), motion=")
-    assert "motion=array(101, 2, 1, 6)" in text
-    assert len(text) < 350
-
-
 RESULTS = {name: kept for name, kept in STORED.items() if isinstance(kept, Result)}
 
 
@@ -140,14 +82,6 @@ def test_every_result_of_the_package_is_stored():
     package = {n for n, c in results._REGISTERED.items() if c.__module__.startswith("exudyn_rotor")}
     assert set(RESULTS) == package
     assert package <= set(exudyn_rotor.__all__)  # load_result finds their modules there
-
-
-def test_results_load_where_nothing_else_of_the_package_is_imported(tmp_path):
-    RESULTS["StabilityMap"].save(tmp_path / "kept.npz")
-    script = "import sys; from exudyn_rotor import load_result; print(load_result(sys.argv[1]))"
-    command = [sys.executable, "-c", script, tmp_path / "kept.npz"]
-    loaded = subprocess.run(command, check=True, capture_output=True, text=True)
-    assert loaded.stdout.strip() == repr(RESULTS["StabilityMap"])
 
 
 @pytest.mark.parametrize("name", RESULTS)
@@ -167,75 +101,6 @@ def test_every_result_has_a_table_a_short_repr_and_a_picture(name):
         assert ax.figure is pyplot.gcf()
 
 
-def test_wrong_class_is_refused(ellipses, tmp_path):
-    ellipses.save(tmp_path / "response.npz")
-    with pytest.raises(ValueError, match="holds a UnbalanceResponse, not a HarmonicResponse"):
-        HarmonicResponse.load(tmp_path / "response.npz")
-
-
-def test_a_file_of_an_unregistered_class_is_refused(tmp_path):
-    write_arrays(tmp_path / "a.npz", "result", {"class": "Popen"})
-    with pytest.raises(ValueError, match=r"holds a Popen; results that can be: .*Campbell, .*"):
-        load_result(tmp_path / "a.npz")
-
-
-def test_what_cannot_be_stored_leaves_the_old_file(tmp_path):
-    path = tmp_path / "kept.npz"
-    everything().save(path)
-    with pytest.raises(TypeError, match="a Unstorable cannot be stored"):
-        Unstorable(1.0).save(path)
-    assert Everything.load(path).number == 0.1
-    assert [file.name for file in tmp_path.iterdir()] == ["kept.npz"]
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"name": {"a": 1}}, "name: needs a name"),
-        ({"name": ""}, "name: needs a name that is not empty"),
-        ({"names": (1.0,)}, "names: needs a name"),
-        ({"names": [3]}, "names: needs a name"),
-        ({"reals": np.array([object()])}, "reals: needs numbers"),
-        ({"reals": np.ma.masked_array([1.0, 2.0], [0, 1])}, "reals: .* masked"),
-        ({"counts": None}, "counts: needs"),
-        ({"number": "0.1"}, "number: needs a finite number"),
-        ({"number": np.nan}, "number: needs a finite number"),
-        ({"flag": "no"}, "flag: needs True or False"),
-        ({"pairs": np.zeros((2, 3))}, r"pairs: needs the shape \(2, 2\), got \(2, 3\)"),
-        ({"pairs": np.array([[0.0, np.inf]])}, "pairs: needs finite numbers"),
-        ({"pairs": np.array([[0.0, -1.0]])}, "pairs: needs values ≥ 0.0"),
-        ({"marks": np.ones(2, dtype=bool)}, r"marks: needs the shape \(1,\)"),
-        ({"marks": np.ones(1)}, "marks: needs flags"),
-        ({"titles": ("a",)}, r"titles: needs the shape \(2,\)"),
-    ],
-)
-def test_the_constructor_checks_every_field(changes, message):
-    with pytest.raises((TypeError, ValueError), match=message):
-        everything(**changes)
-
-
-def test_fields_are_copies_that_cannot_be_written_to():
-    given = np.zeros(3)
-    kept = everything(reals=given)
-    given[0] = 1.0
-    assert kept.reals[0] == 0.0
-    with pytest.raises(ValueError, match="read-only"):
-        kept.reals[0] = 1.0
-    with pytest.raises(AttributeError):
-        kept.number = 1.0
-
-
-def test_only_dataclasses_of_a_new_name_are_registered():
-    for bases in ((), (Result,)):
-        with pytest.raises(TypeError, match="only a dataclass with the base Result"):
-            storable(type("Plain", bases, {}))
-    with pytest.raises(TypeError, match=r"Odd\.what: a <class 'dict'> cannot be stored"):
-        storable(dataclass(type("Odd", (Result,), {"__annotations__": {"what": dict}})))
-    other = dataclass(type("UnbalanceResponse", (Result,), {"__annotations__": {}}))
-    with pytest.raises(TypeError, match="registered already"):
-        storable(other)
-
-
 def test_orbit_is_drawn_for_every_place(ellipses):
     axes = ellipses.plot_orbit(240.0)
     drawn = axes.lines[0].get_xdata() + 1j * axes.lines[0].get_ydata()
@@ -249,24 +114,6 @@ def test_orbit_is_drawn_for_every_place(ellipses):
     assert [text.get_text() for text in axes.get_legend().get_texts()] == ["mid", "node 2"]
     title = ellipses.plot_orbit(240.0, units="rpm").get_title(loc="right")
     assert title == f"spin speed {30.0 / np.pi * ellipses.speeds[index]:.4g} rpm"
-
-
-def test_harmonics_run_at_their_own_rate(shaken):
-    assert np.array_equal(shaken.rates(-1), [10.0, 110.0])
-    assert shaken.main_order == 0
-
-
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda r: r.phasor("top"), "place: 'top' is unknown; use one of 'mid', 'node 2'"),
-        (lambda r: r.phasor("mid", "x"), "direction: 'x' is unknown"),
-        (lambda r: r.whirl("mid", 7), "order: there is no harmonic 7"),
-    ],
-)
-def test_unknown_names_are_listed(ellipses, call, message):
-    with pytest.raises(ValueError, match=message):
-        call(ellipses)
 
 
 def test_pictures_are_figures_of_pyplot(ellipses, shaken, tmp_path):
@@ -285,37 +132,3 @@ def test_pictures_are_figures_of_pyplot(ellipses, shaken, tmp_path):
     pyplot.savefig(tmp_path / "a.png")
     pixels = pyplot.imread(tmp_path / "a.png")
     assert np.ptp(pixels[..., :3]) > 0.5  # not blank
-
-
-@pytest.mark.parametrize("corners", [3, 6])
-def test_surfaces_are_drawn_in_new_and_in_given_axes(corners):
-    nodes = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, 0, 1]], float)
-    triangles = [[0, 1, 3, 2, 4, 5][:corners], [1, 2, 3, 0, 4, 5][:corners]]
-    drawn = plotting.draw_surface(nodes, triangles, np.arange(6.0), "T [K]")
-    assert pyplot.gca() is drawn
-    assert [ax.get_ylabel() for ax in drawn.figure.axes][1] == "T [K]"
-    assert not drawn.figure.texts  # the ticks tell the size
-    across = plotting.draw_surface(nodes * [1, 1, 9], triangles, np.arange(6.0), "T [K]")
-    assert "z from 0 m to " in across.figure.texts[0].get_text()
-    given = pyplot.subplots(subplot_kw={"projection": "3d"})[1]
-    size = given.figure.get_size_inches()
-    assert plotting.draw_surface(nodes, triangles, np.arange(6.0), "T [K]", given) is given
-    assert np.array_equal(given.figure.get_size_inches(), size)
-    flat = pyplot.subplots()[1]
-    with pytest.raises(TypeError, match="ax: needs Axes3D, got"):
-        plotting.draw_surface(nodes, triangles, np.arange(6.0), "T [K]", flat)
-    with pytest.raises(ValueError, match="triangles: needs whole numbers ≥ 0 and ≤ 5, got 6"):
-        plotting.draw_surface(nodes, [[0, 1, 6]], np.arange(6.0), "T [K]")
-    with pytest.raises(ValueError, match="values: needs finite numbers"):
-        plotting.draw_surface(nodes, triangles, np.full(6, np.nan), "T [K]")
-
-
-def test_responses_tell_the_level_of_stiffening(ellipses, shaken):
-    for response in (ellipses, shaken):
-        assert response.stiffening == "tilt"
-        assert "stiffening: tilt" in response.table().splitlines()
-
-
-def test_loading_promises_a_result():
-    """Its methods are those that editors and type checkers offer."""
-    assert get_type_hints(load_result)["return"] is Result

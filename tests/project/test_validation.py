@@ -2,8 +2,6 @@
 
 import importlib
 import re
-import runpy
-import sys
 from pathlib import Path
 
 import pytest
@@ -38,15 +36,3 @@ def test_documents_name_scripts_that_exist():
     named = set(re.findall(r"python -m validation ([a-z]\w*)", text))
     assert named <= set(SCRIPTS)
     assert len(named) > 10
-
-
-def test_options_reach_the_script(monkeypatch, capsys):
-    monkeypatch.delitem(sys.modules, "validation.__main__")  # it is run as a program
-    monkeypatch.setattr(sys, "argv", ["validation", "savers", "--help"])
-    with pytest.raises(SystemExit) as ended:
-        runpy.run_module("validation", run_name="__main__")
-    assert ended.value.code == 0
-    assert "usage: python -m validation savers" in capsys.readouterr().out
-    monkeypatch.setattr(sys, "argv", ["validation", "sabers"])
-    with pytest.raises(SystemExit, match="'sabers' is unknown; there are: speed"):
-        runpy.run_module("validation", run_name="__main__")

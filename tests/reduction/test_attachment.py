@@ -1,17 +1,13 @@
 """What modes leave out: attachment modes against a pseudo-inverse, and estimates against runs."""
 
-import gc
-import pickle
 import re
 import warnings
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 
 import exudyn as exu
 import numpy as np
 import pytest
 import scipy.linalg as la
-from models import STEEL, block_beam, centered_disc, disc_on_shaft
+from models import STEEL, block_beam, centered_disc
 from run_scenes import scene, solve
 
 from exudyn_rotor import (
@@ -24,10 +20,6 @@ from exudyn_rotor import (
     keep_modes,
     propose,
 )
-from exudyn_rotor.reduction import reduce
-from exudyn_rotor.reduction.attached import Attached
-from exudyn_rotor.reduction.attachment import attachment_modes
-from exudyn_rotor.solvers import inertia_relief
 from exudyn_rotor.theory.nodal import rotations, translations
 
 
@@ -61,83 +53,12 @@ def exact_flexibility(rotor: SolidRotor) -> np.ndarray:
     return (motion / values[6:]) @ motion.T
 
 
-def test_where_columns_are_among_attachments_is_checked(rotor):
-    reduced = rotor.reduce(2)
-    with pytest.raises(ValueError, match="in_attached: columns are not orthonormal"):
-        Attached.known(reduced.with_attachments, 1.1 * reduced.in_attached)
-    with pytest.raises(ValueError, match="in_attached"):
-        Attached.known(reduced.with_attachments, reduced.in_attached[1:])
-    with pytest.raises(TypeError, match="attached"):
-        replace(reduced, attached=reduced)
-
-
-def test_attachments_are_computed_when_they_are_asked_for_and_once(rotor, monkeypatch):
-    calls = []
-
-    def counted(*given):
-        calls.append(1)
-        return attachment_modes(*given)
-
-    monkeypatch.setattr(reduce, "attachment_modes", counted)
-    reduced = rotor.reduce(2)
-    fewer, damped = keep_modes(reduced, [0]), reduced.with_damping(stiffness=1e-5)
-    assert not calls
-    first = fewer.with_attachments
-    assert damped.in_attached is reduced.in_attached
-    assert reduced.with_attachments is first
-    assert len(calls) == 1
-    sent = pickle.loads(pickle.dumps(fewer.attached))
-    np.testing.assert_array_equal(sent.columns, fewer.in_attached)
-    assert sent.rotor.labels == first.labels
-
-
 @pytest.mark.parametrize("count", [0, 2, 6])
 def test_flexibility_is_complete_with_attachment_modes(beam, count):
     exact, reduced = exact_flexibility(beam), beam.reduce(count)
     error = np.abs(flexibility(reduced.with_attachments) - exact).max() / np.abs(exact).max()
     assert error < 1e-8
     assert np.abs(flexibility(reduced) - exact).max() > 0.01 * np.abs(exact).max()
-
-
-def test_held_rotor_has_responses_to_acceleration(beam):
-    """A rod clamped at one end, hanging: the far end moves by ``ρ g L²/(2E)``, cross strain 0."""
-    material = STEEL | {"poissonsRatio": 0.0}
-    rod = SolidRotor.from_ngsolve(block_beam(0.1), material, "z").clamped("left")
-    reduced = rod.reduce(1).with_attachments
-    along = np.argmax([abs(axis) for axis in rod.axis.direction])
-    load = reduced.invariants.S[along]
-    moved = reduced.interfaces["right"].motion @ (load / reduced.frequencies**2)
-    length = np.ptp(rod.nodes[:, along])
-    expected = STEEL["density"] * length**2 / (2.0 * STEEL["youngsModulus"])
-    assert moved[along] == pytest.approx(expected, rel=1e-9)
-
-
-def test_modes_that_keep_interfaces_rigid_get_responses_to_acceleration(rotor):
-    rigid = craig_bampton_modes(rotor, 3)
-    added = attachment_modes(rotor, rigid.matrix).matrix
-    assert added.shape[1] == 6
-    held = np.concatenate([one.nodes for one in rotor.interfaces.values()])
-    assert np.all(added.reshape(-1, 3, 6)[held] == 0.0)
-    mean = craig_bampton_modes(rotor, 3, coupling="RBE3")
-    assert attachment_modes(rotor, mean.matrix).matrix.shape[1] == 12
-    without = attachment_modes(rotor, np.zeros((rotor.nodes.size, 0)))
-    assert without.labels[0] == "attachment mode 1"
-
-
-def test_clamped_interface_gets_no_load(beam):
-    """Its only motion would be that of the stiff springs."""
-    blade = beam.clamped("left")
-    found = attachment_modes(blade, np.zeros((blade.nodes.size, 0))).matrix
-    assert found.shape[1] == 12  # six loads at the other end, six accelerations
-    assert blade.reduce(4).with_attachments.frequencies.max() < 1e7
-
-
-def test_threads_share_a_rotor():
-    shaft = SolidRotor.from_ngsolve(disc_on_shaft(), STEEL, "z")
-    expected = shaft.reduce(3).frequencies
-    with ThreadPoolExecutor(4) as pool:
-        for found in pool.map(lambda _: shaft.reduce(3).frequencies, range(4)):
-            np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-3)
 
 
 def test_truncation_and_files_keep_them(rotor, tmp_path):
@@ -160,26 +81,6 @@ def test_truncation_and_files_keep_them(rotor, tmp_path):
     assert np.array_equal(flexibility(loaded), flexibility(given))
     assert loaded.rigid == given.rigid
     assert loaded.with_attachments is None
-
-
-def test_stiffness_is_factorised_once(monkeypatch):
-    """Modes, prestress and attachment modes share it; another mass makes another relief."""
-    made, own = [], inertia_relief.SparseCholesky
-    monkeypatch.setattr(
-        inertia_relief, "SparseCholesky", lambda *matrices: made.append(1) or own(*matrices)
-    )
-    mesh = disc_on_shaft()
-    fresh = SolidRotor.from_ngsolve(mesh, STEEL, "z")
-    fresh.reduce(3, prestress=True)
-    fresh.reduce(5)
-    assert len(made) == 1
-    heavier = fresh.add_point_mass([0.15, 0, 0.215], 0.1)
-    heavier.reduce(3)
-    assert len(made) == 2
-    known = len(inertia_relief._known)
-    del fresh, heavier
-    gc.collect()
-    assert len(inertia_relief._known) == known - 1
 
 
 # ------------------------------------------------------------------ advice
@@ -290,19 +191,3 @@ def test_modes_that_are_missing_are_told_before_a_run(rotor):
     assert shares[2] < 0.01
     assert missed(rotor.reduce(craig_bampton_modes(rotor, 0)), **given) > 0.01
     assert missed(rotor.reduce(craig_bampton_modes(rotor, 12)), **given) == 0.0
-
-
-def test_load_at_a_clamped_interface_is_no_matter(beam):
-    """All of the response would be missing there, with any number of modes."""
-    blade = beam.clamped("left")
-    blade = blade.with_prestress(blade.prestress())
-    assert 0.0 < missed(blade.reduce(4), speeds=5.0, interfaces=["left", "right"]) < 0.5
-
-
-def test_band_beyond_all_modes_is_told(rotor):
-    supports = [Support(name, 1e7, 100.0) for name in ("left", "right")]
-    given = {"speeds": 1.0, "supports": supports}
-    reduced = rotor.reduce(craig_bampton_modes(rotor, 0))
-    highest = reduced.frequencies.max()
-    assert "lie in the band up to" in told(reduced, load_frequencies=1.1 * highest, **given)
-    assert "lie in the band" not in told(reduced, load_frequencies=0.5 * highest, **given)

@@ -10,9 +10,8 @@ import pytest
 import scipy.linalg as la
 import scipy.sparse as sp
 from exudyn.FEM import FEMinterface, HCBstaticModeSelection, KirchhoffMaterial
-from point_rotors import ring_rotor
 
-from exudyn_rotor.reduction.component import ModeBasis, free_modes
+from exudyn_rotor.reduction.component import free_modes
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
 from exudyn_rotor.reduction.fem_interface_modes import fem_interface_modes
 from exudyn_rotor.solid_rotor import SolidRotor
@@ -110,28 +109,6 @@ def test_free_modes_are_those_of_fem_interface(short_fem, short_shaft):
     assert modes.labels[0] == "eigenmode 1"
 
 
-def test_free_modes_are_normalised_and_have_no_rigid_part(shaft):
-    modes = free_modes(shaft.rotor, 6).matrix
-    momentum = shaft.rotor.mass @ modes
-    np.testing.assert_allclose(modes.T @ momentum, np.eye(6), atol=1e-10)
-    rigid = rigid_columns(shaft.rotor.nodes)
-    np.testing.assert_allclose(rigid.T @ momentum, 0.0, atol=1e-10)
-    largest = np.argmax(np.abs(modes), axis=0)
-    assert np.all(modes[largest, range(6)] > 0.0)
-
-
-def test_free_modes_repeat(shaft):
-    first, second = free_modes(shaft.rotor, 6), free_modes(shaft.rotor, 6)
-    # threads sum in any order: rounding, amplified by the nearness of bending pairs
-    np.testing.assert_allclose(first.matrix, second.matrix, atol=1e-6)
-
-
-def test_direct_and_iterative_modes_agree(short_shaft):
-    few = free_modes(short_shaft, 5)
-    many = free_modes(short_shaft, short_shaft.mass.shape[0] - 6)
-    np.testing.assert_allclose(few.frequencies, many.frequencies[:5], rtol=1e-9)
-
-
 @pytest.mark.parametrize(
     ("points", "rigid_motions"),
     [
@@ -183,24 +160,6 @@ def timoshenko_frequency(length: float, side: float) -> float:
     return euler / np.sqrt((1.0 + rotary) * (1.0 + sliding))
 
 
-def two_masses() -> SolidRotor:
-    """Return the example of the paper's Appendix B (122, 123): two masses on springs."""
-    stiffness = 1e4 * np.diag([272.0, 196.0, 100.0, 272.0, 196.0, 100.0])
-    stiffness[0, 3] = stiffness[3, 0] = -128e4
-    nodes = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]
-    return SolidRotor.from_matrices(
-        np.eye(6), stiffness, nodes, "x", interfaces={"first": [0], "second": [1]}
-    )
-
-
-def test_all_modes_of_two_masses():
-    rotor = two_masses()
-    expected = [1000.0, 1000.0, 1200.0, 1400.0, 1400.0, 2000.0]
-    np.testing.assert_allclose(free_modes(rotor, 6).frequencies, expected, rtol=1e-12)
-    with pytest.raises(ValueError, match="between 1 and 6"):
-        free_modes(rotor, 7)
-
-
 # ---- Hurty–Craig–Bampton modes
 
 
@@ -222,58 +181,6 @@ def test_craig_bampton_spans_that_of_fem_interface(shaft, coupling):
     np.testing.assert_allclose(modes.frequencies[12:] ** 2, shaft.fem.eigenValues[:6], rtol=1e-9)
 
 
-@pytest.mark.parametrize("coupling", ["RBE2", "RBE3"])
-def test_static_modes_are_unit_motions_and_eigenmodes_have_none(shaft, coupling):
-    modes = craig_bampton_modes(shaft.rotor, 4, coupling=coupling)
-    means = [
-        interface.mean_motion(len(shaft.rotor.nodes)) @ modes.matrix
-        for interface in shaft.rotor.interfaces.values()
-    ]
-    np.testing.assert_allclose(np.vstack(means)[:, :12], np.eye(12), atol=1e-9)
-    # eigenmodes are of size 1/sqrt(kg); their rotations are larger by 1/radius
-    np.testing.assert_allclose(np.vstack(means)[:, 12:], 0.0, atol=1e-7)
-    assert modes.labels[:4] == (
-        "left translation x",
-        "left translation y",
-        "left translation z",
-        "left rotation x",
-    )
-    assert np.all(np.isnan(modes.frequencies[:12]))
-    assert np.all(modes.frequencies[12:] > 0.0)
-
-
-@pytest.mark.parametrize("coupling", ["RBE2", "RBE3"])
-def test_static_modes_contain_the_rigid_motions(shaft, coupling):
-    static = craig_bampton_modes(shaft.rotor, 0, ["right"], coupling=coupling)
-    assert static.labels[-1] == "right rotation z"
-    assert largest_angle(static.matrix, rigid_columns(shaft.rotor.nodes)) < 1e-8
-
-
-@pytest.mark.parametrize("coupling", ["RBE2", "RBE3"])
-def test_direct_and_iterative_craig_bampton_agree(short_shaft, coupling):
-    few = craig_bampton_modes(short_shaft, 3, coupling=coupling)
-    many = craig_bampton_modes(short_shaft, short_shaft.mass.shape[0] // 3, coupling=coupling)
-    np.testing.assert_allclose(few.frequencies[12:], many.frequencies[12:15], rtol=1e-9)
-
-
-def test_the_mean_motion_of_all_nodes_holds_no_deformation():
-    """Of equal masses it is the rigid motion: what is left are the free modes."""
-    rotor = ring_rotor(0.1, 0.05, 2.0).with_interface("all", range(10))
-    modes = craig_bampton_modes(rotor, 3, coupling="RBE3")
-    assert largest_angle(modes.matrix[:, :6], rigid_columns(rotor.nodes)) < 1e-8
-    np.testing.assert_allclose(modes.frequencies[6:], np.sqrt(1e8 / 0.2), rtol=1e-9)
-
-
-@pytest.mark.parametrize("coupling", ["RBE2", "RBE3"])
-def test_single_nodes_have_translations_only(coupling):
-    modes = craig_bampton_modes(two_masses(), 3, ["second"], coupling=coupling)
-    assert modes.labels[2:4] == ("second translation z", "eigenmode 1")
-    # with the second mass fixed the first has its own springs
-    np.testing.assert_allclose(modes.frequencies[3:], [1000.0, 1400.0, np.sqrt(272e4)])
-    all_fixed = craig_bampton_modes(two_masses(), 0, coupling=coupling)
-    np.testing.assert_allclose(all_fixed.matrix, np.eye(6), atol=1e-12)
-
-
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -290,15 +197,6 @@ def test_wrong_requests_are_refused(shaft, change, message):
         craig_bampton_modes(shaft.rotor, **{"count": 2, **change})
 
 
-def test_shared_nodes_need_rbe3(shaft):
-    left = shaft.rotor.interfaces["left"]
-    rotor = with_interfaces(shaft.rotor, {"left": left, "again": left})
-    with pytest.raises(ValueError, match="use coupling='RBE3'"):
-        craig_bampton_modes(rotor, 2)
-    with pytest.raises(ValueError, match="depend on each other"):
-        craig_bampton_modes(rotor, 2, coupling="RBE3")
-
-
 @pytest.mark.parametrize("coupling", ["RBE2", "RBE3"])
 def test_interfaces_that_cannot_hold_the_rotor_are_refused(shaft, coupling):
     rotor = SolidRotor.from_fem_interface(shaft.fem, "z")
@@ -308,15 +206,6 @@ def test_interfaces_that_cannot_hold_the_rotor_are_refused(shaft, coupling):
     line = [nearest(rotor, (0, 0, 0)), nearest(rotor, (0, 0, 0.3))]
     with pytest.raises(ValueError, match="nodes on one line"):
         craig_bampton_modes(rotor.with_interface("line", line), 2, ["line"], coupling=coupling)
-
-
-def test_wrong_number_of_rigid_motions_is_refused(shaft):
-    loose = replace(shaft.rotor, rigid_motions=5)
-    with pytest.raises(ValueError, match="loose parts"):
-        free_modes(loose, 2)
-    held = supported(shaft.rotor, {0: 1e8}, rigid_motions=6)
-    with pytest.raises(ValueError, match="claims 6 free rigid motions"):
-        free_modes(held, 2)
 
 
 # ---- modes of a FEMinterface
@@ -334,44 +223,6 @@ def test_fem_interface_modes_with_stress(shaft):
     stored = shaft.fem.postProcessingModes["matrix"]
     np.testing.assert_array_equal(modes.stress[:, 4, 2], stored[:, 6 * 2 + 4])
     assert modes.labels[-1] == "FEMinterface mode 3"
-
-
-def test_unfit_fem_interface_modes_are_refused(shaft):
-    with pytest.raises(ValueError, match="ComputeEigenmodes"):
-        fem_interface_modes(shaft.rotor, FEMinterface())
-    nodes = shaft.rotor.nodes
-    fem = FEMinterface()
-    fem.modeBasis = {"matrix": np.ones((nodes.size, 2))}
-    fem.nodes = {"Position": nodes + 1e-6}
-    with pytest.raises(ValueError, match="modal basis from another mesh: node positions"):
-        fem_interface_modes(shaft.rotor, fem)
-    fem.nodes = {"Position": nodes[1:]}
-    with pytest.raises(ValueError, match="modal basis from another mesh: the rotor has"):
-        fem_interface_modes(shaft.rotor, fem)
-    fem.nodes = {"Position": nodes}
-    fem.postProcessingModes = {
-        "matrix": np.ones((len(nodes), 6)),
-        "outputVariableType": "OutputVariableType.StressLocal",
-    }
-    with pytest.raises(ValueError, match="after the modes"):
-        fem_interface_modes(shaft.rotor, fem)
-
-
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"matrix": np.ones((6, 2))},
-        {"matrix": np.full((6, 1), np.nan)},
-        {"nodes": np.zeros((2, 2))},
-        {"frequencies": np.ones(2)},
-        {"stress": np.ones((2, 6, 3))},
-    ],
-)
-def test_mode_basis_checks_its_arrays(change):
-    fields = {"matrix": np.ones((6, 1)), "labels": ("a",), "nodes": np.zeros((2, 3))}
-    assert np.isnan(ModeBasis(**fields).frequencies[0])
-    with pytest.raises(ValueError, match="mode basis: "):
-        ModeBasis(**{**fields, **change})
 
 
 # ---- factorisation

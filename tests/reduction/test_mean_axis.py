@@ -7,25 +7,15 @@ import numpy as np
 import pytest
 import scipy.linalg
 from exudyn.FEM import FEMinterface, HCBstaticModeSelection
-from exudyn.itemInterface import (
-    Force,
-    LoadCoordinate,
-    MarkerNodeCoordinate,
-    MarkerNodeRigid,
-    SensorNode,
-    Torque,
-)
 from models import disc_fem
-from point_rotors import free_stiffness, ring_rotor
 
 from exudyn_rotor import (
-    ConnectionWarning,
     ObjectFixedAxisFFRFreducedOrderInterface,
     SolidRotor,
     use_mean_axis_modes,
 )
 from exudyn_rotor.reduction.basis import rigid_columns
-from exudyn_rotor.reduction.mean_axis import false_softening, frame_shares
+from exudyn_rotor.reduction.mean_axis import false_softening
 
 OWN, TWIN = "CreateFFRFReducedOrderObject", "CreateFixedAxisFFRFReducedOrderObject"
 SPEED = 500.0
@@ -75,77 +65,6 @@ def test_modes_lose_their_momentum_and_nothing_else(held, solid):
         before.T @ (solid.stiffness @ before),
         atol=1e-9 * np.abs(before.T @ (solid.stiffness @ before)).max(),
     )
-
-
-def test_what_the_modes_move_exudyns_frame_by(held, solid):
-    """``Q − Rs = Ψη``: displacements of the columns, less those of the frame, are in its modes."""
-    reduced, modes = solid.reduce(held), held.modeBasis["matrix"]
-    shares, rigid = frame_shares(solid, reduced, modes), len(reduced.rigid_kinds)
-    columns = reduced.shapes.matrix
-    rest = columns[:, rigid:] - columns[:, :rigid] @ shares
-    missed = rest - modes @ np.linalg.lstsq(modes, rest, rcond=None)[0]
-    assert abs(missed).max() < 1e-9 * abs(rest).max()
-    free = disc_fem()
-    assert frame_shares(solid, solid.reduce(free), free.modeBasis["matrix"]) is None
-
-
-@pytest.mark.filterwarnings("ignore:the modes of the FEMinterface hold")
-def test_force_and_sensor_at_the_node_are_on_exudyns_frame(held):
-    """At rest, where its body does not soften; the tilt is 1e-4."""
-    found = []
-    for call in (OWN, TWIN):
-        mbs = exu.SystemContainer().AddSystem()
-        axis = {"axis": "z"} if call == TWIN else {}
-        made = getattr(mbs, call)(name="rotor", femInterface=held, **axis)
-        node = made["FFRFReducedOrderObjectDict"]["nRigidBody"]
-        marker = mbs.AddMarker(MarkerNodeRigid(nodeNumber=node))
-        mbs.AddLoad(Force(markerNumber=marker, loadVector=[900.0, 300.0, 200.0]))
-        mbs.AddLoad(Torque(markerNumber=marker, loadVector=[0.0, 20.0, 30.0]))
-        kind = exu.OutputVariableType.Displacement
-        sensor = SensorNode(nodeNumber=node, outputVariableType=kind, storeInternal=True)
-        sensor = mbs.AddSensor(sensor)
-        mbs.Assemble()
-        settings = exu.SimulationSettings()
-        settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 40, 2e-3
-        settings.timeIntegration.verboseMode = 0
-        settings.solution.file.write = False
-        mbs.SolveDynamic(settings)
-        found.append(mbs.GetSensorStoredData(sensor)[:, 1:])
-    assert abs(found[1] - found[0]).max() < 1e-3 * abs(found[0]).max()
-
-
-@pytest.mark.filterwarnings("ignore:the modes of the FEMinterface hold")
-def test_angle_of_exudyns_frame_at_a_boundary_is_told(held):
-    for fem, expected in ((held, 1), (disc_fem(), 0)):
-        mbs = exu.SystemContainer().AddSystem()
-        made = getattr(mbs, TWIN)(name="rotor", femInterface=fem, axis="z")
-        parts = made["FFRFReducedOrderObjectDict"]
-        angle = MarkerNodeCoordinate(nodeNumber=parts["nRigidBody"], coordinate=5)
-        mbs.AddLoad(LoadCoordinate(markerNumber=mbs.AddMarker(angle), load=1.0))
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", ConnectionWarning)
-            mbs.Assemble()
-        found = parts["rotorBody"].check_connections(warn=False)
-        assert len(found) == expected
-        assert all("that of the first boundary" in sentence for sentence in found)
-
-
-def test_free_modes_stay_and_rigid_ones_are_left_out(solid):
-    free = disc_fem()
-    matrix, stress = free.modeBasis["matrix"], free.postProcessingModes["matrix"]
-    rigid = rigid_of(solid)
-    fem = copy(free, np.hstack([rigid[:, :4], matrix, matrix[:, :1] + rigid[:, 5:]]))
-    zeros = np.zeros((len(stress), 6 * 4))
-    fem.postProcessingModes = {
-        "matrix": np.hstack([zeros, stress, stress[:, :6]]),
-        "outputVariableType": exu.OutputVariableType.StressLocal,
-    }
-    assert use_mean_axis_modes(fem) == (0, 1, 2, 3, 10)
-    np.testing.assert_allclose(fem.modeBasis["matrix"], matrix, atol=1e-8 * np.abs(matrix).max())
-    np.testing.assert_array_equal(fem.postProcessingModes["matrix"], stress)
-    with pytest.raises(ValueError, match="fem: its modes are rigid motions alone"):
-        use_mean_axis_modes(copy(free, rigid))
-    assert false_softening(solid, matrix) == 0.0
 
 
 def whirl(call, fem, **more):
@@ -204,32 +123,6 @@ def test_exudyns_body_agrees_in_the_mean_axis_frame_only(held):
     assert away[0] > 10.0 * away[1]
 
 
-def test_missing_stiffness_is_the_work_on_the_second_order_displacement():
-    """Node by node: ``−Σ m x_⊥ · u₂`` with ``u₂ = ½ φ × (φ × y) + φ × ψ`` of random modes."""
-    ring = ring_rotor(0.2, 0.1, 3.0)
-    soft = SolidRotor.from_matrices(
-        ring.mass, free_stiffness(ring.nodes, np.diag(np.arange(1.0, 31.0))), ring.nodes, "z"
-    )
-    modes = np.random.default_rng(5).normal(size=(30, 3))
-    y, mass = ring.nodes, 0.3
-    inertia = mass * sum(np.dot(p, p) * np.eye(3) - np.outer(p, p) for p in y)
-
-    def missing(displacement):
-        u = displacement.reshape(-1, 3)
-        phi = np.linalg.solve(inertia, mass * np.cross(y, u).sum(axis=0))
-        flexible = u - u.mean(axis=0) - np.cross(phi, y)
-        second = 0.5 * np.cross(phi, np.cross(phi, y)) + np.cross(phi, flexible)
-        return -2.0 * mass * np.sum(y[:, :2] * second[:, :2])
-
-    unit = np.eye(3)
-    K2 = np.array(
-        [[0.25 * (missing(modes @ (a + b)) - missing(modes @ (a - b))) for b in unit] for a in unit]
-    )
-    expected = scipy.linalg.eigh(K2, modes.T @ (soft.stiffness @ modes))[0][-1]
-    assert expected > 0.0
-    assert false_softening(soft, modes) == pytest.approx(expected, rel=1e-9)
-
-
 def test_the_speed_of_the_warning_is_that_of_the_missing_stiffness(held, solid):
     """At that speed 1 % of the stiffness is missing, of the worst of all combinations."""
     loss = false_softening(solid, held.modeBasis["matrix"])
@@ -243,16 +136,3 @@ def test_the_speed_of_the_warning_is_that_of_the_missing_stiffness(held, solid):
         warnings.simplefilter("error")
         cms = ObjectFixedAxisFFRFreducedOrderInterface(mean, axis="z")
         cms.AddObjectFFRFreducedOrder(exu.SystemContainer().AddSystem())
-
-
-def test_bad_input_is_refused_and_changes_nothing(held):
-    with pytest.raises(TypeError, match="fem: needs FEMinterface"):
-        use_mean_axis_modes("rotor")
-    fem = copy(held)
-    before = fem.modeBasis["matrix"]
-    with pytest.raises(ValueError, match="rank_tolerance"):
-        use_mean_axis_modes(fem, rank_tolerance=0.0)
-    assert fem.modeBasis["matrix"] is before
-    fem.modeBasis = {}
-    with pytest.raises(ValueError, match="fem: it holds no modes"):
-        use_mean_axis_modes(fem)

@@ -5,9 +5,8 @@ import warnings
 import ngsolve
 import numpy as np
 import pytest
-from models import STEEL, block_beam, disc_rotor
+from models import STEEL, disc_rotor
 from netgen.occ import Cylinder, Dir, OCCGeometry, Pnt
-from point_rotors import ring_rotor
 
 from exudyn_rotor import SolidRotor, craig_bampton_modes, free_modes
 
@@ -60,34 +59,6 @@ def test_pairs_of_a_disc_on_a_shaft_on_held_interfaces():
         )
         assert found
         assert set(found) <= set(ends)
-
-
-def test_no_pair_where_planes_differ():
-    """A beam of 40 × 60 mm: its frequencies are √1.5² apart, and no others are pairs."""
-    rotor = SolidRotor.from_ngsolve(block_beam(), STEEL, "z")
-    assert cut(lambda number: free_modes(rotor, number), range(1, 9)) == []
-
-
-def test_no_pair_of_torsion_and_axial_motion_at_nearly_one_frequency():
-    """Two rings on springs along and about the axis alone, tuned to frequencies 1e-3 apart."""
-    upright = ring_rotor(0.1, 0.15, 5.0)
-    count = len(upright.nodes)
-    radius = np.hypot(*upright.nodes[:, :2].T)
-    turn = np.cross([0.0, 0.0, 1.0], upright.nodes) / radius[:, None]
-    sign = np.repeat([1.0, -1.0], 5)[:, None]
-    fields = [sign * turn, sign * np.array([[0.0, 0.0, 1.0]] * count)]
-    stiffness = upright.stiffness.toarray() * 100.0
-    for field, spring in zip(fields, (1e6, 1.002e6), strict=True):  # soft in these two
-        u = field.ravel() / np.linalg.norm(field)
-        stiffness = (np.eye(30) - np.outer(u, u)) @ stiffness @ (np.eye(30) - np.outer(u, u))
-        stiffness += spring * np.outer(u, u)
-    rotor = SolidRotor.from_matrices(upright.mass, stiffness, upright.nodes, "z")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        frequencies = free_modes(rotor, 3).frequencies
-    assert frequencies[1] == pytest.approx(frequencies[0], rel=2e-3)
-    assert frequencies[2] > 1.1 * frequencies[0]
-    assert cut(lambda number: free_modes(rotor, number), [1, 2]) == []
 
 
 def test_reduce_says_what_to_do():

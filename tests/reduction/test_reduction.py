@@ -9,7 +9,6 @@ from point_rotors import SKEW_AXIS, random_arrays, random_rotor
 
 from exudyn_rotor import (
     Formulation,
-    ModeBasis,
     ReducedRotor,
     SolidRotor,
     SpinAxis,
@@ -37,13 +36,6 @@ def reduced(rotor) -> ReducedRotor:
     return rotor.reduce(5)
 
 
-def grounded_rotor(springs: np.ndarray) -> SolidRotor:
-    """Return a random rotor with springs (3,) to the ground on every node."""
-    arrays = random_arrays(12)
-    arrays["stiffness"] = arrays["stiffness"] + np.diag(np.tile(springs, 6))
-    return SolidRotor.from_matrices(**arrays, axis=SKEW_AXIS)
-
-
 # ------------------------------------------------------------------ basis
 
 
@@ -59,31 +51,12 @@ def test_basis_is_mass_orthonormal_and_diagonal_in_the_stiffness(rotor, reduced)
     assert reduced.dropped == ()
 
 
-def test_rigid_columns_have_no_stiffness(reduced):
-    np.testing.assert_array_equal(reduced.frequencies[:6], 0.0)
-    assert reduced.frequencies[6] > 0.1
-
-
-def test_modes_keep_their_frequencies(rotor, reduced):
-    expected = free_modes(rotor, 5).frequencies
-    np.testing.assert_allclose(reduced.frequencies[6:], expected, rtol=EXACT)
-
-
 def test_invariants_are_about_the_center_of_mass(rotor, reduced):
     np.testing.assert_array_equal(reduced.invariants.center, 0.0)
     np.testing.assert_allclose(reduced.center_of_mass, rotor.center_of_mass, rtol=1e-15)
     shape = reduced.shapes.matrix
     momentum = (rotor.nodes - rotor.center_of_mass).T @ rotor.mass[::3, ::3] @ shape[::3]
     np.testing.assert_allclose(reduced.invariants.P[:, 0, :], momentum, atol=EXACT)
-
-
-def test_mode_mass_is_the_mass_of_the_modes_alone(rotor):
-    modes = np.random.default_rng(3).normal(size=(18, 4))  # not orthogonal to rigid motions
-    reduced = rotor.reduce(modes)
-    Q = reduced.shapes.matrix
-    share = np.linalg.lstsq(np.hstack([modes, Q[:, :6]]), Q, rcond=None)[0][:4]
-    expected = share.T @ (modes.T @ (rotor.mass @ modes)) @ share
-    np.testing.assert_allclose(reduced.mode_mass, expected, atol=EXACT)
 
 
 def test_dependent_columns_are_dropped_and_named(rotor):
@@ -94,46 +67,6 @@ def test_dependent_columns_are_dropped_and_named(rotor):
     assert reduced.dropped == ("column 4", "column 5", "column 6")
     expected = rotor.reduce(3)
     np.testing.assert_allclose(reduced.frequencies, expected.frequencies, rtol=EXACT)
-
-
-def test_shares_of_the_modes_skip_what_is_dropped(rotor):
-    modes = np.random.default_rng(4).normal(size=(18, 3))
-    repeated = rotor.reduce(modes[:, [0, 0, 1, 2]])
-    assert repeated.dropped == ("column 2",)
-    single = rotor.reduce(modes)
-    signs = single.shapes.matrix.T @ (rotor.mass @ repeated.shapes.matrix)
-    expected = signs.T @ single.mode_mass @ signs
-    np.testing.assert_allclose(repeated.mode_mass, expected, atol=EXACT)
-
-
-def test_stress_of_the_modes_follows_the_change_of_basis(rotor):
-    """For any linear stress without a share of rigid motions."""
-    rigid = np.hstack([translations(6), rotations(rotor.nodes, np.zeros(3))])
-    elastic = np.eye(18) - rigid @ np.linalg.pinv(rigid)
-    recovery = np.random.default_rng(6).normal(size=(36, 18)) @ elastic
-    modes = np.random.default_rng(5).normal(size=(18, 3))[:, [0, 0, 1, 2]]
-    basis = ModeBasis(modes, ("a", "b", "c", "d"), rotor.nodes, None, stress_of(recovery, modes))
-    shapes = rotor.reduce(basis).shapes
-    expected = stress_of(recovery, shapes.matrix)
-    np.testing.assert_allclose(shapes.stress, expected, atol=EXACT * np.abs(expected).max())
-
-
-def stress_of(recovery: np.ndarray, columns: np.ndarray) -> np.ndarray:
-    return (recovery @ columns).reshape(6, 6, -1)
-
-
-def test_nearly_dependent_columns_become_orthogonal_to_full_precision(rotor):
-    modes = free_modes(rotor, 3).matrix
-    near = np.column_stack([modes[:, 0], modes[:, 0] + 1e-6 * modes[:, 1], modes[:, 2]])
-    Q = rotor.reduce(near).shapes.matrix
-    np.testing.assert_allclose(Q.T @ (rotor.mass @ Q), np.eye(9), atol=EXACT)
-
-
-def test_rank_tolerance_decides_what_is_new(rotor):
-    modes = free_modes(rotor, 2).matrix
-    columns = np.column_stack([modes[:, 0], modes[:, 0] + 1e-4 * modes[:, 1]])
-    assert rotor.reduce(columns).dropped == ()
-    assert rotor.reduce(columns, rank_tolerance=1e-3).dropped == ("column 2",)
 
 
 def test_nodes_on_the_axis_have_no_spin():
@@ -148,38 +81,6 @@ def test_nodes_on_the_axis_have_no_spin():
     with pytest.raises(ValueError, match="no moment of inertia about its axis"):
         select_modes(reduced, Formulation("none", "free"))
     assert "spin" not in select_modes(reduced, Formulation("none", 10.0)).labels
-
-
-def test_no_modes_make_a_rigid_rotor(rotor):
-    rigid = rotor.reduce(0)
-    assert rigid.labels == RIGID
-    with pytest.raises(ValueError, match="reduced basis is empty"):
-        grounded_rotor(np.ones(3)).reduce(0)
-
-
-def test_modes_of_another_mesh_are_refused(rotor):
-    other = free_modes(random_rotor(13), 2)
-    with pytest.raises(ValueError, match="from another mesh"):
-        rotor.reduce(other)
-    fewer = ModeBasis(np.eye(9)[:, :1], ("one",), nodes=np.eye(3))
-    with pytest.raises(ValueError, match="3 nodes in the basis, 6 in the rotor"):
-        rotor.reduce(fewer)
-
-
-@pytest.mark.parametrize("modes", ["three", 2.0, True])
-def test_other_kinds_of_modes_are_refused(rotor, modes):
-    with pytest.raises(TypeError, match="expected a number of free eigenmodes"):
-        rotor.reduce(modes)
-
-
-def test_columns_of_another_size_are_refused(rotor):
-    with pytest.raises(ValueError, match=r"shape \(9, 2\)"):
-        rotor.reduce(np.ones((9, 2)))
-
-
-def test_stress_without_recovery_is_refused(rotor):
-    with pytest.raises(ValueError, match="no stress recovery"):
-        rotor.reduce(2, stress=True)
 
 
 # ------------------------------------------------------------------ selection
@@ -240,52 +141,7 @@ def test_each_formulation_has_the_rigid_modes_that_its_frame_lacks(reduced, form
     assert selection.invariants.size == len(selection.labels)
 
 
-@pytest.mark.parametrize("translation", ["free", "none"])
-def test_selection_and_frame_span_what_the_reduced_rotor_spans(rotor, reduced, translation):
-    formulation = Formulation(translation)
-    selection = select_modes(reduced, formulation)
-    spin = block_diagonal(rotor.axis.skew, 6) @ (rotor.nodes - selection.origin).ravel()
-    frame = np.column_stack([translations(6) @ tau_rows(formulation, rotor.axis).T, spin])
-    whole = np.column_stack([frame, reduced.shapes.matrix @ selection.T])
-    assert np.linalg.matrix_rank(whole) == reduced.size == whole.shape[1]
-    assert np.linalg.matrix_rank(np.column_stack([whole, reduced.shapes.matrix])) == reduced.size
-
-
-def test_origin_of_the_frame(rotor, reduced):
-    free, fixed = (select_modes(reduced, Formulation(name)) for name in ("free", "none"))
-    np.testing.assert_array_equal(free.origin, reduced.center_of_mass)
-    foot = rotor.axis.project(rotor.center_of_mass)
-    np.testing.assert_allclose(fixed.origin, foot, rtol=1e-15)
-    np.testing.assert_allclose(fixed.invariants.center, rotor.center_of_mass - foot, atol=EXACT)
-    assert np.linalg.norm(fixed.invariants.center) > 0.1
-
-
 # ------------------------------------------------------------------ grounded rotors
-
-
-def test_fully_grounded_rotor_has_no_rigid_columns():
-    reduced = grounded_rotor(np.array([1.0, 2.0, 3.0])).reduce(6)
-    assert reduced.grounded
-    assert reduced.rigid == ()
-    selection = select_modes(reduced, Formulation("none", 10.0))
-    np.testing.assert_array_equal(selection.T, np.eye(6))
-
-
-def test_partly_grounded_rotor_keeps_its_free_motions():
-    rotor = grounded_rotor(np.array([1.0, 2.0, 0.0]))  # free along z only
-    reduced = rotor.reduce(4)
-    assert reduced.rigid == ("free motion 1",)
-    along = reduced.shapes.matrix[:, 0] * np.sqrt(rotor.total_mass)
-    np.testing.assert_allclose(np.abs(along), np.tile([0.0, 0.0, 1.0], 6), atol=EXACT)
-
-
-@pytest.mark.parametrize(
-    "formulation", [Formulation("free", 1.0), Formulation("in-plane", 1.0), Formulation("none")]
-)
-def test_grounded_rotor_refuses_a_moving_frame(formulation):
-    reduced = grounded_rotor(np.ones(3)).reduce(3)
-    with pytest.raises(ValueError, match="holds this rotor in its own frame"):
-        select_modes(reduced, formulation)
 
 
 # ------------------------------------------------------------------ size, immutability
@@ -306,25 +162,6 @@ def all_arrays(value, prefix: str = "") -> dict[str, np.ndarray]:
     return found
 
 
-def test_no_array_can_be_written_to(reduced):
-    selected = select_modes(reduced, Formulation("none")).invariants
-    arrays = all_arrays(reduced) | all_arrays(selected, "selection.")
-    assert {"invariants.K", "shapes.matrix", "interfaces.left.motion"} <= set(arrays)
-    writable = [name for name, array in arrays.items() if array.flags.writeable]
-    assert writable == []
-
-
-def test_no_attribute_can_be_replaced(reduced):
-    with pytest.raises(AttributeError, match="cannot assign"):
-        reduced.grounded = True
-
-
-def test_selection_leaves_the_reduced_rotor_alone(rotor, reduced):
-    select_modes(reduced, Formulation("free"))
-    for name, array in all_arrays(rotor.reduce(5)).items():
-        np.testing.assert_array_equal(all_arrays(reduced)[name], array)
-
-
 def test_size_without_shapes_is_independent_of_the_mesh():
     coarse, finer = (
         SolidRotor.from_matrices(
@@ -343,12 +180,6 @@ def test_size_without_shapes_is_independent_of_the_mesh():
 
 def sizes(reduced: ReducedRotor) -> dict:
     return {name: array.shape for name, array in all_arrays(reduced).items()}
-
-
-def test_without_shapes_changes_nothing_else(rotor, reduced):
-    bare = rotor.reduce(5, keep_shapes=False)
-    for name, array in all_arrays(bare).items():
-        np.testing.assert_array_equal(array, all_arrays(reduced)[name])
 
 
 # ------------------------------------------------------------------ storage
@@ -378,12 +209,3 @@ def test_storage_is_lossless(reduced, tmp_path, change):
     changed = change(reduced)
     changed.save(tmp_path / "rotor.npz")
     assert_identical(ReducedRotor.load(tmp_path / "rotor.npz"), changed)
-
-
-def test_storage_of_dropped_columns_and_grounded_rotors(tmp_path):
-    rotor = grounded_rotor(np.array([1.0, 2.0, 0.0]))
-    modes = free_modes(rotor, 2).matrix
-    reduced = rotor.reduce(np.column_stack([modes, modes[:, 0]]), keep_shapes=False)
-    assert reduced.dropped == ("column 3",)
-    reduced.save(str(tmp_path / "rotor"))  # no suffix is added
-    assert_identical(ReducedRotor.load(str(tmp_path / "rotor")), reduced)

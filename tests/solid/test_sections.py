@@ -9,7 +9,7 @@ import pytest
 from models import ALUMINIUM, STEEL, two_material_cylinder
 from netgen.occ import Cylinder, Glue, OCCGeometry, Pnt, Z
 
-from exudyn_rotor import RigidDisc, SolidRotor, SpinAxis, Support, campbell
+from exudyn_rotor import SolidRotor, Support, campbell
 
 HARD = {"youngsModulus": 2.1e15, "poissonsRatio": 0.3, "density": 7850.0}
 RADIUS, LENGTH = 0.02, 0.4
@@ -42,42 +42,6 @@ def wheel() -> tuple[float, tuple[float, float]]:
     return mass, (polar, 0.5 * polar + mass * BAND[1] ** 2 / 12.0)
 
 
-@pytest.mark.parametrize("axis", ["z", SpinAxis([1.0, 2.0, -0.5], [0.3, -0.1, 0.2])])
-def test_interface_at_takes_the_outer_surface_of_a_band(axis):
-    """Neither the bore nor the face between sleeve and shaft; any axis."""
-    inner = Cylinder(Pnt(0, 0, 0), Z, 0.04, 0.2) - Cylinder(Pnt(0, 0, 0), Z, 0.02, 0.2)
-    sleeve = Cylinder(Pnt(0, 0, 0), Z, 0.06, 0.2) - Cylinder(Pnt(0, 0, 0), Z, 0.04, 0.2)
-    inner.mat("a")
-    sleeve.mat("b")
-    mesh = ngs.Mesh(OCCGeometry(Glue([inner, sleeve])).GenerateMesh(maxh=0.08, curvaturesafety=0.7))
-    made = SolidRotor.from_ngsolve(mesh, {"a": STEEL, "b": STEEL}, "z")
-    axis = SpinAxis.of(axis)
-    turn = np.column_stack([axis.plane, axis.direction])
-    rotor = SolidRotor(
-        made.nodes @ turn.T + axis.point, made.mass, made.stiffness, axis,
-        triangles=made.triangles,
-    ).interface_at("seat", 0.08, 0.08)  # fmt: skip
-    seat = rotor.interfaces["seat"]
-    np.testing.assert_allclose(np.linalg.norm(axis.radial(seat.positions), axis=1), 0.06, rtol=1e-9)
-    np.testing.assert_allclose(seat.reference, axis.point + 0.08 * axis.direction, atol=1e-12)
-    along = made.nodes[:, 2]
-    outer = np.hypot(*made.nodes[:, :2].T) > 0.0599
-    expected = np.flatnonzero(outer & (along > 0.04 - 1e-9) & (along < 0.12 + 1e-9))
-    assert seat.nodes.tolist() == expected.tolist()
-    assert seat.nodes.size > 20
-    # a band at the end takes the edge of the end face, and not the face
-    end = rotor.interface_at("end", 0.0, 0.08).interfaces["end"]
-    np.testing.assert_allclose(np.linalg.norm(axis.radial(end.positions), axis=1), 0.06, rtol=1e-9)
-
-
-def test_area_weights_of_a_band_are_those_of_its_surface():
-    """A rotation-free mean: the centre of an even cylinder is on its axis."""
-    seat = shaft().interface_at("seat", *BAND).interfaces["seat"]
-    np.testing.assert_allclose(seat.center[:2], 0.0, atol=0.02 * RADIUS)
-    assert seat.weights.min() > 0.0
-    assert np.ptp(seat.weights) > 0.5 * seat.weights.mean()  # corners and mid nodes differ
-
-
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -90,12 +54,6 @@ def test_area_weights_of_a_band_are_those_of_its_surface():
 def test_bands_that_hold_nothing_are_refused(arguments, words):
     with pytest.raises(ValueError, match=words):
         shaft().interface_at(*arguments)
-
-
-def test_a_rotor_without_a_surface_has_no_bands():
-    rotor = SolidRotor.from_matrices(np.eye(3), 1e6 * np.eye(3), [[0, 0, 0]], "z")
-    with pytest.raises(ValueError, match="no surface"):
-        rotor.interface_at("seat", 0.0, 0.1)
 
 
 def test_disc_adds_its_mass_and_moments():
@@ -158,37 +116,6 @@ def test_impossible_discs_are_refused(change, words):
         shaft().add_disc(**given)
 
 
-def test_discs_share_no_nodes():
-    rotor = shaft().add_disc(BAND[0], 1.0, (0.02, 0.02), BAND[1])
-    with pytest.raises(ValueError, match="shares nodes with the disc"):
-        rotor.add_disc(BAND[0] + 0.02, 1.0, (0.02, 0.02), BAND[1])
-
-
-def test_a_section_in_one_plane_takes_thin_discs_only():
-    ring = [[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]]
-    RigidDisc([0, 0, 0], 1.0, np.diag([1, 1, 2]), range(4), ring, 1e9)
-    with pytest.raises(ValueError, match="lie in one plane"):
-        RigidDisc([0, 0, 0], 1.0, np.diag([1.5, 1.5, 2]), range(4), ring, 1e9)
-    with pytest.raises(ValueError, match="on one line"):
-        RigidDisc([0, 0, 0], 1.0, np.diag([1, 1, 2]), [0, 2], ring[::2], 1e9)
-
-
-@pytest.mark.parametrize(
-    ("directions", "free"),
-    [
-        (None, 0),
-        ("axial", 3),
-        (["radial", "tangential"], 3),
-        ("tangential", 3),
-        (["radial"], 4),
-        (["z", "x"], 1),
-    ],
-)
-def test_clamps_hold_the_named_directions(directions, free):
-    """What stays free of a face across the axis."""
-    assert shaft().clamped("left", directions).rigid_motions == free
-
-
 @pytest.mark.parametrize(
     ("directions", "modulus"), [("axial", 2.1e11), (["radial", "tangential"], 2.1e11 / 2.6)]
 )
@@ -204,16 +131,6 @@ def test_waves_in_a_bar_held_in_one_direction(directions, modulus):
     assert np.min(np.abs(frequencies / expected - 1.0)) < 1e-3
 
 
-def test_unknown_directions_are_refused():
-    for wrong, words in (
-        (["w"], "directions"),
-        ([], "one or more"),
-        (["x", "axial"], "not of both"),
-    ):
-        with pytest.raises(ValueError, match=words):
-            shaft().clamped("left", wrong)
-
-
 def test_summary_names_materials_and_discs():
     mesh = two_material_cylinder()
     materials = {"steel": STEEL, "aluminium": ALUMINIUM}
@@ -223,12 +140,3 @@ def test_summary_names_materials_and_discs():
     assert "aluminium: 8.48" in text
     assert "E 7e+10 Pa, ν 0.33, ρ 2700 kg/m³" in text
     assert "rigid disc       3 kg at [0, 0, 0.2] m, polar 0.02, transverse 0.01 kg m²" in text
-
-
-def test_curved_elements_are_replaced_with_a_word():
-    mesh = two_material_cylinder()
-    mesh.Curve(2)
-    materials = {"steel": STEEL, "aluminium": ALUMINIUM}
-    with pytest.warns(UserWarning, match=r"Curve\(2\)\) are replaced by mid nodes"):
-        SolidRotor.from_ngsolve(mesh, materials, "z")
-    SolidRotor.from_ngsolve(mesh, materials, "z")  # no second word: the mid nodes are there

@@ -6,7 +6,6 @@ from models import ALUMINIUM, STEEL, two_material_cylinder
 from point_rotors import random_rotor
 
 from exudyn_rotor import SolidRotor, Support, stability, stability_threshold
-from exudyn_rotor.solid.damping import dense_damping
 
 MATERIALS = {"steel": STEEL, "aluminium": ALUMINIUM}
 FACTORS = {"mass": 0.3, "stiffness": 2e-3}
@@ -42,27 +41,6 @@ def test_internal_damping_makes_a_jeffcott_rotor_unstable(ratio):
     assert found.values == pytest.approx([threshold], rel=1e-6)
 
 
-def test_free_modes_decay_as_rayleigh_says():
-    """Flexible modes decay with (α + β ω²)/2, no rigid motion does (textbook)."""
-    rotor = random_rotor(5)
-    mass, stiffness = rotor.mass.toarray(), rotor.stiffness.toarray()
-    damping = dense_damping(rotor.with_damping(**FACTORS))
-    size = len(mass)
-    inverse = np.linalg.inv(mass)
-    state = np.block(
-        [[np.zeros((size, size)), np.eye(size)], [-inverse @ stiffness, -inverse @ damping]]
-    )
-    found = np.linalg.eigvals(state)
-    omega = np.sqrt(np.linalg.eigvals(inverse @ stiffness).real.clip(0.0))
-    omega = np.sort(omega)[6:]
-    decay = 0.5 * (FACTORS["mass"] + FACTORS["stiffness"] * omega**2)
-    # the matrix is of order 10, its eigenvectors are well conditioned: 1e-15 · 10 · 100
-    for value in -decay + 1j * np.sqrt(omega**2 - decay**2):
-        assert np.abs(found - value).min() < 1e-12
-    # rigid motions: double zeros that rounding ε splits by √ε = 1.5e-8, times the order 10
-    assert np.sort(np.abs(found))[11] < 1e-6 < np.sort(np.abs(found))[12]
-
-
 def test_the_order_of_damping_and_reduction_does_not_matter():
     rotor = random_rotor(6)
     first, last = (
@@ -87,15 +65,6 @@ def test_factors_add_up_and_keep_the_elements(cylinder):
     assert cylinder.with_damping().damping is None
 
 
-def test_damping_of_all_materials_is_that_of_the_rotor(cylinder):
-    """NGSolve sums the same integrals: 1e-16 · 100 of the largest entry."""
-    by_material = cylinder.with_damping(materials=dict.fromkeys(MATERIALS, FACTORS))
-    alike = cylinder.with_damping(**FACTORS)
-    for name in ("damping", "mass_damping"):
-        expected = getattr(alike, name)
-        assert abs(getattr(by_material, name) - expected).max() < 1e-14 * abs(expected).max()
-
-
 def test_damping_of_one_material(cylinder):
     """A uniform strain ε_zz dissipates β (λ + 2 μ) ε² V of its material; v = x̂ has α m of it."""
     damped = cylinder.with_damping(materials={"aluminium": FACTORS})
@@ -115,41 +84,3 @@ def test_damping_of_one_material(cylinder):
     dissipated = stretch.ravel() @ (damped.damping @ stretch.ravel())
     # 1e-16 of terms that cancel, some 100 times their sum
     assert dissipated == pytest.approx(expected, rel=1e-12)
-
-
-def test_springs_to_the_ground_let_the_whole_mass_be_damped():
-    rotor = SolidRotor.from_matrices(2.0 * np.eye(6), 1e6 * np.eye(6), [[0, 0, 0], [1, 0, 0]], "z")
-    rotor = rotor.with_damping(mass=0.5)
-    # two nodes on a line leave its rotation free, which displaces nothing
-    np.testing.assert_allclose(dense_damping(rotor), np.eye(6), rtol=0.0, atol=1e-14)
-
-
-@pytest.mark.parametrize(
-    ("given", "kind", "message"),
-    [
-        ({"mass": -1.0}, ValueError, r"mass: needs a finite number \[1/s\] ≥ 0, got -1.0"),
-        ({"stiffness": "low"}, TypeError, r"stiffness: needs a finite number \[s\].* got 'low'"),
-        ({"loss": -0.1}, ValueError, "loss: needs a finite number ≥ 0, got -0.1"),
-        ({"materials": 1.0}, TypeError, "materials: needs a dictionary of name to factors"),
-        ({"materials": {"gold": {}}}, ValueError, "materials: 'gold' is unknown; .*'steel'"),
-        ({"materials": {"steel": 1.0}}, TypeError, "materials: 'steel': needs a dictionary"),
-        (
-            {"materials": {"steel": {"friction": 1.0}}},
-            ValueError,
-            "materials: 'steel': 'friction' is unknown; there are: 'mass', 'stiffness', 'loss'",
-        ),
-        (
-            {"materials": {"steel": {"mass": -1.0}}},
-            ValueError,
-            r"materials: 'steel': mass: needs a finite number \[1/s\] ≥ 0, got -1.0",
-        ),
-    ],
-)
-def test_wrong_factors_are_refused(cylinder, given, kind, message):
-    with pytest.raises(kind, match=message):
-        cylinder.with_damping(**given)
-
-
-def test_materials_need_elements():
-    with pytest.raises(ValueError, match=r"materials: .*no elements.*from_ngsolve"):
-        random_rotor(5).with_damping(materials={"steel": FACTORS})

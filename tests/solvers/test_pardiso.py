@@ -1,9 +1,5 @@
 """Factors by Pardiso, where it is installed, and modes by wide blocks with any factor."""
 
-import os
-import subprocess
-import sys
-import threading
 import warnings
 
 import numpy as np
@@ -12,10 +8,9 @@ import scipy.sparse as sp
 from netgen.occ import Cylinder, OCCGeometry, Pnt, X
 from ngsolve import Mesh
 
-import exudyn_rotor
 from exudyn_rotor import SolidRotor, free_modes
 from exudyn_rotor.solvers import choice, factor, pardiso
-from exudyn_rotor.solvers.factor import NotPositiveDefiniteError, SparseCholesky
+from exudyn_rotor.solvers.factor import SparseCholesky
 from exudyn_rotor.solvers.inertia_relief import inertia_relief
 from exudyn_rotor.solvers.lanczos import lanczos_modes
 from exudyn_rotor.solvers.memory import TooLittleMemoryError
@@ -61,42 +56,6 @@ def test_pardiso_solves_many_right_hand_sides():
     assert made.solve(np.zeros((matrix.shape[0], 0))).shape == (matrix.shape[0], 0)
 
 
-IDLE = """
-import sys
-import time
-import types
-import numpy as np
-import scipy.sparse as sp
-
-sys.modules["exudyn_rotor"] = package = types.ModuleType("exudyn_rotor")
-package.__path__ = sys.argv[1:]  # a few modules alone, as the whole package takes seconds
-from exudyn_rotor.solvers.factor import SparseCholesky
-
-one, unit = sp.diags_array([-1, 2.1, -1], offsets=[-1, 0, 1], shape=(150, 150)), sp.eye_array(150)
-SparseCholesky(sp.csr_array(sp.kron(one, unit) + sp.kron(unit, one))).solve(np.ones((22500, 4)))
-start = time.process_time()
-time.sleep(0.15)
-print(time.process_time() - start)
-"""
-
-
-def test_no_thread_of_pardiso_waits_in_a_loop():
-    """By default each keeps a core busy for 200 ms after its work."""
-    pytest.importorskip("pypardiso")
-    call = [sys.executable, "-c", IDLE, *exudyn_rotor.__path__]
-    threads = os.environ | {"MKL_NUM_THREADS": "2", "OMP_NUM_THREADS": "2"}
-    done = subprocess.run(call, env=threads, capture_output=True, text=True, timeout=60, check=True)
-    assert float(done.stdout) < 0.02
-
-
-def test_pardiso_refuses_negative_pivots():
-    pytest.importorskip("pypardiso")
-    matrix = laplacian(22)
-    lowest = 6.0 - 6.0 * np.cos(np.pi / 23)
-    with pytest.raises(NotPositiveDefiniteError, match="pivot"):
-        SparseCholesky(sp.csr_array(matrix - 1.5 * lowest * sp.eye_array(matrix.shape[0])))
-
-
 def test_pardiso_gives_the_modes_of_ngsolve(shaft, monkeypatch):
     pytest.importorskip("pypardiso")
     expected = free_modes(shaft, 12)
@@ -105,15 +64,6 @@ def test_pardiso_gives_the_modes_of_ngsolve(shaft, monkeypatch):
     found = free_modes(again, 12)
     assert inertia_relief(again)._factor.uses_pardiso
     assert found.frequencies == pytest.approx(expected.frequencies, rel=1e-9)
-
-
-def test_ordering_tells_what_the_factor_takes(shaft):
-    """Beside the estimate from the number of coordinates."""
-    pytest.importorskip("pypardiso")
-    size = shaft.stiffness.shape[0]
-    ordered, fill = pardiso.Ordered(shaft.stiffness), choice.estimated_fill(size)
-    assert 0.5 < ordered.needed / (8.0 * fill.entries) < 3.0
-    assert 0.3 < ordered.operations / fill.operations < 2.0
 
 
 def test_choice_with_pardiso(shaft, monkeypatch):
@@ -133,25 +83,6 @@ def test_choice_with_pardiso(shaft, monkeypatch):
     monkeypatch.setattr(pardiso, "available_memory", lambda: 1e6)
     with pytest.raises(TooLittleMemoryError, match="to order the factor of"):
         pardiso.Ordered(shaft.stiffness)
-
-
-def test_threads_share_a_factor():
-    pytest.importorskip("pypardiso")
-    matrix = laplacian(22)
-    known = np.random.default_rng(5).standard_normal((matrix.shape[0], 6))
-    made, found = SparseCholesky(matrix), {}
-
-    def solve(column: int) -> None:
-        found[column] = made.solve(matrix @ known[:, column])
-
-    threads = [threading.Thread(target=solve, args=(column,)) for column in range(6)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert np.column_stack([found[column] for column in range(6)]) == pytest.approx(
-        known, abs=1e-11
-    )
 
 
 def test_mkl_is_named_once_where_a_model_is_large(shaft, monkeypatch):

@@ -1,25 +1,18 @@
 """Stress of a running rotor against disc theory, Exudyn's own stress sensor and superposition."""
 
-from dataclasses import replace
-
 import exudyn as exu
 import ngsolve as ngs
 import numpy as np
 import pytest
 from exudyn.itemInterface import SensorNode
 from models import STEEL, block_beam
-from netgen.occ import Box, Cylinder, OCCGeometry, Pnt, X, Z
-from scipy.spatial.transform import Rotation
+from netgen.occ import Cylinder, OCCGeometry, Pnt, Z
 
 from exudyn_rotor import (
     Formulation,
-    ReducedRotor,
     SolidRotor,
-    SpinAxis,
     StressField,
-    StressHistory,
     add_rotor,
-    load_result,
     select_modes,
     stress_history,
 )
@@ -57,22 +50,6 @@ def test_scalars_of_the_stress_tensor():
     assert principal(states) == pytest.approx(np.array(expected, dtype=float), abs=1e-12)
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_scalars_of_a_stress_with_all_six_components(seed):
-    """Principal stresses p, turned by a rotation R: ``R diag(p) Rᵀ`` has them in any axes.
-
-    Von Mises by p alone; both to rounding, some 20 eps of the largest entry.
-    """
-    values = np.array([7.0, 2.0, -4.0])
-    R = Rotation.from_rotvec(np.random.default_rng(seed).normal(size=3)).as_matrix()
-    tensor = R @ np.diag(values) @ R.T
-    stress = np.array([tensor[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))])
-    assert np.unique(np.abs(np.round(stress, 3))).size == 6
-    assert principal(stress) == pytest.approx(values, abs=1e-13)
-    # ½ [(7 − 2)² + (2 + 4)² + (−4 − 7)²] = 91
-    assert von_mises(stress) == pytest.approx(np.sqrt(91.0), rel=1e-14)
-
-
 def test_static_stress_is_that_of_a_rotating_disc(ring):
     """Hoop stress at the bore of a plane annulus (Timoshenko, Goodier, Theory of Elasticity).
 
@@ -88,47 +65,6 @@ def test_static_stress_is_that_of_a_rotating_disc(ring):
     assert principal(stress[bore])[:, 0].mean() == pytest.approx(hoop, rel=0.03)
     assert von_mises((field.modes @ zeta)[bore]).max() < 0.02 * hoop
     assert stress == pytest.approx(ring.static_stress(SPEED), abs=1e-9 * hoop)
-
-
-def test_static_stress_of_a_blade_beside_the_axis():
-    """A blade along x, held at x = 0, that spins about z through (−a, −b).
-
-    Beam theory: the tension ``ρΩ²(a(L − x) + (L² − x²)/2)`` and the bending moment
-    ``ρAΩ² b (L − x)²/2`` about z, at mid-length, where the clamped end (Saint-Venant) is three
-    heights away. The modes show the bending and little of the tension. With two elements over the
-    height the stress errs by some (h/4)², h over the height: 2 %.
-    """
-    length, height, a, b, speed = 0.3, 0.03, 0.1, 0.2, 200.0
-    solid = Box(Pnt(0, -height / 2, -0.01), Pnt(length, height / 2, 0.01))
-    solid.faces.Min(X).name = "root"
-    mesh = ngs.Mesh(OCCGeometry(solid).GenerateMesh(maxh=0.015))
-    blade = SolidRotor.from_ngsolve(mesh, STEEL, SpinAxis((0, 0, 1), (-a, -b, 0))).clamped("root")
-    reduced = blade.reduce(6, stress=True, prestress=True)
-    field, zeta = steady_state(reduced, speed)
-    found = field.at(zeta, speed)
-    x, y = reduced.shapes.nodes[:, :2].T
-    force = STEEL["density"] * speed**2
-    tension = force * (a * (length - x) + (length**2 - x**2) / 2.0)
-    bending = -force * b * (length - x) ** 2 / 2.0 * y * 12.0 / height**2
-    middle = (np.abs(x - length / 2) < 0.05) & (np.abs(y) > 0.4 * height)
-    assert middle.sum() > 50
-    largest = np.abs(bending[middle]).max()
-    assert found[middle, 0] == pytest.approx((tension + bending)[middle], abs=0.02 * largest)
-    assert np.abs((field.modes @ zeta)[middle, 0]).max() > 0.5 * largest
-    assert found == pytest.approx(reduced.static_stress(speed), abs=1e-8 * largest)
-
-
-def test_stress_at_rest_is_in_the_field_once():
-    """A bar between clamped ends under uniform tension, which is in equilibrium as it is."""
-    bar = SolidRotor.from_ngsolve(block_beam(), STEEL, "z").clamped(["left", "right"])
-    tension = np.zeros((bar.node_count, 6))
-    tension[:, 2] = 5e7
-    reduced = bar.reduce(3, stress=True, prestress=bar.prestress(stress=tension))
-    field, zeta = steady_state(reduced, 300.0)
-    assert field.at(0.0 * zeta, 0.0) == pytest.approx(tension, abs=1.0)
-    assert field.at(zeta, 300.0) == pytest.approx(reduced.static_stress(300.0), abs=1.0)
-    history = stress_history(field, [0.0], [zeta], 300.0)
-    assert history.peak.max() == pytest.approx(von_mises(reduced.static_stress(300.0)).max())
 
 
 def test_history_is_the_superposition_and_finds_the_peak(beam):
@@ -190,33 +126,6 @@ def test_stress_in_a_run_is_the_static_one_and_what_exudyn_s_own_sensor_adds(bea
     assert np.abs(expected[0] - sensed[0]).max() > 1e-3 * scale
 
 
-def test_only_stress_sensors_of_prestressed_rotors_that_spin_warn(beam):
-    """Warnings are errors in these tests."""
-    rotor = SolidRotor.from_ngsolve(block_beam(), STEEL, "z")
-    bare = rotor.reduce(2, stress=True, prestress=False)
-    for reduced, speed, kind in (
-        (beam, 300.0, KINDS.Displacement),
-        (beam, 0.0, KINDS.StressLocal),
-        (bare, 300.0, KINDS.StressLocal),
-    ):
-        mbs = exu.SystemContainer().AddSystem()
-        add_rotor(mbs, reduced, translation="none", spin=speed).add_node_sensor(0, kind)
-
-
-def test_pictures_and_storage(beam, tmp_path):
-    field, zeta = steady_state(beam, 300.0)
-    history = stress_history(field, [0.0, 1.0], np.stack([0 * zeta, zeta]), [0.0, 300.0], count=2)
-    history.save(tmp_path / "stress.npz")
-    again = load_result(tmp_path / "stress.npz")
-    assert isinstance(again, StressHistory)
-    assert np.array_equal(again.stress, history.stress)
-    bar = history.plot_peak().figure.axes[1]
-    assert bar.get_ylim()[1] == pytest.approx(1e-6 * history.peak.max(), rel=0.3)
-    line = history.plot().lines[0]
-    assert line.get_ydata() == pytest.approx(1e-6 * history.von_mises[:, 0])
-    assert len(field.plot(zeta, 300.0).figure.axes) == 2
-
-
 def test_a_field_is_stored_and_tabulated(beam, tmp_path):
     field, zeta = steady_state(beam, 300.0)
     field.save(tmp_path / "field.npz")
@@ -227,51 +136,6 @@ def test_a_field_is_stored_and_tabulated(beam, tmp_path):
     index, size, node = rows[-1].split()[:3]
     expected = 1e-6 * von_mises(field.modes[int(node), :, int(index)])
     assert float(size) == pytest.approx(expected, rel=1e-3)  # four digits are shown
-
-
-def test_field_of_a_body_is_that_of_its_selection(beam, tmp_path):
-    """Shapes, storage and a prestress do not change what a basis is."""
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, beam.without_shapes(), spin=300.0, translation="none")
-    beam.save(tmp_path / "beam.npz")
-    loaded = ReducedRotor.load(tmp_path / "beam.npz")
-    expected = StressField.of(beam, body.selection)
-    for field in (StressField.of(beam, body), StressField.of(loaded, body)):
-        assert np.array_equal(field.modes, expected.modes)
-        assert np.array_equal(field.rest, expected.rest)
-
-
-def softer(rotor):
-    material = STEEL | {"youngsModulus": 2.0e11}
-    return SolidRotor.from_ngsolve(block_beam(), material, "z").reduce(6, stress=True)
-
-
-def other_sign(rotor):
-    signs = np.ones(rotor.size)
-    signs[-1] = -1.0
-    return replace(rotor, invariants=rotor.invariants.in_basis(np.diag(signs)))
-
-
-# each has stress modes, all but the last as many columns as the beam
-OTHERS = {
-    "finer mesh": lambda rotor: SolidRotor.from_ngsolve(block_beam(0.03), STEEL, "z").reduce(
-        6, stress=True
-    ),
-    "softer": softer,
-    "other sign": other_sign,
-    "fewer modes": lambda rotor: SolidRotor.from_ngsolve(block_beam(), STEEL, "z").reduce(
-        4, stress=True
-    ),
-}
-
-
-@pytest.mark.parametrize("other", OTHERS)
-def test_selection_of_another_rotor_is_refused(beam, other):
-    chosen = select_modes(beam, Formulation("none", 300.0))
-    assert chosen.is_of(beam)
-    assert len(repr(chosen)) < 200
-    with pytest.raises(ValueError, match=r"it is of another rotor, ReducedRotor\(6 rigid \+ 6"):
-        StressField.of(OTHERS[other](beam), chosen)
 
 
 def test_stress_at_speed_without_the_static_part_warns():
@@ -313,24 +177,3 @@ def test_bad_input_is_refused(beam):
     bare = SolidRotor.from_ngsolve(block_beam(), STEEL, "z").reduce(1)
     with pytest.raises(ValueError, match="without stress modes"):
         StressField.of(bare, select_modes(bare, Formulation("none", 1.0)))
-
-
-WRONG_CHOICES = {
-    "no such node": ({"nodes": [3, 10**6]}, r"nodes: .* ≥ 0 and ≤ \d+, got 1000000$"),
-    "negative": ({"nodes": [-1]}, "got -1$"),
-    "mask": ({"nodes": np.ones(10**4, bool)}, "nodes: .* a mask; use np.flatnonzero"),
-    "fractions": ({"nodes": [0.5]}, "nodes: needs whole numbers"),
-    "one number": ({"nodes": 5}, r"nodes: .* of shape \(any,\)"),
-    "no nodes": ({"nodes": []}, "nodes: .*, got none"),
-    "count zero": ({"count": 0}, "count: needs a whole number ≥ 1, got 0"),
-    "fraction": ({"count": 2.5}, "count: needs a whole number ≥ 1, got 2.5"),
-}
-
-
-@pytest.mark.parametrize("case", WRONG_CHOICES)
-def test_wrong_choice_of_nodes_is_named_in_one_line(beam, case):
-    options, message = WRONG_CHOICES[case]
-    field, zeta = steady_state(beam, 300.0)
-    with pytest.raises((TypeError, ValueError), match=message) as caught:
-        stress_history(field, [0.0], zeta[None], 300.0, **options)
-    assert len(str(caught.value)) < 150

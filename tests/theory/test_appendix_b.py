@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from exudyn_rotor import Invariants, SolidRotor, campbell, free_modes
-from exudyn_rotor.theory.nodal import block_diagonal, tilde, tilde_basis, translations
+from exudyn_rotor.theory.nodal import tilde_basis
 
 STIFFNESS = 1e4 * np.array(
     [  # (123)
@@ -41,48 +41,6 @@ def rotor() -> SolidRotor:
     return SolidRotor.from_matrices(np.eye(6), STIFFNESS, [[1, 0, 0], [7 / 4, 0, 0]], "x")
 
 
-def test_nodes_and_their_tilde_matrix(rotor):
-    np.testing.assert_array_equal(rotor.nodes.ravel(), [1, 0, 0, 7 / 4, 0, 0])  # (116)
-    printed = [[0, 0, 0], [0, 0, -1], [0, 1, 0], [0, 0, 0], [0, 0, -7 / 4], [0, 7 / 4, 0]]
-    np.testing.assert_array_equal(tilde(rotor.nodes), printed)  # (117)
-
-
-def test_axis(rotor):
-    np.testing.assert_array_equal(rotor.axis.direction, [1, 0, 0])  # (118)
-    np.testing.assert_array_equal(rotor.axis.skew, [[0, 0, 0], [0, 0, -1], [0, 1, 0]])  # (119)
-    np.testing.assert_array_equal(rotor.axis.plane, [[0, 0], [1, 0], [0, 1]])  # (121)
-
-
-def test_block_diagonal_axis_matrix(rotor):
-    printed = [
-        [0, 0, 0, 0, 0, 0],
-        [0, 0, -1, 0, 0, 0],
-        [0, 1, 0, 0, 0, 0],
-        [0, 0, 0, 0, 0, 0],
-        [0, 0, 0, 0, 0, -1],
-        [0, 0, 0, 0, 1, 0],
-    ]
-    np.testing.assert_array_equal(
-        block_diagonal(rotor.axis.skew, rotor.node_count).toarray(), printed
-    )  # (120)
-
-
-def test_mass_and_stiffness(rotor):
-    np.testing.assert_array_equal(rotor.mass.toarray(), np.eye(6))  # (122)
-    np.testing.assert_array_equal(rotor.stiffness.toarray(), STIFFNESS)  # (123)
-
-
-def test_rigid_translations(rotor):
-    printed = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
-    np.testing.assert_array_equal(translations(rotor.node_count), printed)  # (128)
-
-
-def test_printed_modes_solve_the_eigenproblem(rotor):
-    np.testing.assert_array_equal(
-        rotor.stiffness @ MODES, rotor.mass @ MODES * np.square(AT_REST)
-    )  # (124, 125)
-
-
 def test_free_modes_have_the_printed_frequencies_and_eigenspaces(rotor):
     modes = free_modes(rotor, 6)
     np.testing.assert_allclose(modes.frequencies, AT_REST, rtol=1e-12)
@@ -105,18 +63,6 @@ def assert_same_eigenspaces(modes: np.ndarray) -> None:
         ours, _ = np.linalg.qr(modes[:, columns])
         printed, _ = np.linalg.qr(MODES[:, columns])
         np.testing.assert_allclose(ours @ ours.T, printed @ printed.T, atol=1e-12)
-
-
-def test_tilde_matrix_of_the_modes():
-    printed = [
-        [0, -1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0],
-        [1, 0, 0, 0, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, 0, 0, 0, 1],
-        [0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, -1, 0],
-        [0, 0, 0, 0, -1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0],
-        [0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, 0, 0, 0, -1],
-        [0, 0, 0, 0, 0, 0, 0, 1, 0, -1, 0, 0, 0, 0, 0, 0, 1, 0],
-    ]
-    np.testing.assert_array_equal(tilde_basis(MODES), printed)  # (126)
 
 
 def test_contraction_of_the_tilde_basis_gives_the_invariants(rotor):

@@ -3,13 +3,11 @@
 import exudyn as exu
 import numpy as np
 import pytest
-from point_rotors import free_stiffness, ring_rotor
+from point_rotors import ring_rotor
 from test_motion import AXIS, FAMILY, GRAVITY, ORIENTATION, motion_of, random_state
 
 from exudyn_rotor import (
-    Formulation,
     PrescribedMotion,
-    SolidRotor,
     add_rotor,
     recommended_settings,
 )
@@ -47,19 +45,6 @@ def test_energy_is_that_of_the_nodes(formulation):
     assert found.weight == pytest.approx(weight, abs=1e-12 * abs(mass).sum() * abs(p).max() * 4)
 
 
-@pytest.mark.parametrize(
-    ("translation", "coupling"),
-    [("free", "full"), ("in-plane", "full"), ("none", "full"), ("free", "frozen")],
-)
-def test_energy_with_stiffening_is_that_of_the_equations(translation, coupling):
-    """With a free spin all of the energy is in the unknowns; the equations conserve it."""
-    formulation = Formulation(translation, "free", spin_coupling=coupling)
-    motion, _, _ = motion_of(formulation, "tilt")
-    q, v = random_state(motion.size, 2)
-    found = energy_of(motion, 0.0, q, v)
-    assert found.kinetic + found.elastic == pytest.approx(motion.energy(0.0, q, v), rel=1e-12)
-
-
 def run(reduced, end_time, steps, setup=lambda mbs, body: None, **arguments):
     """Run a rotor, and return time and energies (s, 3)."""
     mbs = exu.SystemContainer().AddSystem()
@@ -77,78 +62,6 @@ def run(reduced, end_time, steps, setup=lambda mbs, body: None, **arguments):
     mbs.SolveDynamic(settings)
     data = mbs.GetSensorStoredData(sensor)
     return data[:, 0], data[:, 1:], mbs, others
-
-
-def test_two_masses_at_constant_speed():
-    """Each moves out to ``r + u``, ``u = Ω² m r/(k − Ω² m)``, from where it rotates at rest."""
-    mass, stiffness, radius, speed = 1.0, 1e6, 0.1, 300.0
-    rotor = SolidRotor.from_matrices(
-        mass * np.eye(6), stiffness * np.eye(6), [[radius, 0, 0], [-radius, 0, 0]], "z"
-    )
-    out = speed**2 * mass * radius / (stiffness - speed**2 * mass)
-    start = rotor.reduce(6)
-    columns = start.shapes.matrix
-    moved = np.array([out, 0, 0, -out, 0, 0])
-    _, energy, _, _ = run(
-        start,
-        1e-3,
-        2,
-        spin=speed,
-        translation="none",
-        stiffening="none",
-        modal_coordinates=columns.T @ moved * mass,
-    )
-    expected = [mass * (speed * (radius + out)) ** 2, stiffness * out**2, 0.0]
-    # at rest in the rotor frame to Newton's tolerance
-    np.testing.assert_allclose(energy, np.tile(expected, (len(energy), 1)), rtol=1e-8)
-
-
-def test_rigid_ring_that_flies_and_spins():
-    """½ m v² + ½ m r² Ω², and the weight m g h of a free fall: the sum stays."""
-    velocity, speed = [0.3, -0.2, 0.4], 50.0
-    time, energy, _, _ = run(
-        ring_rotor(0.1, 0.05, 3.0).reduce(0),
-        0.1,
-        20,
-        gravity=[0.0, 0.0, -9.81],
-        initial_velocity=velocity,
-        initial_speed=speed,
-    )
-    height = velocity[2] * time - 0.5 * 9.81 * time**2
-    spin = 0.5 * 3.0 * 0.1**2 * speed**2
-    flying = 0.5 * 3.0 * (velocity[0] ** 2 + velocity[1] ** 2 + (velocity[2] - 9.81 * time) ** 2)
-    # a parabola is integrated exactly
-    np.testing.assert_allclose(energy[:, 0], spin + flying, rtol=1e-9)
-    np.testing.assert_allclose(energy[:, 2], 3.0 * 9.81 * height, atol=1e-9)
-    assert np.all(energy[:, 1] == 0.0)
-
-
-@pytest.mark.parametrize("translation", ["free", "none"])
-def test_an_eccentric_rotor_exchanges_energy_and_keeps_the_sum(translation):
-    """A pendulum (none) or a body in free fall, with vibrating masses; the error falls with h²."""
-    ring = ring_rotor(0.2, 0.1, 4.0)
-    soft = free_stiffness(ring.nodes, 1e5 * np.eye(ring.nodes.size))
-    rotor = SolidRotor.from_matrices(ring.mass, soft, ring.nodes, "z")
-    reduced = rotor.add_point_mass([0.2, 0.0, 0.1], 1.0).reduce(6)
-    size = 8 + 3 * (translation == "none")
-    drift, exchanged = [], []
-    for steps in (100, 200):
-        _, energy, _, _ = run(
-            reduced,
-            0.02,
-            steps,
-            translation=translation,
-            gravity=[0.0, -500.0, 0.0],
-            initial_speed=40.0,
-            modal_velocities=np.eye(size)[-6] * 0.5,
-        )
-        total = energy.sum(axis=1)
-        drift.append(np.abs(total - total[0]).max())
-        exchanged.append(np.ptp(energy, axis=0))
-    assert np.all(exchanged[0][[0, 2]] > 1.0)
-    assert exchanged[0][1] > 1e-3
-    assert drift[0] < 1e-3 * exchanged[0][0]
-    assert drift[1] < 0.3 * drift[0]  # 0.25 and terms of higher order
 
 
 def test_a_driven_rotor_gains_what_the_drive_supplies():

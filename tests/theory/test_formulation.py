@@ -1,9 +1,8 @@
 """Formulations, and the motions that they prescribe."""
 
-import numpy as np
 import pytest
 
-from exudyn_rotor import ConstantSpeed, Formulation, PrescribedMotion
+from exudyn_rotor import Formulation, PrescribedMotion
 
 
 def test_run_up_has_the_rates_that_it_says():
@@ -28,33 +27,6 @@ def test_run_up_has_the_rates_that_it_says():
             assert (8 * near - far) / (12 * step) == pytest.approx(derivative(t), abs=1e-9)
 
 
-def test_constant_speed():
-    motion = ConstantSpeed(20.0, angle=0.5)
-    assert (motion.value(0.1), motion.rate(0.1), motion.acceleration(0.1)) == (2.5, 20.0, 0.0)
-
-
-@pytest.mark.parametrize(
-    ("formulation", "section", "count"),
-    [
-        (Formulation(), "2.2", 3),
-        (Formulation("in-plane"), "2.3", 2),
-        (Formulation("none"), "2.4", 0),
-        (Formulation("none", 5), "2.5", 0),
-        (Formulation("free", 5.0), "2.2", 3),
-    ],
-)
-def test_section_and_unknowns(formulation, section, count):
-    assert formulation.section == section
-    assert formulation.translation_count == count
-    assert formulation.has_spin == (formulation.spin == "free")
-    assert formulation.is_constant_speed != formulation.has_spin
-
-
-def test_a_number_is_a_constant_speed():
-    assert Formulation("none", 5).spin == ConstantSpeed(5.0)
-    assert Formulation("none", np.float64(5.0)).spin == ConstantSpeed(5.0)
-
-
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -70,10 +42,3 @@ def test_a_number_is_a_constant_speed():
 def test_wrong_formulations_are_refused(arguments, message):
     with pytest.raises((TypeError, ValueError), match=message):
         Formulation(**arguments)
-
-
-def test_wrong_prescribed_motions_are_refused():
-    with pytest.raises(TypeError, match="rate over time: needs a function"):
-        PrescribedMotion(np.sin, 1.0, np.cos)
-    with pytest.raises(ValueError, match="duration: needs a finite number"):
-        PrescribedMotion.run_up(0.0, 10.0, 0.0)

@@ -7,15 +7,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from point_rotors import SKEW_AXIS, random_invariants, random_spd, ring_rotor
+from point_rotors import random_invariants, random_spd, ring_rotor
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
     Formulation,
     Motion,
     PrescribedMotion,
-    SpinAxis,
-    add_rotor,
     select_modes,
 )
 from exudyn_rotor.multibody.rotor.equations import Layout, user_function_object
@@ -99,49 +97,6 @@ def test_kernel_equals_the_plain_equations(formulation, seed, gravity, time):
         assert found == pytest.approx(slopes, abs=1e-12 * np.abs(slopes).max())
 
 
-@pytest.mark.parametrize("name", ["free spin, free", "prescribed spin, free", "free spin, shaken"])
-def test_kernel_knows_what_it_has_evaluated(name):
-    """Mass matrix and forces share products; in any order they are those of their arguments."""
-    motion = motion_of(FORMULATIONS[name], 5, 1.0)
-    used = Kernel(motion, range(motion.size), motion.size)
-    states = np.random.default_rng(8).normal(size=(4, 2, motion.size)).tolist()
-    for (q, q_t), (other, _), time in zip(states, states[::-1], (0.1, 0.2, 0.2, 0.3), strict=True):
-        used.forces(time, q, q_t)
-        used.mass_entries(0.5 * time, other, q_t)
-        used.forces(0.5 * time, other, q_t)
-        used.jacobian(0.5 * time, other, q_t, 1.0, 1.0)
-        used.forces(0.5 * time, q, q_t)  # the same place at another time
-        fresh = Kernel(motion, range(motion.size), motion.size)
-        mass = used.mass_entries(time, q, q_t).copy()
-        forces = used.forces(time, q, q_t).copy()
-        assert mass == pytest.approx(fresh.mass_entries(time, q, q_t), rel=1e-14)
-        assert forces == pytest.approx(fresh.forces(time, q, q_t), rel=1e-14)
-
-
-@pytest.mark.parametrize("translation", ["free", "in-plane"])
-def test_unknowns_may_stand_among_others(translation):
-    """With the frame in the centre of mass, translations have only their weight."""
-    invariants, _, _ = random_invariants(3, 3)
-    invariants = replace(invariants, center=np.zeros(3), S=np.zeros((3, 3)))
-    motion = Motion(
-        invariants,
-        Formulation(translation, "free"),
-        stiffening(invariants, "none"),
-        plane=SpinAxis(SKEW_AXIS).plane,
-        gravity=np.array([1.0, -2.0, 3.0]),
-    )
-    count = motion.formulation.translation_count
-    unknowns = np.array([*range(count), 5, 6, 7, 8])
-    kernel, constant = Kernel(motion, unknowns, 9), constant_part(motion)
-    q, q_t = np.random.default_rng(5).normal(size=(2, 9))
-    forces = kernel.forces(0.0, q.tolist(), q_t.tolist())
-    assert not forces[[i for i in range(9) if i not in unknowns]].any()
-    own, rate = q[unknowns], q_t[unknowns]
-    total = forces[unknowns] + constant.force - constant.stiffness @ own - constant.damping @ rate
-    assert total == pytest.approx(motion.forces(0.0, own, rate), rel=1e-12, abs=1e-12)
-    assert constant.force[:count] == pytest.approx(motion.weight)
-
-
 @pytest.mark.parametrize(
     "formulation",
     [
@@ -179,26 +134,6 @@ def test_jacobian_for_the_solver_is_the_derivative_of_its_forces(formulation):
     assert found == pytest.approx(expected, abs=1e-8 * np.abs(expected).max())
 
 
-@pytest.mark.parametrize(
-    "name", ["free spin", "free spin, in-plane", "constant speed, free", "prescribed spin, free"]
-)
-def test_mass_matrix_for_the_solver(name):
-    """The whole matrix, among coordinates that are locked by mass."""
-    motion = motion_of(FORMULATIONS[name], 6, 0.0)
-    size = motion.size + 2
-    unknowns = np.array([*range(1, motion.size - 2), *range(size - 3, size)])
-    locked = np.setdiff1d(np.arange(size), unknowns)
-    layout = Layout(size, unknowns, np.isin(np.arange(size), locked) * 1e6)
-    scene = user_function_object(motion, layout, [0], None)
-    for q, q_t in np.random.default_rng(3).normal(size=(2, 2, size)):
-        state = q.tolist(), q_t.tolist()
-        found = scene.massMatrixUserFunction(None, 0.4, 0, *state).Convert2DenseMatrix()
-        mass = motion.mass_matrix(0.4, q[unknowns], q_t[unknowns])
-        expected = layout.spread(mass, layout.lock_mass)
-        assert found == pytest.approx(expected, abs=1e-12 * np.abs(expected[1:-1, 1:-1]).max())
-        assert np.count_nonzero(found[locked]) == 2
-
-
 def test_recommended_settings_follow_the_accuracy():
     given = exudyn.SimulationSettings()
     made = recommended_settings(0.1, 3e-4, accuracy=1e-6, settings=given)
@@ -207,25 +142,6 @@ def test_recommended_settings_follow_the_accuracy():
     assert made.timeIntegration.endTime == 0.1
     assert made.timeIntegration.newton.relativeTolerance == pytest.approx(1e-7)
     assert recommended_settings(0.1, 1e-3).timeIntegration.numberOfSteps == 100
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ((0.0, 1e-3), r"end_time: needs a finite number \[s\] > 0"),
-        ((1.0, -1e-3), r"step: needs a finite number \[s\] > 0"),
-        ((1.0, float("nan")), "step"),
-        ((1e-3, 1.0), "longer than end_time"),
-    ],
-)
-def test_bad_settings_are_refused(arguments, message):
-    with pytest.raises(ValueError, match=message):
-        recommended_settings(*arguments)
-
-
-def test_bad_accuracy_is_refused():
-    with pytest.raises(ValueError, match="accuracy: needs a finite number > 0 and < 1"):
-        recommended_settings(1.0, 1e-3, accuracy=2.0)
 
 
 def test_negligible_decides_what_is_evaluated():
@@ -241,10 +157,3 @@ def test_negligible_decides_what_is_evaluated():
     assert not np.any(gone.h)
     with pytest.raises(ValueError, match="negligible: needs"):
         select_modes(reduced, fixed, negligible=1.0)
-
-
-def test_one_word_sets_the_kind_of_all_markers():
-    rotor = ring_rotor(0.1, 0.2, 5.0).with_interface("end", range(5)).reduce(2)
-    mbs = exudyn.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor, markers="position")
-    assert mbs.GetMarker(body.marker("end"))["markerType"] == "SuperElementPosition"

@@ -68,14 +68,6 @@ def gradient(function, point: np.ndarray, step: float) -> np.ndarray:
     return np.stack(columns, axis=-1)
 
 
-def test_parts_of_the_test_rotor_are_not_zero():
-    invariants, _, _ = random_invariants(1, MODES)
-    terms = stiffening(invariants, "tilt")
-    lever = np.cross(SKEW_AXIS, invariants.center)
-    for part in (invariants.S, invariants.g, invariants.h, invariants.G, terms.B, lever):
-        assert np.linalg.norm(part) > 0.1
-
-
 # ------------------------------------------------------------------ Jacobians
 
 
@@ -178,26 +170,6 @@ def full_motion(formulation: Formulation, basis=None) -> Motion:
     return Motion(invariants, formulation, terms, ORIENTATION, gravity=GRAVITY)
 
 
-@FAMILY
-def test_full_model_equals_a_complete_basis(formulation):
-    complete = np.random.default_rng(4).normal(size=(9, 9))
-    full, modal = full_motion(formulation), full_motion(formulation, complete)
-    frame = full.size - 9
-    to_full = np.eye(full.size)
-    to_full[frame:, frame:] = complete
-    t = 0.7
-    q, v = random_state(modal.size, 2)
-    pairs = [
-        (full.mass_matrix(t, to_full @ q), modal.mass_matrix(t, q)),
-        *zip(full.jacobian(t, to_full @ q, to_full @ v), modal.jacobian(t, q, v), strict=True),
-    ]
-    for sparse, expected in pairs:
-        assert sp.issparse(sparse)
-        assert_relative(to_full.T @ sparse.toarray() @ to_full, expected, 1e-12)
-    force = full.forces(t, to_full @ q, to_full @ v)
-    assert_relative(to_full.T @ force, modal.forces(t, q, v), 1e-12)
-
-
 def assert_relative(actual, expected, tolerance):
     scale = np.abs(expected).max()
     np.testing.assert_allclose(actual, expected, rtol=0, atol=tolerance * scale)
@@ -296,64 +268,4 @@ def test_equations_with_stiffening_follow_from_their_energy(translation):
     assert_relative(actual, expected, 1e-8)
 
 
-@FAMILY
-def test_mass_matrix_is_symmetric_positive_definite(formulation):
-    motion, _, _ = motion_of(formulation, "none")
-    for q in random_state(motion.size, 5):
-        mass = motion.mass_matrix(0.4, q)
-        assert_relative(mass, mass.T, 1e-14)
-        assert np.linalg.eigvalsh(mass)[0] > 1e-3
-
-
 # ------------------------------------------------------------------ power
-
-
-@pytest.mark.parametrize("level", ["none", "tilt"])
-@FREE_SPIN
-def test_power_of_gravity_and_damping(translation, level):
-    motion, _, _ = motion_of(Formulation(translation), level)
-    weightless, _, _ = motion_of(Formulation(translation), level, gravity=np.zeros(3))
-    q, v = random_state(motion.size, 2)
-    force = motion.forces(0.0, q, v)
-    a = np.linalg.solve(motion.mass_matrix(0.0, q), force)
-    rate = first_derivative(
-        lambda s: motion.energy(0.0, q + s * v + 0.5 * s**2 * a, v + s * a), 5e-4
-    )
-    rates = v[motion.size - MODES :]
-    gravity = v @ (force - weightless.forces(0.0, q, v))
-    damping = rates @ motion.invariants.D @ rates
-    assert rate == pytest.approx(gravity - damping, rel=1e-9)
-
-
-def test_drive_torque_supplies_the_power():
-    formulation = Formulation("none", SWING)
-    motion, modes, arrays = motion_of(formulation, "none", gravity=np.zeros(3))
-    nodal = NodalEnergy(formulation, modes, arrays)
-    t = 0.7
-    q, v = random_state(MODES, 2)
-    a = np.linalg.solve(motion.mass_matrix(t, q), motion.forces(t, q, v))
-
-    def energy(s: float) -> float:
-        place = q + s * v + 0.5 * s**2 * a
-        speed = nodal.velocities(t + s, place, v + s * a)
-        elastic = 0.5 * place @ nodal.stiffness @ place
-        return 0.5 * np.sum(speed * (nodal.mass @ speed)) + elastic
-
-    supplied = motion.drive_torque(t, q, v, a) * SWING.rate(t)
-    lost = v @ nodal.damping @ v
-    assert first_derivative(energy, 2e-3) == pytest.approx(supplied - lost, rel=1e-9)
-
-
-@pytest.mark.parametrize("level", ["none", "tilt"])
-@pytest.mark.parametrize("translation", ["none", SHAKE], ids=["none", "shaken"])
-def test_drive_torque_is_the_row_that_the_prescribed_spin_removes(translation, level):
-    driven, _, _ = motion_of(Formulation(translation, SWING), level)
-    free, _, _ = motion_of(Formulation(translation, "free"), level)
-    t = 0.7
-    q, v, a = random_state(MODES, 3)
-    whole_q, whole_v, whole_a = (
-        np.append(first, rest)
-        for first, rest in ((SWING.value(t), q), (SWING.rate(t), v), (SWING.acceleration(t), a))
-    )
-    row = free.mass_matrix(t, whole_q) @ whole_a - free.forces(t, whole_q, whole_v)
-    assert driven.drive_torque(t, q, v, a) == pytest.approx(row[0], rel=1e-12)

@@ -1,7 +1,5 @@
 """Laws that hold for every rotor: random masses, springs, axes, states and formulations."""
 
-from dataclasses import dataclass, replace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,12 +7,8 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
-    Formulation,
-    Invariants,
-    Motion,
     SolidRotor,
     SpinAxis,
-    select_modes,
     stability,
 )
 from exudyn_rotor.theory.stiffening import stiffening
@@ -27,7 +21,6 @@ seeds = st.integers(0, 2**32 - 1)
 counts = st.integers(4, 8)
 factors = st.floats(0.05, 20.0)
 examples = settings(max_examples=15, deadline=None, derandomize=True)
-FREE_SPIN = pytest.mark.parametrize("translation", ["free", "in-plane", "none"])
 LEVELS = pytest.mark.parametrize("level", ["none", "tilt"])
 
 
@@ -60,90 +53,11 @@ def arrays_of(seed: int, count: int) -> dict:
     }
 
 
-def reduced_rotor(seed: int, count: int):
-    return SolidRotor.from_matrices(**arrays_of(seed, count)).reduce(FLEXIBLE)
-
-
-@dataclass(frozen=True, eq=False)
-class Skewed:
-    """A rotor in a basis and about an origin that decouple nothing.
-
-    Every column of the formulation's own basis gets shares of all rigid motions, and the frame's
-    origin is anywhere: S, g, h and mχ* are all different from zero.
-    """
-
-    invariants: Invariants
-    modes: np.ndarray  # (3n, k)
-    nodes: np.ndarray  # (n, 3), from the origin
-    masses: np.ndarray  # (n,)
-
-    @classmethod
-    def of(cls, seed: int, count: int, formulation: Formulation) -> "Skewed":
-        arrays, rng = arrays_of(seed, count), np.random.default_rng([seed, 1])
-        reduced = SolidRotor.from_matrices(**arrays).reduce(FLEXIBLE)
-        T = np.array(select_modes(reduced, formulation).T)
-        T[: len(reduced.rigid)] += 0.1 * rng.normal(size=(len(reduced.rigid), T.shape[1]))
-        shift = rng.normal(size=3)
-        return cls(
-            reduced.invariants.in_basis(T).moved(shift),
-            reduced.shapes.matrix @ T,
-            arrays["nodes"] - reduced.center_of_mass - shift,
-            np.diag(arrays["mass"])[::3],
-        )
-
-
-def motion_of(
-    seed: int, count: int, formulation: Formulation, level: str, gravity=(0.0, 0.0, 0.0)
-) -> Motion:
-    """Return the motion of a random rotor in a random orientation."""
-    invariants = Skewed.of(seed, count, formulation).invariants
-    turn = Rotation.random(rng=np.random.default_rng([seed, 4])).as_matrix()
-    terms = stiffening(invariants, level)
-    return Motion(invariants, formulation, terms, orientation=turn, gravity=np.asarray(gravity))
-
-
-def state_of(motion: Motion, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return coordinates and rates of order 1 and small modal coordinates, and forces."""
-    rng = np.random.default_rng([seed, 2])
-    q, v, force = rng.normal(size=(3, motion.size))
-    # the second-order terms of 'tilt' leave the mass matrix positive for small deformations only
-    q[-motion.invariants.size :] *= 0.02
-    return q, v, force
-
-
 def assert_small(value, scale, tolerance=EXACT):
     assert np.abs(value).max() <= tolerance * np.abs(scale).max()
 
 
 # ------------------------------------------------------------------ invariants
-
-
-@examples
-@given(seeds, counts)
-def test_bounds_between_the_invariants(seed, count):
-    inv = reduced_rotor(seed, count).invariants
-    assert_small(inv.G + inv.G.T, inv.C)
-    assert_small(inv.C - inv.C.T, inv.C)
-    # ẽ turns or shortens, so ‖ẽψ‖ ≤ ‖ψ‖ in the mass norm, and Cauchy–Schwarz for (Ψ, ẽΨ)
-    assert np.linalg.eigvalsh(inv.C)[0] > -EXACT
-    assert np.linalg.eigvalsh(inv.M - inv.C)[0] > -EXACT
-    assert np.linalg.eigvalsh(np.block([[inv.M, inv.G], [inv.G.T, inv.C]]))[0] > -EXACT
-    # the same for the spin ẽx among them
-    for with_spin, matrix in ((inv.g, inv.M), (inv.h, inv.C)):
-        joint = np.block([[np.array([[inv.Theta]]), with_spin[None]], [with_spin[:, None], matrix]])
-        assert np.linalg.eigvalsh(joint)[0] > -EXACT * max(inv.Theta, 1.0)
-
-
-@examples
-@given(seeds, st.integers(4, 6))
-def test_bounds_become_equal_in_a_complete_basis(seed, count):
-    """All 3n modes hold ẽΨ, too: C = GᵀM⁻¹G, and Θ by Parseval's equation."""
-    rotor = SolidRotor.from_matrices(**arrays_of(seed, count))
-    inv = rotor.reduce(3 * count - 6).invariants
-    assert inv.size == 3 * count
-    assert_small(inv.C - inv.G.T @ inv.G, inv.C)
-    assert_small(inv.Theta - inv.g @ inv.g, inv.Theta)
-    assert_small(inv.h - inv.G.T @ inv.g, inv.h)
 
 
 def frame_free(reduced, level: str) -> np.ndarray:
@@ -212,124 +126,4 @@ def test_units_do_not_matter(seed, count, length, mass, time):
 # ------------------------------------------------------------------ power and momentum
 
 
-def rate(function, step: float = 2e-3) -> np.ndarray:
-    """Return d/ds at s = 0: central differences of order six, with an error near 1e-13."""
-    weights = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))
-    return sum(w * (function(k * step) - function(-k * step)) for k, w in weights) / step
-
-
-def along(q, v, a):
-    """Return the state after a time s on the path with acceleration a."""
-    return lambda s: (q + s * v + 0.5 * s**2 * a, v + s * a)
-
-
-def weight_potential(motion: Motion, q: np.ndarray) -> float:
-    """Return −m g·(centre of mass), from where the centre of mass is."""
-    inv, count = motion.invariants, motion.formulation.translation_count
-    turn = motion.orientation @ SpinAxis(inv.direction).rotation(q[count])
-    local = inv.mass * inv.center + inv.S @ q[count + 1 :]
-    place = inv.mass * motion.free_directions @ q[:count] + turn @ local
-    return -float(motion.gravity @ place)
-
-
-@FREE_SPIN
-@examples
-@given(seeds, counts)
-def test_kinetic_energy_is_that_of_the_nodes(translation, seed, count):
-    rotor = Skewed.of(seed, count, Formulation(translation))
-    motion = motion_of(seed, count, Formulation(translation), "none")
-    q, v, _ = state_of(motion, seed)
-    shifts = motion.formulation.translation_count
-    e, zeta, zeta_t = motion.invariants.direction, q[shifts + 1 :], v[shifts + 1 :]
-    turn = motion.orientation @ SpinAxis(e).rotation(q[shifts])
-    local = rotor.nodes + (rotor.modes @ zeta).reshape(-1, 3)
-    speeds = v[shifts] * np.cross(e, local) + (rotor.modes @ zeta_t).reshape(-1, 3)
-    speeds = motion.free_directions @ v[:shifts] + speeds @ turn.T
-    expected = 0.5 * rotor.masses @ np.sum(speeds**2, axis=1)
-    found = 0.5 * v @ motion.mass_matrix(0.0, q) @ v
-    assert_small(found - expected, expected)
-    coupling = motion.invariants.S if shifts else motion.invariants.g
-    assert np.abs(coupling).max() > 1e-3
-
-
-@LEVELS
-@FREE_SPIN
-@examples
-@given(seeds, counts)
-def test_power_of_forces_is_the_rate_of_energy(translation, level, seed, count):
-    motion = motion_of(seed, count, Formulation(translation), level, [0.4, -0.7, 0.2])
-    q, v, force = state_of(motion, seed)
-    a = np.linalg.solve(motion.mass_matrix(0.0, q), motion.forces(0.0, q, v) + force)
-    path = along(q, v, a)
-
-    def energy(s: float) -> float:
-        place, speed = path(s)
-        return motion.energy(0.0, place, speed) + weight_potential(motion, place)
-
-    modal = v[-motion.invariants.size :]
-    lost = modal @ motion.invariants.D @ modal
-    given_power = v @ force
-    scale = np.abs(v) @ (np.abs(motion.mass_matrix(0.0, q)) @ np.abs(a)) + abs(given_power)
-    assert_small(rate(energy) - (given_power - lost), scale, 1e-9)
-
-
-def momenta_about_axis(motion: Motion, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Return linear momentum and angular momentum about the inertial axis through the origin."""
-    count = motion.formulation.translation_count
-    p, N = motion.momentum(0.0, q, v), motion.free_directions
-    axis = motion.orientation @ motion.invariants.direction
-    turning = p[count] + axis @ np.cross(N @ q[:count], N @ p[:count])
-    return np.append(p[:count], turning)
-
-
-@LEVELS
-@FREE_SPIN
-@examples
-@given(seeds, counts)
-def test_momenta_stay_without_forces(translation, level, seed, count):
-    """The frame's origin on the axis may carry a reaction, but never a torque about it."""
-    motion = motion_of(seed, count, Formulation(translation), level)
-    undamped = replace(motion.invariants, D=np.zeros_like(motion.invariants.D))
-    motion = Motion(
-        undamped,
-        motion.formulation,
-        stiffening(undamped, level),
-        orientation=motion.orientation,
-    )
-    q, v, _ = state_of(motion, seed)
-    a = np.linalg.solve(motion.mass_matrix(0.0, q), motion.forces(0.0, q, v))
-    path = along(q, v, a)
-    change = rate(lambda s: momenta_about_axis(motion, *path(s)))
-    scale = np.abs(motion.mass_matrix(0.0, q)) @ np.abs(a)
-    assert_small(change, scale.sum() * (1.0 + np.linalg.norm(q)), 1e-9)
-
-
 # ------------------------------------------------------------------ Jacobian
-
-
-@LEVELS
-@FREE_SPIN
-@pytest.mark.parametrize("spin", ["free", 1.3], ids=["free spin", "constant speed"])
-@settings(max_examples=20, deadline=None, derandomize=True)
-@given(seeds, counts)
-def test_jacobian_is_the_derivative_along_any_direction(spin, translation, level, seed, count):
-    motion = motion_of(seed, count, Formulation(translation, spin), level, [0.4, -0.7, 0.2])
-    q, v, way = state_of(motion, seed)
-    by_q, by_v = motion.jacobian(0.3, q, v)
-    scale = np.abs(by_q) @ np.abs(way) + np.abs(by_v) @ np.abs(way)
-    along_q = rate(lambda s: motion.forces(0.3, q + s * way, v))
-    along_v = rate(lambda s: motion.forces(0.3, q, v + s * way))
-    assert_small(by_q @ way - along_q, scale, 1e-9)
-    assert_small(by_v @ way - along_v, scale, 1e-9)
-
-
-@examples
-@given(seeds, counts)
-def test_constant_speed_equations_are_those_of_the_free_spin_held(seed, count):
-    """At θ̇ = Ω and θ̈ = 0 the rows of ζ are the same in Sects. 2.4 and 2.5."""
-    free = motion_of(seed, count, Formulation("none"), "tilt")
-    held = motion_of(seed, count, Formulation("none", SPEED), "tilt")
-    q, v, _ = state_of(held, seed)
-    expected = held.forces(0.0, q, v)
-    found = free.forces(0.0, np.append(0.4, q), np.append(SPEED, v))[1:]
-    assert_small(found - expected, expected)

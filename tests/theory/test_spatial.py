@@ -7,7 +7,6 @@ import scipy.sparse as sp
 from exudyn.FEM import FEMinterface, ObjectFFRFreducedOrderInterface
 from exudyn.itemInterface import NodePoint, NodeRigidBodyEP, ObjectFFRF
 from exudyn.utilities import EulerParameters2GLocal, EulerParameters2RotationMatrix
-from nodal_motion import STEP, derivative, inertia, pseudo_forces
 from point_rotors import random_arrays, random_invariants
 
 from exudyn_rotor.theory.spatial import SpatialInvariants
@@ -20,18 +19,6 @@ def cardan(angles: np.ndarray) -> np.ndarray:
     y = np.array([[b, 0, q], [0, 1, 0], [-q, 0, b]])
     z = np.array([[c, -r, 0], [r, c, 0], [0, 0, 1]])
     return x @ y @ z
-
-
-def local_velocity(angles: np.ndarray, rates: np.ndarray) -> np.ndarray:
-    """Return ω in ``ω̃ = AᵀȦ``."""
-    rate = cardan(angles + 1j * STEP * rates).imag / STEP
-    turning = cardan(angles).T @ rate
-    return np.array([turning[2, 1], turning[0, 2], turning[1, 0]])
-
-
-def local_axes(angles: np.ndarray) -> np.ndarray:
-    """Return G, ``ω = G θ̇``."""
-    return np.column_stack([local_velocity(angles, unit) for unit in np.eye(3)])
 
 
 class Body:
@@ -67,37 +54,6 @@ def assert_same(actual, expected, tolerance: float) -> None:
 
 
 PLACES = {"t": slice(0, 3), "r": slice(3, 6), "f": slice(6, None)}
-MASS = {"M_tt": 41, "M_ff": 42, "M_tf": 43, "M_tr": 44, "M_rf": 45, "M_rr": 46}
-FORCES = {"Q_t": 47, "Q_r": 48, "Q_f": 49}
-
-
-def test_mass_matrix(body):
-    angles, zeta = body.q[3:6], body.q[6:]
-    terms = body.spatial.mass_terms(cardan(angles), local_axes(angles), zeta)
-    whole = inertia(body.positions, body.mass, body.q)
-    for name, number in MASS.items():
-        rows, columns = (PLACES[letter] for letter in name[2:])
-        assert_same(terms[name].value, whole[rows, columns], 1e-13)
-        assert terms[number] is terms[name]
-
-
-def test_velocity_vector(body):
-    """Cardan angles have ``Ġθ̇ ≠ 0``, so that every part is seen."""
-    angles, rates = body.q[3:6], body.q_t[3:6]
-    remainder = derivative(lambda s: local_velocity(angles + s * rates, rates))
-    assert np.linalg.norm(remainder) > 0.1
-    terms = body.spatial.velocity_terms(
-        cardan(angles),
-        local_axes(angles),
-        local_velocity(angles, rates),
-        body.q[6:],
-        body.q_t[6:],
-        remainder,
-    )
-    whole = pseudo_forces(body.positions, body.mass, body.q, body.q_t)
-    for name, number in FORCES.items():
-        assert_same(terms[name].value, whole[PLACES[name[2:]]], 1e-9)
-        assert terms[number] is terms[name]
 
 
 def test_unprojected_invariants(body):

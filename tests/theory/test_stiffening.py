@@ -5,11 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.linalg as la
-import scipy.sparse as sp
-from point_rotors import SKEW_AXIS, random_arrays, random_invariants, ring_rotor
+from point_rotors import SKEW_AXIS, random_invariants, ring_rotor
 
 from exudyn_rotor import Formulation, Motion, campbell, select_modes
-from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.nodal import rotations, skew, translations
 from exudyn_rotor.theory.stiffening import stiffening
 
@@ -30,42 +28,6 @@ def rigid_rotor(shape: tuple[float, float]):
 
 
 # ------------------------------------------------------------------ rigid axisymmetric body
-
-
-@BODIES
-def test_matrices_of_spin_and_tilts(shape):
-    polar, transverse = moments(shape)
-    reduced = rigid_rotor(shape)
-    terms = stiffening(reduced.invariants, "tilt")
-    C = reduced.invariants.C
-    spin, *tilts = (reduced.labels.index(name) for name in ("spin", "tilt 1", "tilt 2"))
-
-    expected = np.zeros((6, 6))
-    expected[spin, spin] = 1.0  # Θ of a column of unit mass, so C − K2 = 0: no false softening
-    for tilt in tilts:
-        expected[tilt, tilt] = polar / 2 / transverse
-    np.testing.assert_allclose(terms.K2, expected, atol=1e-12)
-    np.testing.assert_allclose(terms.B, 0.0, atol=1e-12)
-    softening = (C - terms.K2)[np.ix_([spin, *tilts], [spin, *tilts])]
-    tilt_softening = (transverse - polar) / transverse
-    np.testing.assert_allclose(
-        softening, np.diag([0.0, tilt_softening, tilt_softening]), atol=1e-12
-    )
-
-
-def test_level_none_has_no_terms():
-    invariants, _, _ = random_invariants(1)
-    terms = stiffening(invariants, "none")
-    assert not np.any(terms.K2)
-    assert not np.any(terms.B)
-
-
-def test_unknown_level_is_refused():
-    invariants, _, _ = random_invariants(1)
-    with pytest.raises(
-        ValueError, match="stiffening: 'bend' is unknown; use one of 'none', 'tilt', 'full'"
-    ):
-        stiffening(invariants, "bend")
 
 
 # ------------------------------------------------------------------ work on exact displacements
@@ -127,27 +89,6 @@ def test_terms_are_second_derivatives_of_the_work(seed):
     assert np.abs(terms.B).max() > 0.1  # a random rotor is far from axisymmetric
 
 
-def test_terms_follow_a_change_of_basis():
-    invariants, _, _ = random_invariants(4)
-    T = np.random.default_rng(4).normal(size=(4, 3))
-    terms, changed = (stiffening(inv, "tilt") for inv in (invariants, invariants.in_basis(T)))
-    scale = np.abs(changed.K2).max()
-    np.testing.assert_allclose(changed.K2, T.T @ terms.K2 @ T, atol=1e-12 * scale)
-    np.testing.assert_allclose(changed.B, T.T @ terms.B @ T, atol=1e-12 * scale)
-
-
-def test_terms_of_the_full_model_and_of_modes_agree():
-    arrays = random_arrays(5)
-    size = arrays["mass"].shape[0]
-    modes = np.random.default_rng(5).normal(size=(size, 3))
-    given = {**arrays, "damping": None, "direction": SKEW_AXIS}
-    full = stiffening(Invariants.of(**given, basis=sp.eye_array(size, format="csr")), "tilt")
-    reduced = stiffening(Invariants.of(**given, basis=modes), "tilt")
-    scale = np.abs(reduced.K2).max()
-    np.testing.assert_allclose(modes.T @ full.K2 @ modes, reduced.K2, atol=1e-12 * scale)
-    np.testing.assert_allclose(modes.T @ full.B @ modes, reduced.B, atol=1e-12 * scale)
-
-
 # ------------------------------------------------------------------ rigid rotor on tilt springs
 
 
@@ -181,25 +122,6 @@ def test_conical_modes_are_exact(shape, speed):
     expected = conical_frequencies(shape, stiffness, speed)
     np.testing.assert_allclose(values.imag, expected, rtol=1e-9)
     np.testing.assert_allclose(values.real, 0.0, atol=1e-9 * expected[-1])
-
-
-@BODIES
-def test_level_none_is_falsely_unstable_and_tilt_is_not(shape):
-    stiffness = 1e4
-    polar, transverse = moments(shape)
-    limit = np.sqrt(4 * transverse * stiffness / (polar * (2 * transverse - polar)))
-
-    def growth(ratio: float, level: str) -> float:
-        return eigenvalues_on_springs(shape, stiffness, ratio * limit, level).real.max()
-
-    # the roots of −I_t ν² − 2ω(I_t − I_p/2)ν + k − ω²(I_t − I_p/2) turn complex at the limit
-    at_rest = np.sqrt(stiffness / transverse)
-    for ratio in (1.001, 2.0):
-        expected = at_rest * np.sqrt(ratio**2 - 1)
-        assert growth(ratio, "none") == pytest.approx(expected, rel=1e-9)
-    assert growth(0.999, "none") < 1e-9 * limit
-    for ratio in (0.999, 1.001, 20.0):
-        assert growth(ratio, "tilt") < 1e-9 * ratio * limit
 
 
 @BODIES

@@ -5,23 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from nodal_motion import derivative, inertia, jacobian, pseudo_forces
+from nodal_motion import inertia, jacobian, pseudo_forces
 from point_rotors import SKEW_AXIS, random_arrays, random_invariants, random_spd
 from scipy.spatial.transform import Rotation
 
-from exudyn_rotor import Formulation, Invariants, Motion, PrescribedMotion, SpinAxis
-from exudyn_rotor.theory.spatial import SpatialInvariants
+from exudyn_rotor import Formulation, Invariants, Motion, PrescribedMotion
 from exudyn_rotor.theory.stiffening import stiffening
 from exudyn_rotor.theory.terms import Terms
 
 ORIENTATION = Rotation.from_rotvec([0.3, -0.5, 0.8]).as_matrix()
 GRAVITY = np.array([1.0, -2.0, 3.0])
 TIME = 0.7
-SHAKE = PrescribedMotion(
-    lambda t: np.array([0.3, -0.2, 0.4]) * np.sin(2 * t),
-    lambda t: np.array([0.3, -0.2, 0.4]) * 2 * np.cos(2 * t),
-    lambda t: np.array([0.3, -0.2, 0.4]) * -4 * np.sin(2 * t),
-)
 SWING = PrescribedMotion(
     lambda t: 0.5 * t + np.sin(t), lambda t: 0.5 + np.cos(t), lambda t: -np.sin(t)
 )
@@ -107,93 +101,6 @@ def test_blocks_of_the_nodes(rotor, translation):
         assert terms[name].equation.endswith(numbers)
 
 
-def test_blocks_in_the_plane(rotor):
-    terms = rotor.terms(Formulation("in-plane"))
-    N = ORIENTATION @ SpinAxis(SKEW_AXIS).plane
-    q, q_t = rotor.state
-    mass = inertia(rotor.positions, rotor.mass, q)
-    assert_same(terms["A*"].value, N.T @ terms["A"].value)
-    np.testing.assert_allclose(terms["A*"].value @ SKEW_AXIS, 0.0, atol=1e-15)
-    assert_same(terms["M*_tt"].value, N.T @ mass[:3, :3] @ N)
-    assert_same(terms["M*_tθ"].value, N.T @ mass[:3, 3])
-    assert_same(terms["M*_tζ"].value, N.T @ mass[:3, 4:])
-    force = N.T @ pseudo_forces(rotor.positions, rotor.mass, q, q_t)[:3]
-    assert_same(terms["Q*_t"].value, force, 1e-10)
-    assert terms[91] is terms["A*"]
-    assert terms[98] is terms["Q*_t"]
-    assert "A*" not in rotor.terms(Formulation("free"))
-
-
-def test_constant_blocks(rotor):
-    """Sums over pairs of nodes, with the axis as a cross product."""
-    terms, e = rotor.terms(Formulation("free")), SKEW_AXIS
-    m = rotor.mass.toarray()[::3, ::3]
-    modes = dense(rotor.basis).T.reshape(-1, len(rotor.nodes), 3)
-    x, turned, x_turned = rotor.nodes, np.cross(e, modes), np.cross(e, rotor.nodes)
-
-    def sums(a, b):
-        return np.einsum("kic,ij,ljc->kl", a, m, b)
-
-    center = np.einsum("ij,jc->c", m, x) / m.sum()
-    first = np.einsum("ij,kjc->ck", m, modes)
-    expected = {
-        31: m.sum(),
-        32: center,
-        34: sums(modes, modes),
-        37: first,
-        67: np.cross(e, center),
-        68: np.cross(e, np.cross(e, center)),
-        69: np.cross(e, first.T).T,
-        70: np.cross(e, np.cross(e, first.T)).T,
-        79: sums(x_turned[None], x_turned[None])[0, 0],
-        80: sums(modes, turned),
-        81: sums(turned, turned),
-        82: -sums(modes, x_turned[None])[:, 0],
-        83: sums(turned, x_turned[None])[:, 0],
-    }
-    for number, value in expected.items():
-        assert_same(terms[number].value, value)
-    basis = dense(rotor.basis)
-    for number, name in ((19, "stiffness"), (20, "damping")):
-        assert_same(terms[number].value, basis.T @ rotor.arrays[name].toarray() @ basis)
-
-
-@pytest.mark.parametrize("translation", ["none", SHAKE], ids=["none", "shaken"])
-@pytest.mark.parametrize("spin", [1.3, SWING], ids=["constant", "driven"])
-def test_linear_equations_at_a_prescribed_spin(rotor, spin, translation):
-    form = Formulation(translation, spin)
-    terms = rotor.terms(form)
-    size = rotor.invariants.size
-
-    def inertia_force(zeta, zeta_t):
-        """Return the inertia forces on the modes of a motion without modal acceleration."""
-
-        def place(s):
-            shift = SHAKE.value(TIME + s) if form.moves_origin else np.zeros(3)
-            angle = form.spin.value(TIME + s)
-            return rotor.positions(np.array([*shift, angle, *(zeta + s * zeta_t)]))
-
-        acceleration = derivative(lambda s: derivative(lambda r: place(s + r)))
-        q = np.array([0.0, 0.0, 0.0, form.spin.value(TIME), *zeta])
-        J = jacobian(rotor.positions, q)[:, 4:]
-        return -J.T @ (rotor.mass @ acceleration.ravel())
-
-    rest, unit = np.zeros(size), np.eye(size)
-    load = inertia_force(rest, rest)
-    by_place = np.stack([load - inertia_force(column, rest) for column in unit], axis=-1)
-    by_rate = np.stack([load - inertia_force(rest, column) for column in unit], axis=-1)
-    basis = dense(rotor.basis)
-    elastic, damping = (
-        basis.T @ rotor.arrays[name].toarray() @ basis for name in ("stiffness", "damping")
-    )
-    # round-off 2e-16 over the square of the step leaves 1e-10
-    assert_same(terms["f(ω)"].value, load, 2e-9)
-    assert_same(terms["K(ω)"].value, elastic + by_place, 2e-9)
-    assert_same(terms["D(ω)"].value, damping + by_rate, 2e-9)
-    assert ("104" if rotor.full else "108") in terms["K(ω)"].equation
-    assert (("105" if rotor.full else "109") in terms["K(ω)"].equation) == (spin != SWING)
-
-
 @SPINS
 def test_gravity_is_the_virtual_power_of_the_weights(rotor, spin):
     terms = rotor.terms(Formulation("none", spin))
@@ -250,18 +157,6 @@ def test_blocks_make_the_equations(rotor, translation, spin, coupling, level):
         *(on_modes + value["f_g"]),
     ]
     assert_same(motion.forces(TIME, q, q_t), expected, 1e-12)
-
-
-def test_contracted_blocks_of_three_dimensions(rotor):
-    """(67–83) from the tilde bases are the same as from the products with one axis."""
-    terms = rotor.terms(Formulation("free"))
-    spatial = SpatialInvariants.of(**rotor.arrays, basis=rotor.basis)
-    q, q_t = rotor.state
-    contracted = spatial.contracted(SKEW_AXIS, q_t[3], q[4:], q_t[4:])
-    assert len(contracted) == 13
-    for name, term in contracted.items():
-        assert_same(term.value, dense(terms[name].value))
-        assert term.numbers <= terms[name].numbers
 
 
 def test_asking_for_a_block(rotor):

@@ -9,10 +9,9 @@ from exudyn_rotor import (
     campbell,
     stability,
     stability_threshold,
-    unstable_ranges,
 )
-from validation.extremes.rotors import held, shaft_frequencies, shaft_rotor, two_rings
-from validation.extremes.rows import EPS, Row, breaking_point, message
+from validation.extremes.rotors import held, two_rings
+from validation.extremes.rows import EPS, Row
 from validation.extremes.runs import bare_rotor, history, run
 
 MASS = 2.0  # of the rigid rotor of two rings [kg]
@@ -107,42 +106,6 @@ def supports_unresolved(quick: bool = False) -> Row:
     )
 
 
-def contrast_error(contrast: float) -> float:
-    """Return the error of the lower of two support frequencies, their stiffness far apart.
-
-    The stiff direction lies across both axis and plane of rotation, so that every entry of the
-    matrix holds some of it.
-    """
-    stiff = np.array([0.0, np.cos(0.5), np.sin(0.5)])
-    matrix = np.eye(3) + (contrast - 1.0) * np.outer(stiff, stiff)
-    support = Support("all", matrix, tilt_stiffness=np.eye(3) * contrast)
-    found = campbell(two_rings().reduce(0), [0.0], supports=[support]).frequencies_rotor[0]
-    exact = np.sqrt(1.0 / MASS)
-    # the other soft direction is an axis of its own, and exact
-    return float(np.sort(np.abs(found / exact - 1.0))[1])
-
-
-def contrast(quick: bool = False) -> Row:
-    """Hold one rotor by springs that are ever farther apart in stiffness."""
-    found = breaking_point(lambda c: contrast_error(c) < 1e-3, 1e2, 1e18, 1.1)
-    lost = campbell(
-        two_rings().reduce(0),
-        [0.0],
-        supports=[Support("all", np.diag([1.0, 1.0, 1e15]), tilt_stiffness=np.eye(3))],
-    )
-    return Row(
-        "contrast of support stiffnesses, Campbell",
-        "1e8 within one rotor",
-        "the low frequency; limit: ω² is known but for round-off × contrast, and 10 × of it",
-        contrast_error(1e8),
-        10.0 * EPS * 1e8,
-        f"contrast {found:.1g}: low frequency wrong by 0.1 %",
-        "numerics",
-        f"nothing; at 1e15 {np.count_nonzero(lost.frequencies_rotor == 0.0)} of 6 frequencies "
-        "are given as 0",
-    )
-
-
 # ------------------------------------------------------------------ damping
 
 
@@ -188,52 +151,3 @@ def internal_damping(quick: bool = False) -> Row:
 
 
 # ------------------------------------------------------------------ asymmetry of the shaft
-
-
-def asymmetric_range(ratio: float, spacing: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the found and the exact unstable speeds of a shaft with stiffness k and `ratio` k.
-
-    A deflection along either direction is in equilibrium with the centrifugal load at the lateral
-    frequency of that direction; the shaft is unstable between the two.
-    """
-    stiffness, bearing = (4e5, 4e5 * ratio), 1e6
-    exact = np.array([shaft_frequencies(10.0, 1.0, k, bearing)[0] for k in stiffness])
-    speeds = np.arange(0.5 * exact[0], 1.5 * exact[1], spacing * exact[0])
-    rotor = shaft_rotor(bending=stiffness).reduce(2)
-    return unstable_ranges(rotor, speeds, supports=held(bearing, "left", "right")), exact
-
-
-def asymmetry(quick: bool = False) -> Row:
-    """Make a shaft stiffer in one direction, from a twentieth more to ten thousand times."""
-    ratios = (1.05, 1e4) if quick else (1.05, 1.5, 10.0, 1e2, 1e4)
-    worst = 0.0
-    for ratio in ratios:
-        found, exact = asymmetric_range(ratio, 0.003 if ratio < 1.1 else 0.1)
-        worst = max(worst, np.abs(found / exact - 1.0).max() if len(found) == 1 else np.inf)
-    missed = len(asymmetric_range(1.0001, 0.003)[0]) == 0
-    return Row(
-        "asymmetry of the shaft",
-        "bending stiffness 1.05 : 1 to 10000 : 1",
-        "one unstable range between both lateral frequencies; limit: the promised 1e-8 of the "
-        "highest speed (4.2 × the lower limit)",
-        worst,
-        5e-8,
-        "1.0001 : 1: " + ("missed" if missed else "found"),
-        "input",
-        "documented: up to 1 % of unevenness is averaged; LinearModel.unevenness tells it",
-    )
-
-
-def no_interface(quick: bool = False) -> Row:
-    """Hold a rotor where it has no interface."""
-    text = message(lambda: stability(two_rings().reduce(0), [1.0], supports=held(1.0, "left")))
-    return Row(
-        "support at an unknown place",
-        "one",
-        "share of calls that pass without an error; limit: 0",
-        0.0 if text.startswith("ValueError") else 1.0,
-        0.0,
-        "always",
-        "input",
-        text,
-    )

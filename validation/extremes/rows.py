@@ -54,12 +54,8 @@ class Row:
         return self.measured <= self.limit
 
     def plain(self) -> dict:
-        """Return all entries as plain values, None for numbers that are not finite."""
-        entries = asdict(self) | {"passed": self.passed}
-        return {
-            name: None if isinstance(value, float) and not np.isfinite(value) else value
-            for name, value in entries.items()
-        }
+        """Return all entries as plain values."""
+        return asdict(self) | {"passed": self.passed}
 
 
 def breaking_point(

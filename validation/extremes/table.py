@@ -7,15 +7,14 @@ keep the rows.
 from __future__ import annotations
 
 import argparse
-import json
 import textwrap
 from collections.abc import Callable
-from functools import partial
 
 from tqdm import tqdm
 
-from validation.extremes import bad_numbers, bases, holding, sizes, spin, steps, turning, unbalance
+from validation.extremes import holding, sizes, spin
 from validation.extremes.rows import Row
+from validation.rows import write_json
 
 GROUPS: dict[str, tuple[Callable[..., Row], ...]] = {
     "Spin speed": (
@@ -26,35 +25,11 @@ GROUPS: dict[str, tuple[Callable[..., Row], ...]] = {
         spin.speeds_of_runs,
         spin.backwards,
     ),
-    "Revolutions and torques": (
-        turning.phase,
-        turning.node_phase,
-        turning.free_phase,
-        turning.rigid_torque,
-        turning.flexible_torque,
-    ),
-    "Supports, damping, asymmetry": (
+    "Supports and damping": (
         holding.supports_linear,
         holding.supports_run,
         holding.supports_unresolved,
-        holding.contrast,
         holding.internal_damping,
-        holding.asymmetry,
-        holding.no_interface,
-    ),
-    "Mode bases": (
-        bases.many_modes,
-        bases.eigen_residual,
-        bases.dependent_columns,
-        bases.nothing_left,
-    ),
-    "Step sizes": (
-        *(partial(steps.explicit_row, solver) for solver in steps.POLYNOMIALS),
-        *(partial(steps.unstable_row, solver) for solver in steps.UNSTABLE),
-        steps.adaptive_row,
-        *(partial(steps.implicit_row, solver) for solver in steps.IMPLICIT),
-        steps.verlet_row,
-        steps.tiny_steps,
     ),
     "Sizes, units, materials": (
         sizes.lengths,
@@ -64,14 +39,6 @@ GROUPS: dict[str, tuple[Callable[..., Row], ...]] = {
         sizes.densities,
         sizes.far_axis,
         sizes.eccentricity,
-        unbalance.limit_of_small_tilts,
-    ),
-    "Bad numbers": (
-        bad_numbers.not_finite,
-        bad_numbers.later_nan,
-        bad_numbers.axis_length,
-        bad_numbers.denormals,
-        bad_numbers.overflow,
     ),
 }
 
@@ -106,13 +73,6 @@ def _wrapped(text: str) -> list[str]:
     return textwrap.wrap(text, 100, initial_indent=" " * 8, subsequent_indent=" " * 10)
 
 
-def write_json(path: str, rows: dict[str, list[Row]]) -> None:
-    """Write the rows as strict JSON: null where there is no number."""
-    plain = {group: [row.plain() for row in entries] for group, entries in rows.items()}
-    with open(path, "w", encoding="utf-8") as file:
-        json.dump(plain, file, indent=1, allow_nan=False, ensure_ascii=False)
-
-
 def main() -> None:
     """Measure all rows; ends with an error code if one fails."""
     parser = argparse.ArgumentParser(description="How far every input can be pushed.")
@@ -122,7 +82,8 @@ def main() -> None:
     rows = measured(options.quick)
     print(printed(rows))
     if options.json:
-        write_json(options.json, rows)
+        plain = {group: [row.plain() for row in entries] for group, entries in rows.items()}
+        write_json(options.json, plain)
     failed = sum(not row.passed for entries in rows.values() for row in entries)
     if failed:
         raise SystemExit(f"{failed} rows failed")

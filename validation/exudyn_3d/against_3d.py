@@ -18,7 +18,6 @@ keep the numbers.
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -38,6 +37,7 @@ from validation.exudyn_3d.scenes import (
     fixed_axis_orbits,
     three_d_orbits,
 )
+from validation.rows import Row, print_rows, verdict, write_json
 
 SPEED = 314.0  # rad/s
 SUPPORTS = {
@@ -45,8 +45,6 @@ SUPPORTS = {
     "anisotropic": Bearings((1e6, 2e6, 1e6), 200.0),
 }
 LEVELS = ("tilt", "none")
-
-Row = dict[str, str | float]
 
 
 # 1. The deviation falls with the tilt
@@ -267,34 +265,8 @@ def family(model: Model, stiffnesses: Sequence[float], duration: float, step: fl
     return rows
 
 
-def print_table(title: str, rows: list[Row]) -> None:
-    """Print rows as aligned columns."""
-    names = list(rows[0])
-    cells = [names, *([_cell(row[name]) for name in names] for row in rows)]
-    widths = [max(len(line[i]) for line in cells) for i in range(len(names))]
-    print(f"\n{title}")
-    for line in cells:
-        print("  ".join(text.rjust(width) for text, width in zip(line, widths, strict=True)))
-
-
-def _cell(value: str | float) -> str:
-    if isinstance(value, str):
-        return value
-    return "-" if np.isnan(value) else f"{value:.3g}"
-
-
-def write_json(path: str, tables: dict[str, list[Row]]) -> None:
-    """Write tables as strict JSON: null where there is no number."""
-    plain = {
-        title: [{k: None if v != v else v for k, v in row.items()} for row in rows]
-        for title, rows in tables.items()
-    }
-    with open(path, "w", encoding="utf-8") as file:
-        json.dump(plain, file, indent=1, allow_nan=False)
-
-
-def main() -> None:
-    """Run all parts and print their tables."""
+def main() -> int:
+    """Run all parts, print their tables and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="fewer cases, shorter motions")
     parser.add_argument("--json", metavar="FILE", help="write the tables to FILE")
@@ -317,6 +289,14 @@ def main() -> None:
         ),
     }
     for title, rows in tables.items():
-        print_table(title, rows)
+        print_rows(title, rows)
     if options.json:
         write_json(options.json, tables)
+    first = next(iter(tables.values()))
+    least = [row for row in first if row["stiffening"] == "tilt" and row["tilt"] < 1.5e-4]
+    return verdict(
+        {
+            "lateral deviation, tilt 1e-4 rad": (max(row["lateral"] for row in least), 2e-6),
+            "axial deviation, tilt 1e-4 rad": (max(row["axial"] for row in least), 1e-4),
+        }
+    )

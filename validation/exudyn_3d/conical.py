@@ -21,8 +21,9 @@ from collections.abc import Sequence
 import numpy as np
 from tqdm import tqdm
 
-from validation.exudyn_3d.against_3d import Row, false_threshold, print_table, write_json
+from validation.exudyn_3d.against_3d import false_threshold
 from validation.exudyn_3d.scenes import Bearings, Model, Start, cylinder, fixed_axis_orbits
+from validation.rows import Row, print_rows, verdict, write_json
 
 SHAPES = {"shaft": (0.05, 0.3, 0.03), "disc": (0.15, 0.1, 0.04)}
 BEARINGS = Bearings((1e6, 1e6, 1e6))
@@ -115,14 +116,17 @@ def conical_table(speeds: Sequence[float], step: float = 1e-4) -> list[Row]:
     return rows
 
 
-def main() -> None:
-    """Print the table."""
+def main() -> int:
+    """Print the table and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="fewer speeds")
     parser.add_argument("--json", metavar="FILE", help="write the table to FILE")
     options = parser.parse_args()
     speeds = (300.0,) if options.quick else (50.0, 150.0, 300.0, 600.0, 1200.0)
     rows = conical_table(speeds)
-    print_table("Conical frequencies [rad/s] and relative errors; nan: the tilt grows", rows)
+    print_rows("Conical frequencies [rad/s] and relative errors; nan: the tilt grows", rows)
     if options.json:
         write_json(options.json, {"conical frequencies": rows})
+    names = [f"{sense} beyond integrator" for sense in ("backward", "forward")]
+    worst = max(abs(row[name]) for row in rows for name in names)
+    return verdict({"error beyond the integrator's": (worst, 5e-6)})

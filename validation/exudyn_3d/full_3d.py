@@ -23,7 +23,7 @@ from scipy.optimize import nnls
 from exudyn_rotor import SolidRotor, add_rotor
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.spatial_body import SpatialBody, add_spatial_rotor
-from validation.exudyn_3d.against_3d import Row, print_table, with_orders
+from validation.exudyn_3d.against_3d import with_orders
 from validation.exudyn_3d.scenes import (
     STEEL,
     Bearings,
@@ -33,6 +33,7 @@ from validation.exudyn_3d.scenes import (
     disc_on_shaft,
     extrapolated,
 )
+from validation.rows import Row, print_rows, verdict
 
 SPEED = 314.0  # rad/s
 ENDS = ("centred left", "centred right")
@@ -192,8 +193,11 @@ def costs(meshes: dict[str, SolidRotor], steps: int) -> list[Row]:
     return rows
 
 
-def main() -> None:
-    """Print both tables."""
+LIMITS = {"lateral": 1e-5, "axial": 1e-4, "rim": 1e-4}  # at the least tilt
+
+
+def main() -> int:
+    """Print both tables and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="a smaller mesh, no table of costs")
     quick = parser.parse_args().quick
@@ -202,12 +206,10 @@ def main() -> None:
     rotor = balanced(shaft if quick else disc)
     duration, steps = (0.005, 40) if quick else (0.01, 80)
     rows = compare(rotor, duration, steps)
-    print_table(f"full bodies, {rotor.node_count} nodes, deviation over lateral motion", rows)
+    print_rows(f"full bodies, {rotor.node_count} nodes, deviation over lateral motion", rows)
     if not quick:
         fine = SolidRotor.from_ngsolve(disc_on_shaft(0.1), STEEL, "z", order=1)
         meshes = {"shaft": balanced(shaft), "disc": rotor, "fine": balanced(fine)}
-        print_table("Exudyn's full 3D body", costs(meshes, 10))
-
-
-if __name__ == "__main__":
-    main()
+        print_rows("Exudyn's full 3D body", costs(meshes, 10))
+    least = min((row for row in rows if row["stiffening"] == "tilt"), key=lambda row: row["tilt"])
+    return verdict({name: (least[name], most) for name, most in LIMITS.items()})

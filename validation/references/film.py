@@ -20,6 +20,7 @@ from validation.references import film_tables
 from validation.references.film_beside_ross import ross, ross_grids
 from validation.references.film_plain import butenschoen
 from validation.references.film_tables import CLEARANCE, RADIUS, SPEED, VISCOSITY, rows
+from validation.rows import verdict
 
 LOAD = 1e3
 SIDES = [np.pi / 2, 3 * np.pi / 2]
@@ -83,16 +84,19 @@ def lund_cases() -> list[tuple[str, OilFilm, np.ndarray]]:
     ]
 
 
+def lund_deviations(state, row: np.ndarray) -> list[float]:
+    """Return the deviations of (K, C) from a row of Lund's, in parts of their largest entry."""
+    tables = zip(coefficients(state), (row[:4], row[4:]), strict=True)
+    return [float(np.max(np.abs(a - b)) / np.max(b)) for a, b in tables]
+
+
 def lund() -> list[str]:
     """Return deviations from Lund's tables, matrices in parts of their largest entry."""
     lines = ["Lund                  S     ε: table   here   attitude: table  here    K       C"]
     for title, bearing, table in lund_cases():
         for s, ratio, attitude, *rest in table:
             state = carried(bearing, s)
-            worst = [
-                np.max(np.abs(a - b)) / np.max(b)
-                for a, b in zip(coefficients(state), (rest[:4], rest[4:]), strict=True)
-            ]
+            worst = lund_deviations(state, rest)
             lines.append(
                 f"{title:12} {s:10.3f} {ratio:11.3f} "
                 f"{np.linalg.norm(state.position) / CLEARANCE:6.3f} {attitude:16.2f} "
@@ -312,13 +316,13 @@ def grids() -> list[str]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Print all tables."""
+    """Print all tables and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.parse_args(arguments)
     for table in (closed_forms, lund, butenschoen, someya, lobed, tilting, ross, ross_grids, grids):
         print("\n".join([*table(), ""]))
-    return 0
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())
+    states = [
+        (carried(bearing, row[0]), row[3:]) for _, bearing, table in lund_cases() for row in table
+    ]
+    worst = np.max([lund_deviations(*one) for one in states], axis=0)
+    return verdict({"Lund's stiffness": (worst[0], 2e-2), "Lund's damping": (worst[1], 2e-2)})

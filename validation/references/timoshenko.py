@@ -29,6 +29,7 @@ from exudyn_rotor import (
     critical_speeds,
     linear_model,
 )
+from validation.rows import verdict, write_json
 
 REFERENCE = Path(__file__).with_name("timoshenko_ross.json")
 LATERAL = ("forward", "backward", "mixed")
@@ -117,8 +118,8 @@ def table(title: str, speeds: list[float], result: dict) -> str:
     return "\n".join([*lines, f"forward critical speeds  {values}", ""])
 
 
-def main() -> None:
-    """Compare all shafts and print the tables."""
+def main() -> int:
+    """Compare all shafts, print the tables and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--json", type=Path, help="write the numbers to this file")
     parser.add_argument("--quick", action="store_true", help="coarse meshes")
@@ -128,4 +129,11 @@ def main() -> None:
     for name, result in results.items():
         print(table(name, data["speeds"], result))
     if options.json:
-        options.json.write_text(json.dumps(results, indent=1) + "\n")
+        write_json(options.json, results)
+    uniform = results["uniform, 'full'"]
+    return verdict(
+        {
+            "frequencies of the uniform shaft": (np.abs(uniform["frequencies"]).max(), 1e-3),
+            "its critical speeds": (np.abs(uniform["critical_speeds"]).max(), 1e-3),
+        }
+    )

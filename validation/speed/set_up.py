@@ -8,7 +8,6 @@ python -m validation set_up [--json FILE] [--quick | --large]
 from __future__ import annotations
 
 import argparse
-import json
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -18,6 +17,7 @@ from exudyn.FEM import FEMinterface
 
 from exudyn_rotor import SolidRotor, free_modes
 from exudyn_rotor.demo.scene import BEARINGS, STEEL, disc_on_shaft
+from validation.rows import verdict, write_json
 
 MODES = 20
 # lengths of the elements [m], and how much shorter they are than the radius of curves
@@ -87,8 +87,8 @@ def compare(size: Size) -> dict:
     }
 
 
-def main() -> None:
-    """Compare and print a table."""
+def main() -> int:
+    """Compare, print a table and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--json", type=Path, help="write the numbers to this file")
     which = parser.add_mutually_exclusive_group()
@@ -108,4 +108,10 @@ def main() -> None:
         for name, seconds in row["parts"].items():
             print(f"  {name:26s}{seconds:7.2f}")
     if options.json:
-        options.json.write_text(json.dumps(rows, indent=1) + "\n")
+        write_json(options.json, rows)
+    return verdict(
+        {
+            "deviation of the frequencies": (max(row["deviation"] for row in rows), 1e-5),
+            "time over that of FEMinterface": (1.0 / min(row["ratio"] for row in rows), 1.0),
+        }
+    )

@@ -9,7 +9,6 @@ python -m validation speed [--json FILE] [--quick]
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 
 import exudyn
@@ -18,6 +17,7 @@ from tqdm import tqdm
 
 from exudyn_rotor import recommended_settings
 from exudyn_rotor.demo.scene import AddRotor
+from validation.rows import verdict, write_json
 from validation.speed.scenes import (
     BODIES,
     POINT_BODIES,
@@ -135,8 +135,8 @@ def _head(row: dict) -> str:
     return f"{row['modes']:5d}  {row['body']:34}{row['markers']:10}{row['tolerances']:13}"
 
 
-def main(argv: list[str] | None = None) -> None:
-    """Measure and print the table."""
+def main(argv: list[str] | None = None) -> int:
+    """Measure, print the table and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--json", type=Path, help="write the numbers to this file")
     parser.add_argument("--quick", action="store_true", help="coarse mesh, fewer modes and steps")
@@ -152,4 +152,7 @@ def main(argv: list[str] | None = None) -> None:
     print_table(rows, summary)
     if options.json:
         data = {"nodes": model.node_count, "steps": steps, "rows": rows, "ratios": summary}
-        options.json.write_text(json.dumps(data, indent=1) + "\n")
+        write_json(options.json, data)
+    numbers = ("standard", "virtual")
+    shares = [row[f"{name} target"] / row[name] for row in summary for name in numbers]
+    return verdict({"speed ratio aimed at over the one measured": (max(shares), 1.0)})

@@ -32,8 +32,8 @@ from tqdm import tqdm
 
 from exudyn_rotor import SolidRotor, SpinAxis, campbell, free_modes, spinning_modes
 from exudyn_rotor.plotting import COLORS, LINES, figure, legend_above, save
-from validation.exudyn_3d.against_3d import Row, write_json
 from validation.references.beam import Section, flap_frequencies, lag_frequencies, thick_frequencies
+from validation.rows import Row, print_rows, verdict, write_json
 
 LENGTH, WIDTH, HEIGHT = 0.5, 0.02, 0.01  # along x, in the plane of rotation, across it [m]
 STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
@@ -250,22 +250,6 @@ def basis_table(size: float, eta: float, hubs: Sequence[float]) -> list[Row]:
     return rows
 
 
-def print_rows(title: str, rows: Sequence[Row]) -> None:
-    """Print rows as aligned columns; differences from a reference with three digits."""
-    names = list(rows[0])
-    relative = [" / " in name or " less " in name for name in names]
-    cells = [names]
-    for row in rows:
-        values = zip(row.values(), relative, strict=True)
-        cells.append(
-            [v if isinstance(v, str) else f"{v:{'.2e' if r else '.6g'}}" for v, r in values]
-        )
-    widths = [max(len(line[i]) for line in cells) for i in range(len(names))]
-    print(f"\n{title}")
-    for line in cells:
-        print("  ".join(text.rjust(width) for text, width in zip(line, widths, strict=True)))
-
-
 def draw(path: str, size: float, etas: Sequence[float], hubs: Sequence[float]) -> None:
     """Write a picture: first flap and lag of beam and solid over speed, one panel per hub."""
     made, panels = figure(1, len(hubs), size=(9.0, 4.6), sharey=True, squeeze=False)
@@ -290,8 +274,8 @@ def draw(path: str, size: float, etas: Sequence[float], hubs: Sequence[float]) -
     save(made, path)
 
 
-def main(argv: Sequence[str] | None = None) -> None:
-    """Print the tables."""
+def main(argv: Sequence[str] | None = None) -> int:
+    """Print the tables and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="a coarse mesh, fewer speeds")
     parser.add_argument("--json", metavar="FILE", help="write the tables to FILE")
@@ -315,3 +299,16 @@ def main(argv: Sequence[str] | None = None) -> None:
         write_json(options.json, tables)
     if options.picture:
         draw(options.picture, size, np.linspace(0.0, 10.0, 6), hubs)
+    plain = tables["3. Over speed, Poisson's ratio zero"]
+    return verdict(
+        {
+            "without lateral contraction, at rest": (
+                max(abs(row["'full' / Timoshenko"]) for row in plain if row["eta"] == 0.0),
+                1e-3,
+            ),
+            "its growth over the speed": (
+                max(abs(row["growth / Timoshenko"]) for row in plain),
+                5e-4,
+            ),
+        }
+    )

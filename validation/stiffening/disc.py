@@ -30,10 +30,10 @@ from tqdm import tqdm
 
 from exudyn_rotor import SolidRotor, campbell
 from exudyn_rotor.linear.modal.campbell import Campbell
-from validation.exudyn_3d.against_3d import Row, write_json
 from validation.references import plate
 from validation.references.plate import Annulus, PlaneStress
-from validation.stiffening.blade import STEEL, print_rows
+from validation.rows import Row, print_rows, verdict, write_json
+from validation.stiffening.blade import STEEL
 
 MATERIAL = {"modulus": 2.1e11, "ratio": 0.3, "density": 7850.0}
 RING = Annulus(0.05, 0.2, 0.02, **MATERIAL)
@@ -325,8 +325,8 @@ def rest_cases(quick: bool) -> list[tuple[Annulus, Sequence[int]]]:
     return [(PLATE, coarse), (PLATE, fine), (double, coarse), (plain, coarse), (plain, fine)]
 
 
-def main(argv: Sequence[str] | None = None) -> None:
-    """Print the tables."""
+def main(argv: Sequence[str] | None = None) -> int:
+    """Print the tables and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="coarser meshes")
     parser.add_argument("--json", metavar="FILE", help="write the tables to FILE")
@@ -344,3 +344,12 @@ def main(argv: Sequence[str] | None = None) -> None:
         print_rows(title, rows)
     if options.json:
         write_json(options.json, tables)
+    speeds = tables[f"3a. At {SPEED:g} rad/s: slopes of ω² over Ω²"]
+    return verdict(
+        {
+            "slopes over Mindlin's, less 1": (
+                max(abs(row["solid / Mindlin"]) for row in speeds),
+                2e-2,
+            ),
+        }
+    )

@@ -17,7 +17,6 @@ python -m validation nonlinear [--json FILE] [--quick]
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -36,6 +35,7 @@ from exudyn_rotor.solid.elements import nodal_space
 from exudyn_rotor.solid.tensor import von_mises
 from exudyn_rotor.solvers.factor import SparseCholesky
 from exudyn_rotor.theory.nodal import block_diagonal
+from validation.rows import verdict, write_json
 
 STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
 LEVELS = ("none", "full", "full, initial displacement")
@@ -302,8 +302,8 @@ def orders(rows: Sequence[dict]) -> dict[str, float]:
     return {level: float(np.log(far[level] / near[level]) / factor) for level in LEVELS[1:]}
 
 
-def main(argv: list[str] | None = None) -> None:
-    """Compare on one mesh and print the table."""
+def main(argv: list[str] | None = None) -> int:
+    """Compare on one mesh, print the tables and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--json", type=Path, help="write the numbers to this file")
     parser.add_argument("--quick", action="store_true", help="fewer speeds")
@@ -324,4 +324,11 @@ def main(argv: list[str] | None = None) -> None:
         print("order in Ω²: " + ", ".join(f"{x} {value:.2f}" for x, value in found.items()) + "\n")
         written[name] = {"rows": rows, "orders": found}
     if options.json:
-        options.json.write_text(json.dumps(written, indent=1) + "\n")
+        write_json(options.json, written)
+    rows = [row for solid in written.values() for row in solid["rows"]]
+    return verdict(
+        {
+            "against the nonlinear static state": (max(row[LEVELS[2]] for row in rows), 2e-4),
+            "against the linear one": (max(row[LEVELS[2] + PRELOAD] for row in rows), 1e-8),
+        }
+    )

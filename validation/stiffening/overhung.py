@@ -9,7 +9,6 @@ python -m validation overhung [--json FILE] [--quick]
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 
 import exudyn
@@ -28,6 +27,7 @@ from tqdm import tqdm
 
 from exudyn_rotor import Formulation, Motion, ReducedRotor, free_modes, select_modes
 from exudyn_rotor.theory.stiffening import stiffening
+from validation.rows import verdict, write_json
 from validation.stiffening.nonlinear import LEVELS, STEEL, ClampedSolid
 
 SPEEDS, QUICK_SPEEDS = (0.0, 30.0, 60.0, 90.0, 120.0, 150.0), (0.0, 60.0)  # rad/s
@@ -145,8 +145,8 @@ def compare(solid: ClampedSolid, fem: FEMinterface, speed: float) -> dict:
 COLUMNS = ("none", "reduced, tilt", "3D body", "full", "reduced, full", LEVELS[2])
 
 
-def main(argv: list[str] | None = None) -> None:
-    """Compare and print the table."""
+def main(argv: list[str] | None = None) -> int:
+    """Compare, print the table and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--json", type=Path, help="write the numbers to this file")
     parser.add_argument("--quick", action="store_true", help="fewer speeds")
@@ -165,4 +165,5 @@ def main(argv: list[str] | None = None) -> None:
         )
         print(f"{row['speed']:10.0f}{row['strain']:10.1e}{pair:>20}{errors}")
     if options.json:
-        options.json.write_text(json.dumps(rows, indent=1) + "\n")
+        write_json(options.json, rows)
+    return verdict({"error of 'full'": (max(row["full"] for row in rows), 1e-4)})

@@ -12,7 +12,6 @@ python -m validation spun_up_blade [--json FILE] [--quick] [--picture FILE]
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -25,6 +24,7 @@ from tqdm import tqdm
 
 from exudyn_rotor import Formulation, Motion, PrescribedMotion, plotting, select_modes
 from exudyn_rotor.theory.stiffening import stiffening
+from validation.rows import verdict, write_json
 from validation.stiffening.nonlinear import ClampedSolid
 
 HUB, LENGTH = 0.05, 0.4  # m
@@ -162,8 +162,8 @@ def draw(tracks: dict[str, np.ndarray], step: float, path: Path) -> None:
     plotting.save(made, path)
 
 
-def main(argv: list[str] | None = None) -> None:
-    """Integrate all models and print the table."""
+def main(argv: list[str] | None = None) -> int:
+    """Integrate all models, print the table and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--json", type=Path, help="write the numbers to this file")
     parser.add_argument("--quick", action="store_true", help="larger steps")
@@ -183,4 +183,6 @@ def main(argv: list[str] | None = None) -> None:
     if options.picture:
         draw(tracks, step, options.picture)
     if options.json:
-        options.json.write_text(json.dumps({"largest": largest, "rows": rows}, indent=1) + "\n")
+        write_json(options.json, {"largest": largest, "rows": rows})
+    full = next(row for row in rows if row["level"] == "full")
+    return verdict({"deviation of 'full'": (full["deviation"], 1e-3)})

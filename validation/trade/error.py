@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from validation.rows import Row
+
 JOURNALS = ("left", "right")
 ACROSS, ALONG = [1, 2], 0  # the spin axis is x
-
-Row = dict[str, str | int | float | None]
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,21 +8,20 @@ it holds the errors of the step, of the modes and of the formulation together, s
 added. The mesh is the same for all; what it costs is in a table of its own. The time is that of
 the whole simulation without the set-up.
 
-    python -m validation trade [--json FILE] [--quick] [--picture FILE]
+    python -m validation trade [--json FILE] [--quick]
 """
 
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import exudyn
 
+from validation.rows import print_rows, write_json
 from validation.trade.error import Row, cheapest, crossing, front
 from validation.trade.linear import mesh_errors, reduction_errors
-from validation.trade.picture import draw
 from validation.trade.plan import plan, run_up
 from validation.trade.run import AXES, USERS, Bench, contributions, measure, tilts
 from validation.trade.scene import CRAIG_BAMPTON, TORQUE, VIRTUAL, Body, Rotor
@@ -133,22 +132,6 @@ def with_conclusions(data: dict) -> dict:
     }
 
 
-def print_rows(title: str, rows: Sequence[Row], names: Sequence[str] | None = None) -> None:
-    """Print rows as aligned columns."""
-    names = list(rows[0]) if names is None else list(names)
-    cells = [names, *([_cell(row[name]) for name in names] for row in rows)]
-    widths = [max(len(line[i]) for line in cells) for i in range(len(names))]
-    print(f"\n{title}")
-    for line in cells:
-        print("  ".join(text.ljust(width) for text, width in zip(line, widths, strict=True)))
-
-
-def _cell(value: str | float | None) -> str:
-    if value is None:
-        return "-"
-    return value if isinstance(value, str) else f"{value:.3g}"
-
-
 def report(data: dict) -> None:
     """Print all tables."""
     for name, value in data["scene"].items():
@@ -182,29 +165,15 @@ def report(data: dict) -> None:
     print("\n".join(f"  {line}" for line in data["verdict"]))
 
 
-def strict(value):
-    """Return tables fit for strict JSON: null where a number is not finite."""
-    if isinstance(value, dict):
-        return {key: strict(one) for key, one in value.items()}
-    if isinstance(value, list):
-        return [strict(one) for one in value]
-    if isinstance(value, float) and not abs(value) < float("inf"):
-        return None
-    return value
-
-
 def main(argv: list[str] | None = None) -> None:
     """Measure, print, and write what is asked for."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all numbers to FILE")
     parser.add_argument("--quick", action="store_true", help="coarse mesh, few simulations")
-    parser.add_argument("--picture", type=Path, metavar="FILE", help="write the picture to FILE")
     options = parser.parse_args(argv)
     # warnings about memory that user functions allocate would tear the tables
     exudyn.SetWriteToConsole(False)
     data = with_conclusions(everything(options.quick))
     report(data)
     if options.json:
-        options.json.write_text(json.dumps(strict(data), indent=1, allow_nan=False) + "\n")
-    if options.picture:
-        draw(options.picture, data["points"], data["modes"], data["tilts"], ACCURACIES)
+        write_json(options.json, data)

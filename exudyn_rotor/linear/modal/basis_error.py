@@ -8,7 +8,6 @@ shapes, too, is solved at a few points of an analysis, and compared.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -29,6 +28,7 @@ _RANGE, _LOWEST = 2.0, 6  # times the fastest speed, and lowest modes: what is j
 _ALIKE = 0.2  # likeness of two shapes below which they are not the same motion
 _NEAR = 0.3  # share of a frequency by which the same motion may differ
 _MISSING = 0.1  # share of a flexibility that counts as missing
+_DIGITS = 9  # of costs that are compared
 _POINTS = 3  # speeds at which the richer model is solved
 _MOST_UNEVEN = 0.02  # unevenness of a richer model, beyond which its mean is not taken
 
@@ -43,44 +43,29 @@ def points(count: int) -> np.ndarray:
     return np.unique(np.linspace(0, count - 1, min(count, _POINTS)).round().astype(int))
 
 
-def shifts_over(
-    model: LinearModel,
-    speeds: np.ndarray,
-    named: Sequence[Named | None],
-    *,
-    held: bool = False,
-) -> np.ndarray | None:
+def shifts_over(model: LinearModel, named: Named, *, held: bool = False) -> np.ndarray | None:
     """Return ``λ_richer − λ`` of motions at all speeds, in the frame of the rotor, (s, k).
 
     The motions of one column are the same at all speeds. Between the speeds at which the richer
     model is solved shifts follow straight lines; NaN where a motion is not found again, None where
     nothing is known. Zero where the basis leaves nothing out.
     """
-    known = [i for i, each in enumerate(named) if each is not None]
-    shape = len(named), len(named[known[0]].inertial)
+    speeds, known, shape = named.motions.speeds, named.motions.known, named.inertial.shape
     if model.is_full:
         return np.zeros(shape, dtype=complex)
     richer = _averaged_little(model, model.richer, float(speeds[known[-1]]))
     if richer is None:
         return None if model.richer is None else np.full(shape, np.nan, dtype=complex)
-    chosen = [known[i] for i in points(len(known))]
-    content, lifted = Content.of(richer), lifting(model, richer)
+    chosen, lifted = known[points(len(known))], lifting(model, richer)
     if lifted.shape[0] == lifted.shape[1]:
         return np.zeros(shape, dtype=complex)
-    found = motions_over(richer, speeds[chosen], held=held)
-    shifts = np.full((len(chosen), shape[1]), np.nan, dtype=complex)
-    for row, (place, motions) in enumerate(zip(chosen, found, strict=True)):
-        if motions is not None:
-            shifts[row] = _shifts(named[place], content.named(motions), lifted)
+    better = Content.of(richer).named(motions_over(richer, speeds[chosen], held=held))
+    shifts = _shifts(named.rows(chosen), better, lifted)
     if len(chosen) == 1:
         return np.broadcast_to(shifts, shape).copy()
-    result = np.empty(shape, dtype=complex)
-    for column in range(shape[1]):
-        parts = (np.interp(speeds, speeds[chosen], part) for part in
-                 (shifts[:, column].real, shifts[:, column].imag))  # fmt: skip
-        real, imaginary = parts
-        result[:, column] = real + 1j * imaginary
-    return result
+    lines = [np.interp(speeds, speeds[chosen], part.real) for part in shifts.T]
+    slopes = [np.interp(speeds, speeds[chosen], part.imag) for part in shifts.T]
+    return np.array(lines).T + 1j * np.array(slopes).T
 
 
 def is_averaged_much(richer: LinearModel) -> bool:
@@ -116,28 +101,28 @@ def lifting(model: LinearModel, richer: LinearModel) -> np.ndarray:
 
 
 def _shifts(given: Named, richer: Named, lifted: np.ndarray) -> np.ndarray:
-    """Return the shifts (k,) of motions at one speed."""
+    """Return the shifts (s, k) of motions, of richer ones at the same speeds."""
     x, z = lifted @ given.motions.main, richer.motions.main
-    sizes = np.outer(np.linalg.norm(x, axis=0), np.linalg.norm(z, axis=0))
-    products = np.maximum(np.abs(x.conj().T @ z), np.abs(x.T @ z))
+    sizes = np.linalg.norm(x, axis=1)[:, :, None] * np.linalg.norm(z, axis=1)[:, None]
+    across = np.swapaxes(x, 1, 2)
+    products = np.maximum(np.abs(across.conj() @ z), np.abs(across @ z))
     likeness = (products / np.maximum(sizes, 1e-300)) ** 2
-    least = np.maximum(np.abs(given.motions.values), abs(given.motions.speed))[:, None] + 1e-12
+    speeds, values = np.abs(given.motions.speeds[:, None]), given.motions.values
+    least = np.maximum(np.abs(values), speeds)[:, :, None] + 1e-12
     # of a train, which rotor's frame a motion is seen from may differ between both models
-    change = richer.rotor - given.rotor[:, None]
-    seen = richer.inertial - given.inertial[:, None]
+    change = richer.rotor[:, None] - given.rotor[:, :, None]
+    seen = richer.inertial[:, None] - given.inertial[:, :, None]
     change = np.where(np.abs(seen) < 0.5 * np.abs(change), seen, change)
-    frequency = np.abs(change) / least
-    growth = np.abs(given.motions.values.real[:, None] - richer.motions.values.real) / least
-    cost = 1.0 - likeness + np.minimum((frequency + growth) / _NEAR, 2.0)
-    rows, columns = linear_sum_assignment(np.nan_to_num(cost, nan=1e3))
-    shifts = np.full(len(given.inertial), np.nan, dtype=complex)
-    good = (likeness[rows, columns] > _ALIKE) & (cost[rows, columns] < 2.0)
-    rows, columns = rows[good], columns[good]
-    shifts[rows] = (
-        richer.motions.values.real[columns]
-        - given.motions.values.real[rows]
-        + 1j * change[rows, columns]
-    )
+    growth = richer.motions.values.real[:, None] - values.real[:, :, None]
+    cost = 1.0 - likeness
+    cost += np.minimum((np.abs(change) + np.abs(growth)) / (least * _NEAR), 2.0)
+    cost = np.round(np.nan_to_num(cost, nan=1e3), _DIGITS)
+    shifts = np.full(given.inertial.shape, np.nan, dtype=complex)
+    for row, each in enumerate(cost):
+        i, j = linear_sum_assignment(each)
+        good = (likeness[row, i, j] > _ALIKE) & (each[i, j] < 2.0)
+        i, j = i[good], j[good]
+        shifts[row, i] = growth[row, i, j] + 1j * change[row, i, j]
     return shifts
 
 

@@ -21,10 +21,10 @@ from exudyn_rotor.linear.modal.whirl import (
     MIXED,
     OVERDAMPED,
     STATIC,
-    UNKNOWN,
     Content,
     Named,
     damping_of,
+    rounded,
     signed_diameters,
 )
 from exudyn_rotor.linear.model.build import (
@@ -41,7 +41,6 @@ from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.units import Units
 
 _SPLIT = 4e-8  # of the fastest motion: the split of a double zero by rounding
-_DIGITS = 9  # of the largest value in a row: what is sorted
 _FEWEST = 6  # modes that are listed of a basis with halves of pairs
 
 
@@ -151,21 +150,17 @@ def campbell(
     warn_of_structural_damping(model, "campbell finds modes")
     warn_of_left_out_stiffening(model, np.abs(values).max())
     motions = motions_over(model, values, tolerance=tolerance, progress=progress, label="Campbell")
-    content = Content.of(model)
-    named = [None if each is None else content.named(each) for each in motions]
+    named = Content.of(model).named(motions)
     if model.free_motions:
-        named = [None if each is None else _resting(each) for each in named]
-    named = [None if each is None else each.columns(_ascending(each, frame)) for each in named]
-    order, continued = track(named, values, model.mass_matrix)
+        named = _resting(named)
+    named = named.columns(ascending(named, frame))
+    order, continued = track(named, model.mass_matrix)
     kept = _lowest(named, order, modes, frame, model)
-    tracked = [
-        None if each is None else each.columns(row[kept])
-        for each, row in zip(named, order, strict=True)
-    ]
+    tracked = named.columns(order[:, kept])
     shifts = None
     if accuracy is not None:
-        shifts = basis_error.shifts_over(model, values, tracked)
-    result = _collected(values, tracked, continued[:, kept], shifts, model, frame, modes)
+        shifts = basis_error.shifts_over(model, tracked)
+    result = _collected(tracked, continued[:, kept], shifts, model, frame, modes)
     _warn_of_basis(result, model, accuracy)
     return result
 
@@ -173,7 +168,7 @@ def campbell(
 def _resting(found: Named) -> Named:
     """Return motions of which free ones, double zeros that rounding splits, do not grow."""
     values = found.motions.values
-    split = _SPLIT * np.nanmax(np.abs(values), initial=0.0)
+    split = _SPLIT * np.nanmax(np.abs(values), axis=1, keepdims=True, initial=0.0)
     rests = np.hypot(found.inertial, values.real) <= split
     motions = replace(found.motions, values=np.where(rests, 1j * values.imag, values))
     lateral = rests & np.isin(found.codes, (FORWARD, BACKWARD, MIXED, OVERDAMPED))
@@ -184,8 +179,8 @@ def _resting(found: Named) -> Named:
     )
 
 
-def _ascending(found: Named, frame: str) -> np.ndarray:
-    """Return the order of motions: ascending in a frame, overdamped ones and lost ones last.
+def ascending(found: Named, frame: str = "inertial") -> np.ndarray:
+    """Return the order of motions (s, k): ascending in a frame, overdamped and lost ones last.
 
     Equal frequencies ascend in the other frame, then from backward to forward waves.
     """
@@ -194,42 +189,35 @@ def _ascending(found: Named, frame: str) -> np.ndarray:
         main, other = other, main
     last = np.isnan(found.motions.values) | _overdamped(found)
     keys = [-found.motions.values.real, signed_diameters(found.codes, found.diameters), other, main]
-    return np.lexsort([*map(_rounded, keys), last])
+    return np.lexsort([*map(rounded, keys), last], axis=-1)
 
 
 def _overdamped(found: Named) -> np.ndarray:
-    return (found.inertial == 0.0) & (found.motions.values.real < -found.motions.bound)
-
-
-def _rounded(values: np.ndarray) -> np.ndarray:
-    largest = np.nanmax(np.abs(values), initial=0.0) or 1.0
-    return np.round(np.nan_to_num(values / largest, nan=2.0), _DIGITS)
+    growth, bounds = found.motions.values.real, found.motions.bounds[:, None]
+    return (found.inertial == 0.0) & (growth < -bounds)
 
 
 def _lowest(
-    named: list[Named | None], order: np.ndarray, modes: int | None, frame: str, model: LinearModel
+    named: Named, order: np.ndarray, modes: int | None, frame: str, model: LinearModel
 ) -> np.ndarray:
     """Return the tracked columns that are kept: the lowest at the first speed with values."""
-    row, first = next((i, each) for i, each in enumerate(named) if each is not None)
-    first = first.columns(order[row])
+    row = named.motions.known[:1]
+    first = named.rows(row).columns(order[row])
     frequencies = first.inertial if frame == "inertial" else first.rotor
-    count = modes or len(frequencies)
+    count = modes or frequencies.shape[1]
     if modes is None and np.isfinite(model.complete_up_to):
         complete = np.count_nonzero(np.abs(first.motions.values) < model.complete_up_to)
         count = max(min(_FEWEST, count), complete)
-    of_voids = np.zeros(len(frequencies), dtype=bool)
+    last = _overdamped(first) | np.isnan(first.motions.values)
     rows = [i for i, name in enumerate(model.coordinates) if name.startswith("voids")]
     if rows:
-        x = first.motions.main
-        moved = np.abs(x) ** 2 * np.diag(model.mass_matrix)[:, None]
-        of_voids = moved[rows].sum(axis=0) > 0.9 * moved.sum(axis=0)
-    last = _overdamped(first) | of_voids | np.isnan(first.motions.values)
-    return np.sort(np.lexsort((_rounded(frequencies), last))[:count])
+        moved = np.abs(first.motions.main[0]) ** 2 * np.diag(model.mass_matrix)[:, None]
+        last |= moved[rows].sum(axis=0) > 0.9 * moved.sum(axis=0)
+    return np.sort(np.lexsort((rounded(frequencies), last), axis=-1)[0, :count])
 
 
 def _collected(
-    speeds: np.ndarray,
-    tracked: list[Named | None],
+    tracked: Named,
     continued: np.ndarray,
     shifts: np.ndarray | None,
     model: LinearModel,
@@ -237,40 +225,26 @@ def _collected(
     modes: int | None,
 ) -> Campbell:
     """Return the result, whose columns ascend at every speed."""
-    shape = continued.shape
-    arrays = {name: np.full(shape, np.nan) for name in ("rotor", "inertial", "growth")}
-    codes, diameters = np.full(shape, UNKNOWN), np.full(shape, -1)
-    vectors = np.full((shape[0], model.size, shape[1]), np.nan, dtype=complex)
-    order = np.tile(np.arange(shape[1]), (shape[0], 1))
-    told = np.zeros(shape)
-    for row, found in enumerate(tracked):
-        if found is None:
-            continue
-        ascending = _ascending(found, frame)
-        order[row] = np.argsort(ascending)
-        found = found.columns(ascending)
-        growth, bound = found.motions.values.real, found.motions.bound
-        arrays["growth"][row] = np.where(np.abs(growth) <= bound, 0.0, growth)
-        told[row] = np.where(np.abs(growth) <= bound, 0.0, growth)
-        arrays["rotor"][row], arrays["inertial"][row] = found.rotor, found.inertial
-        codes[row], diameters[row] = found.codes, found.diameters
-        vectors[row] = found.motions.main
-        if shifts is not None:
-            shifts[row] = shifts[row][ascending]
+    speeds, upwards = tracked.motions.speeds, ascending(tracked, frame)
+    order = np.argsort(upwards, axis=1)
+    order[np.isnan(tracked.motions.bounds)] = np.arange(order.shape[1])
+    found = tracked.columns(upwards)
+    growth, bounds = found.motions.values.real, found.motions.bounds[:, None]
+    growth = np.where(np.abs(growth) <= bounds, 0.0, growth)
     if shifts is not None:
-        chosen = basis_error.judged(arrays["inertial"], arrays["growth"], speeds, modes is not None)
-        shifts = np.where(chosen, shifts, np.nan)
-    ratio, decrement = damping_of(told, arrays["inertial"])
+        chosen = basis_error.judged(found.inertial, growth, speeds, modes is not None)
+        shifts = np.where(chosen, np.take_along_axis(shifts, upwards, 1), np.nan)
+    ratio, decrement = damping_of(growth, found.inertial)
     return Campbell(
         speeds=speeds,
-        frequencies_rotor=arrays["rotor"],
-        growth=arrays["growth"],
-        frequencies_inertial=arrays["inertial"],
+        frequencies_rotor=found.rotor,
+        growth=growth,
+        frequencies_inertial=found.inertial,
         damping_ratio=ratio,
         log_decrement=decrement,
-        whirl_codes=codes.astype(np.int64),
-        nodal_diameters=diameters.astype(np.int64),
-        vectors=vectors,
+        whirl_codes=found.codes,
+        nodal_diameters=found.diameters,
+        vectors=found.motions.main,
         order=order,
         continued=continued,
         free_motions=model.free_motions,

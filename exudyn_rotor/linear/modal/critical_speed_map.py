@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _CURVE = 200  # speeds of a bearing's own curve
+_FILM = 1e-3  # error of a critical speed on films
 _UNIT = 1e15  # N/m, beside which all others are rounding
 
 
@@ -279,7 +280,9 @@ def critical_speed_map(
         stiffening=stiffening, axes=axes,
     ).undamped()  # fmt: skip
     unit = {n: X / _UNIT for n, X in _added(first, names).items()}
-    search = Search(Stiffness(first, unit), Content.of(first), *given, tolerance, is_exact=False)
+    # a map takes what a film is within its own smoothness, for films are solved at each speed
+    error = 1e-9 if first.table_speeds.size else _FILM
+    search = Search(Stiffness(first, unit), Content.of(first), *given, tolerance, error)
     judged = set() if accuracy is None else set(points(len(values)).tolist())
     solved: list[CriticalSpeeds | None] = []
     failed: dict[float, Exception] = {}

@@ -19,7 +19,6 @@ from exudyn_rotor.linear.modal.resonance import (
     Search,
     Stiffness,
     named,
-    refined,
 )
 from exudyn_rotor.linear.modal.whirl import WHIRLS, Content
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
@@ -33,6 +32,7 @@ from exudyn_rotor.units import Units
 JUDGED = 6  # critical speeds that count where no largest speed is given
 _ALIKE = 0.5  # likeness of two shapes below which they are not the same motion
 _NEAR = 0.5  # share of a critical speed by which the same motion may differ
+_BESIDE, _ERROR = 0.97, 1e-6  # of a critical speed: where its change is told, and its error
 SHOWN = 1e-6  # unevenness that is told
 
 
@@ -256,7 +256,7 @@ def collected(
     found: list[Resonance], search: Search, model: LinearModel, estimate: bool
 ) -> CriticalSpeeds:
     """Return the result of a search; errors by the basis of the model where they are asked for."""
-    found, names = named(found, search.content)
+    found, rotor, codes, diameters = named(found, search.content)
     speeds = np.array([one.speed for one in found])
     errors = None
     if estimate and basis_error.is_known(model, 1.0):
@@ -266,9 +266,9 @@ def collected(
     return CriticalSpeeds(
         order=search.order,
         speeds=speeds,
-        frequencies_rotor=names.rotor * speeds,
-        whirl=tuple(WHIRLS[code] for code in names.codes),
-        nodal_diameters=names.diameters,
+        frequencies_rotor=rotor * speeds,
+        whirl=tuple(WHIRLS[code] for code in codes),
+        nodal_diameters=diameters,
         vectors=shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300),
         stiffening=model.stiffening,
         basis_errors=errors,
@@ -292,9 +292,11 @@ def basis_errors(model: LinearModel, found: Sequence[Resonance], count: int) -> 
         return errors
     lifted, stiffness = basis_error.lifting(model, richer), Stiffness(richer)
     for i, one in enumerate(found[:count]):
-        lift = one._replace(vectors=one.vectors @ lifted.T)
+        lift, slope = one._replace(vectors=one.vectors @ lifted.T), None
         try:
-            better = refined(stiffness, lift)
+            if model.stiffness_varies:
+                slope = stiffness.along(_BESIDE * one.speed, one.speed, one.speed)
+            better = stiffness.refined(lift, slope, _ERROR)
         except NO_EQUATIONS:
             continue
         x, y = lift.vectors, better.vectors

@@ -7,8 +7,9 @@ motion with the frequency fΩ in the axes of the equations has the undamped dyna
 
 a Hermitian matrix; f = p in axes that stand still. Where only the spin itself changes with the
 speed, ``H = K0 − Ω² B``: one eigenproblem has all critical speeds. Tables and films leave the zeros
-of the sorted eigenvalues of H, which are continuous functions of Ω: each change of a sign between
-neighbours of some 200 speeds is refined. Two zeros of one eigenvalue between neighbours are missed.
+of the sorted eigenvalues of H, which are continuous functions of Ω: between neighbours of some 200
+speeds the equations are taken as linear, and a zero found there is refined with those of its own
+speed. Two zeros of one eigenvalue between neighbours are missed.
 
 In the axes of an uneven rotor a wave n answers at f = p − n. Supports that differ in their two
 directions couple f, f ± 2, …: H is a matrix of blocks, of which five are solved, and then more are
@@ -19,7 +20,7 @@ Rotating Systems (2005).
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
@@ -27,7 +28,6 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy.linalg as la
-from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
 from exudyn_rotor.bearings.support import NoCoefficientsError
@@ -51,9 +51,9 @@ _NO_INERTIA = 1e-6  # share of the largest inertia
 _BRACKETS = 200  # speeds at which signs of eigenvalues are looked at; half of them for blocks
 _SLOW, _RATIO = 12, 2.0**0.25  # speeds on each side of the first of these, and their ratio
 _FINE = 1e-10  # of the largest speed, to which zeros are refined
-_FEW, _MOST = 2, 8  # blocks on each side of the middle one
+_FEW, _MOST = 4, 16  # harmonics on each side of the middle one
 _ITERATIONS = 8
-_OFF = 0.03  # by which films that are smooth between speeds may err
+_OFF = 0.03  # by which films that are linear between speeds may err
 _FAR = 0.5  # share of a critical speed by which the same motion may differ
 _STEP = 1e-5  # of the speed, for the derivative of H
 
@@ -68,12 +68,21 @@ class Resonance(NamedTuple):
     multiples: np.ndarray
 
 
-class Names(NamedTuple):
-    """Of critical speeds the frequency in the frame of the rotor over Ω, whirl and diameters."""
+class Line(NamedTuple):
+    """Equations that change linearly with the speed, as from `low` to `high`; those of `at`."""
 
-    rotor: np.ndarray
-    codes: np.ndarray
-    diameters: np.ndarray
+    low: PeriodicSystem
+    high: PeriodicSystem
+    at: PeriodicSystem
+
+    def __call__(self, speed: float) -> PeriodicSystem:
+        """Return the equations at a speed [rad/s]."""
+        share = (speed - self.at.speed) / (self.high.speed - self.low.speed)
+        D, K = {}, {}
+        for name, terms in (("D", D), ("K", K)):
+            for part, factor in ((self.at, 1.0), (self.high, share), (self.low, -share)):
+                add(terms, getattr(part, name), factor)
+        return PeriodicSystem(speed, self.at.M, D, K)
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,24 +97,28 @@ class Stiffness:
     unit : Terms
         Fourier terms of a stiffness that is added by its `factor`.
     factor : float
-    between : callable, optional
-        Gives equations between the speeds at which films are solved.
+    line : Line, optional
+        What gives the equations in the place of the model.
     """
 
     model: LinearModel
     unit: Terms = field(default_factory=dict)
     factor: float = 0.0
-    between: Callable[[float], PeriodicSystem] | None = None
+    line: Line | None = None
     known: dict[float, PeriodicSystem] = field(default_factory=dict)
 
     def system(self, speed: float) -> PeriodicSystem:
         """Return the equations at a speed [rad/s], without what is added."""
+        if self.line is not None:
+            return self.line(speed)
         if speed not in self.known:
-            if self.between is not None:
-                return self.between(speed)
             system, basis = self.model.at(speed), self.model.moving_basis
             self.known[speed] = system if basis is None else system.projected(basis)
         return self.known[speed]
+
+    def along(self, low: float, high: float, at: float) -> Stiffness:
+        """Return what has the equations of a speed, and changes as between two others."""
+        return replace(self, line=Line(*map(self.system, (low, high, at))))
 
     def __call__(self, speed: float, multiples: np.ndarray) -> np.ndarray:
         """Return H at a speed for frequencies `multiples` (h,) of it, (h·k, h·k)."""
@@ -123,16 +136,50 @@ class Stiffness:
             H[a, :, a] -= (f * speed) ** 2 * system.M
         return H.reshape(h * system.size, -1)
 
+    def _solve(self, H: np.ndarray, load: np.ndarray, speed: float) -> np.ndarray:
+        """Return ``H⁻¹ load`` at a speed, of blocks of which only near ones are coupled."""
+        system = self.system(speed)
+        reach = max(abs(n) for terms in (system.D, system.K) for n in terms)
+        width = system.size * (1 + reach // (system.step or 1)) - 1
+        if 4 * width > len(H):
+            return np.linalg.solve(H, load)
+        band = np.zeros((2 * width + 1, len(H)), dtype=complex)
+        for d in range(-width, width + 1):
+            band[width - d, max(d, 0) : len(H) + min(d, 0)] = np.diagonal(H, d)
+        return la.solve_banded((width, width), band, load)
+
     def motions(self, vector: np.ndarray, multiples: np.ndarray) -> np.ndarray:
         """Return vectors (h·k, …) of H as harmonics (h, c, …) in all coordinates of the model."""
         basis = self.model.moving_basis
         harmonics = vector.reshape(len(multiples), -1, *vector.shape[1:])
         return harmonics if basis is None else np.einsum("ck,hk...->hc...", basis, harmonics)
 
-    def coordinates(self, vectors: np.ndarray) -> np.ndarray:
-        """Return harmonics (h, c) in the coordinates of H, (h, k)."""
-        basis = self.model.moving_basis
-        return vectors if basis is None else vectors @ basis
+    def refined(
+        self, found: Resonance, slope: Stiffness | None = None, tolerance: float = 1e-9
+    ) -> Resonance:
+        """Return the critical speed next to one, and its motion, by inverse iteration.
+
+        `slope` tells how H changes with the speed. NaN where it does not converge.
+        """
+        speed, multiples, basis = found.speed, found.multiples, self.model.moving_basis
+        x = (found.vectors if basis is None else found.vectors @ basis).ravel()
+        for _ in range(_ITERATIONS):
+            H = self(speed, multiples)
+            later = H if slope is None else slope(speed, multiples)
+            earlier = (slope or self)(speed * (1.0 - _STEP), multiples)
+            try:
+                moved = self._solve(H, (later - earlier) @ x / (speed * _STEP), speed)
+            except np.linalg.LinAlgError:  # there already
+                break
+            change = (np.vdot(x, x) / np.vdot(x, moved)).real
+            x, speed = moved / np.linalg.norm(moved), speed - change
+            if not abs(change) < _FAR * found.speed or speed <= 0.0:
+                return found._replace(speed=np.nan)
+            if abs(change) <= tolerance * speed:
+                break
+        else:
+            speed = np.nan
+        return Resonance(float(speed), self.motions(x, multiples), multiples)
 
 
 def _orders(multiples: np.ndarray) -> np.ndarray:
@@ -144,10 +191,9 @@ def _blocks(multiples: np.ndarray, terms: Terms) -> np.ndarray:
     """Return Fourier terms (k, k) as the matrix that couples frequencies, (h, k, h, k)."""
     orders, k = _orders(multiples), len(terms[0])
     H = np.zeros((len(orders), k, len(orders), k), dtype=complex)
-    for a, row in enumerate(orders):
-        for b, n in enumerate(row):
-            if n in terms:
-                H[a, :, b] = terms[n]
+    for (a, b), n in np.ndenumerate(orders):
+        if n in terms:
+            H[a, :, b] = terms[n]
     return H
 
 
@@ -167,10 +213,10 @@ class Search:
         Largest speed [rad/s]; needed where the stiffness varies with it.
     tolerance : float
         Largest relative change of a speed by further harmonics.
-    is_exact : bool
-        Whether films are solved at each critical speed, too, not at some 200 speeds only.
-    lost : list of float
-        Speeds that did not settle.
+    error : float
+        Largest relative change of a speed in the last step with the films that are there.
+    lost, jumps : list of float
+        Speeds that did not settle, and at which a film jumps.
     """
 
     stiffness: Stiffness
@@ -179,8 +225,9 @@ class Search:
     diameters: Sequence[int]
     limit: float | None
     tolerance: float
-    is_exact: bool = True
+    error: float = 1e-9
     lost: list[float] = field(default_factory=list)
+    jumps: list[float] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         if self.limit is None and self.stiffness.model.stiffness_varies:
@@ -199,11 +246,10 @@ class Search:
             Where a support has a negative stiffness.
         """
         varies, step = self.stiffness.model.stiffness_varies, self._step
-        exact = replace(self.stiffness, factor=factor)
-        stiffness = replace(exact, between=self._between) if varies else exact
+        stiffness, most = replace(self.stiffness, factor=factor), _FEW // (step or 1)
         found: list[Resonance] = []
         for center in self._centers(step):
-            few = center + step * np.arange(-_FEW, _FEW + 1) if step else np.array([center])
+            few = center + step * np.arange(-most, most + 1) if step else np.array([center])
             met = Excitation(self.content, self.order, self.diameters, few)
             pairs = self._zeros(stiffness, met) if varies else _direct(*_quadratic(stiffness, few))
             pairs = [
@@ -211,15 +257,53 @@ class Search:
                 for speed, x in pairs
                 if self.limit is None or speed <= self.limit
             ]
-            answers = [Resonance(speed, x, few) for speed, x in met.answering(pairs)]
-            if step:
-                settled = [_settled(stiffness, one, step, self.tolerance) for one in answers]
-                self.lost += [a.speed for a, b in zip(answers, settled, strict=True) if b is None]
-                answers = [one for one in settled if one is not None]
-            found += answers
-        if stiffness.between is not None and self.is_exact:
-            found = [_polished(exact, stiffness, one) for one in found]
+            for one in met.answering(pairs):
+                beside = stiffness
+                if varies:
+                    one, beside = self._exact(stiffness, one)
+                    if one is None:
+                        continue
+                if step:
+                    one = self._settled(beside, one)
+                if one is not None:
+                    found.append(one)
         return found
+
+    def _exact(self, stiffness: Stiffness, found: Resonance) -> tuple[Resonance | None, Stiffness]:
+        """Return a critical speed with the equations that are there, and those beside it.
+
+        None where they jump across zero.
+        """
+        grid, speed = self.known[0], found.speed
+        place = min(max(np.searchsorted(grid, speed), 1), len(grid) - 1)
+        ends = grid[place - 1], grid[place]
+        try:
+            near = stiffness.along(*ends, ends[0])
+            better = stiffness.refined(found, near, self.error)
+            if not abs(better.speed - speed) < _OFF * speed:
+                self.jumps.append(speed)
+                return None, near
+            return better, stiffness.along(*ends, better.speed)
+        except NO_EQUATIONS:  # beyond the end of a table, by rounding
+            return found, near
+
+    def _settled(self, stiffness: Stiffness, found: Resonance) -> Resonance | None:
+        """Add harmonics to a motion until its critical speed does not change; None if it does."""
+        change, begin = np.inf, found.speed
+        for _ in range(_FEW, _MOST, 2 * self._step):
+            last, multiples, before = found.speed, found.multiples, change
+            beyond = self._step * np.array([1, 2])
+            multiples = np.r_[multiples[0] - beyond[::-1], multiples, multiples[-1] + beyond]
+            wider = Resonance(last, np.pad(found.vectors, ((2, 2), (0, 0))), multiples)
+            # what is left is the square of a change
+            found = stiffness.refined(wider, tolerance=0.1 * np.sqrt(self.tolerance))
+            change = abs(found.speed - last)
+            if change <= self.tolerance * last:
+                return found
+            if not change < 0.3 * before:
+                break
+        self.lost.append(begin)
+        return None
 
     @cached_property
     def _step(self) -> int:
@@ -242,67 +326,33 @@ class Search:
         return list(first.values())
 
     @cached_property
-    def known(self) -> tuple[list[float], list[Pair]]:
-        """Speeds with equations, and those of them that are neighbours. Others cost a warning."""
+    def known(self) -> tuple[list[float], list[tuple[float, float]], dict[float, Exception]]:
+        """Speeds with equations, those of them that are neighbours, and speeds without.
+
+        Slow speeds at which films are too thin are not missed.
+        """
         model = self.stiffness.model
         count = _BRACKETS // (1 + model.turns)
         first = self.limit / count
-        kinks = model.table_speeds
-        kinks = kinks[(kinks > first) & (kinks < self.limit)]
+        kinks = model.table_speeds[model.table_speeds < self.limit]
         slow = first * _RATIO ** np.arange(-_SLOW, _SLOW)
-        wanted = np.unique([*np.linspace(first, self.limit, count), *slow[slow > first], *kinks])
+        wanted = np.unique([*np.linspace(first, self.limit, count), *slow, *kinks[kinks > first]])
         wanted = wanted[np.diff(wanted, prepend=0.0) > _SAME * first]
-        refused = self._refused(wanted)
-        if len(refused) == len(wanted):
-            raise refused[wanted[0]]
-        if refused:
-            _warn(
-                f"none are looked for at {len(refused)} of {len(wanted)} speeds from "
-                f"{min(refused):.4g} to {max(refused):.4g} rad/s: {next(iter(refused.values()))}"
-            )
-        else:  # as far down as there are equations
-            lower = slow[slow < first]
-            wanted = np.r_[lower[lower > max(self._refused(lower), default=0.0)], wanted]
-        near = [pair for pair in pairwise(wanted.tolist()) if refused.keys().isdisjoint(pair)]
-        return [speed for speed in wanted.tolist() if speed not in refused], near
-
-    def _refused(self, speeds: np.ndarray) -> dict[float, Exception]:
-        """Return the speeds without equations, and why they have none."""
         refused = {}
-        for speed in speeds.tolist():
+        for speed in wanted[::-1].tolist():
             try:
                 self.stiffness.system(speed)
             except NO_EQUATIONS as error:
                 refused[speed] = error
-        return refused
-
-    @cached_property
-    def _between(self) -> Callable[[float], PeriodicSystem] | None:
-        """Equations between the speeds at which films are solved, which are smooth over the speed.
-
-        None for tables, which have kinks.
-        """
-        grid, near = self.known
-        if self.stiffness.model.table_speeds.size or len(near) + 1 < max(len(grid), 4):
-            return None
-        systems = [self.stiffness.system(speed) for speed in grid]
-
-        def curves(given: list[Terms]) -> dict[int, CubicSpline]:
-            orders = {n for terms in given for n in terms}
-            none = np.zeros_like(systems[0].M)
-            return {
-                n: CubicSpline(np.log(grid), [terms.get(n, none) for terms in given])
-                for n in orders
-            }
-
-        D, K = curves([s.D for s in systems]), curves([s.K for s in systems])
-
-        def between(speed: float) -> PeriodicSystem:
-            at = np.log(speed)
-            terms = ({n: curve(at) for n, curve in X.items()} for X in (D, K))
-            return PeriodicSystem(speed, systems[0].M, *terms)
-
-        return between
+                if speed < first:
+                    break
+        if len(refused) >= np.sum(wanted >= first):
+            raise refused[min(refused)]
+        slowest = max((speed for speed in refused if speed < first), default=0.0)
+        wanted = wanted[wanted > slowest].tolist()
+        near = [pair for pair in pairwise(wanted) if refused.keys().isdisjoint(pair)]
+        told = {speed: error for speed, error in refused.items() if speed >= first}
+        return [speed for speed in wanted if speed not in refused], near, told
 
     @cached_property
     def _samples(self) -> dict[bytes, tuple]:
@@ -316,10 +366,10 @@ class Search:
         """
         key = multiples.tobytes()
         if key not in self._samples:
-            plain, grid = self.stiffness, self.known[0]
+            plain, grid, h = self.stiffness, self.known[0], len(multiples)
             H = np.array([plain(speed, multiples) for speed in grid])
             unit = _blocks(multiples, plain.unit or {0: 0.0 * plain.system(grid[0]).M})
-            unit, h = unit.reshape(H[0].shape), len(multiples)
+            unit = unit.reshape(H[0].shape)
             basis, is_real = np.eye(len(unit)), False
             if h % 2 and np.array_equal(multiples, -multiples[::-1]):
                 basis, is_real = np.kron(real_waves(h), np.eye(len(unit) // h)), True
@@ -337,52 +387,69 @@ class Search:
     def _zeros(self, stiffness: Stiffness, met: Excitation) -> list[Pair]:
         """Return the speeds at which H is singular, each with its null vector.
 
-        Only those with a part that the excitation meets, as far as is seen close to them.
+        Between two speeds H is taken as linear. Only those with a part that the excitation meets,
+        as far as is seen close to them.
         """
-        multiples, (grid, near) = met.multiples, self.known
+        multiples, (grid, near, _) = met.multiples, self.known
         held, within, unit = self._sampled(multiples)
         within = within + stiffness.factor * unit
         place = {speed: i for i, speed in enumerate(grid)}
         signs = np.linalg.eigvalsh(within)
-
-        def matrix(speed: float) -> np.ndarray:
-            H = held.conj().T @ stiffness(speed, multiples) @ held
-            return H if np.iscomplexobj(within) else H.real
-
-        places = []
+        zeros: list[tuple[float, int, np.ndarray]] = []
         for low, high in near:
-            before, after = signs[place[low]], signs[place[high]]
-            for j in np.flatnonzero((before < 0.0) != (after < 0.0)).tolist():
-                ends = {low: before[j], high: after[j]}
-                at = low + (high - low) * before[j] / (before[j] - after[j])
+            a, b = place[low], place[high]
+            for j in np.flatnonzero((signs[a] < 0.0) != (signs[b] < 0.0)).tolist():
+
+                def matrix(share: float, a: int = a, b: int = b) -> np.ndarray:
+                    return (1.0 - share) * within[a] + share * within[b]
+
+                def value(share: float, a: int = a, b: int = b, j: int = j) -> float:
+                    if share in (0.0, 1.0):
+                        return signs[b if share else a][j]
+                    return np.linalg.eigvalsh(matrix(share, a, b))[j]
+
+                at = signs[a][j] / (signs[a][j] - signs[b][j])
                 beside = np.linalg.eigh(matrix(at))[1][:, max(j - 1, 0) : j + 2]
                 share, _ = met.shares(stiffness.motions(held @ beside, multiples))
-                if share.max() < 0.5 * _SHARE:
-                    continue
-
-                def value(speed: float, ends: dict = ends, j: int = j) -> float:
-                    return ends[speed] if speed in ends else np.linalg.eigvalsh(matrix(speed))[j]
-
-                places.append((brentq(value, low, high, xtol=_FINE * self.limit, rtol=_FINE), j))
-        places.sort()
+                if share.max() >= 0.5 * _SHARE:
+                    at = brentq(value, 0.0, 1.0, xtol=_FINE)
+                    zeros.append((low + (high - low) * at, j, matrix(at)))
+        zeros.sort(key=lambda zero: zero[:2])
         found: list[Pair] = []
-        for group in same_speed([speed for speed, _ in places]):
-            _, vectors = np.linalg.eigh(matrix(places[group[0]][0]))
-            found += [(places[i][0], held @ vectors[:, places[i][1]]) for i in group]
+        for group in same_speed([zero[0] for zero in zeros]):
+            _, vectors = np.linalg.eigh(zeros[group[0]][2])
+            found += [(zeros[i][0], held @ vectors[:, zeros[i][1]]) for i in group]
         return found
 
     def warn(self) -> None:
-        """Warn of critical speeds that are left out."""
+        """Warn of critical speeds that are left out, once of all kinds."""
+        told = []
+        if self.limit is not None and self.stiffness.model.stiffness_varies:
+            grid, _, refused = self.known
+            if refused:
+                told.append(
+                    f"none are looked for at {len(refused)} of {len(grid) + len(refused)} speeds "
+                    f"from {min(refused):.4g} to {max(refused):.4g} rad/s: "
+                    f"{refused[min(refused)]}"
+                )
         if self.lost:
-            shown = ", ".join(f"{speed:.5g}" for speed in sorted(self.lost)[:5])
-            _warn(
-                f"near {shown}{' …' * (len(self.lost) > 5)} rad/s they still change with harmonics "
-                f"up to the {_MOST * self._step}th, and are left out"
+            told.append(
+                f"near {_shown(self.lost)} rad/s they still change with harmonics up to the "
+                f"{_MOST}th, and are left out"
             )
+        if self.jumps:
+            told.append(
+                f"near {_shown(self.jumps)} rad/s the stiffness of a film jumps where one would "
+                "be, and it is left out; a film with more nodes jumps by less"
+            )
+        if told:
+            what = "; ".join(told)
+            warnings.warn(f"critical speeds: {what}", UserWarning, stacklevel=user_level())
 
 
-def _warn(what: str) -> None:
-    warnings.warn(f"critical speeds: {what}", UserWarning, stacklevel=user_level())
+def _shown(speeds: Sequence[float]) -> str:
+    known = np.unique(np.round(speeds, 6))
+    return ", ".join(f"{speed:.5g}" for speed in known[:5]) + " …" * (len(known) > 5)
 
 
 def same_speed(speeds: Sequence[float]) -> list[list[int]]:
@@ -452,11 +519,9 @@ class Excitation:
         The mean order is over p; it is negative of the conjugate of another motion.
         """
         content, p = self.content, self.order
-        energy = _energy(content.forms, vectors)
-        standing, total = (
-            _energy(F[None], vectors)[:, 0] for F in (content.standing, content.whole)
-        )
-        total = np.maximum(total.sum(axis=0), 1e-300)
+        energies = content.energies(vectors[None])[0]
+        energy, standing = energies[:, :-5], energies[:, -1]
+        total = np.maximum(energies[:, -2].sum(axis=0), 1e-300)
         meets = (np.abs(np.abs(self.seen) - p) < 1e-9) & np.isin(
             np.abs(content.waves), self.diameters
         )
@@ -466,7 +531,7 @@ class Excitation:
         mean = np.einsum("hw,hwn->n", self.seen, energy)
         return turning / total, mean / (total * (p or 1.0))
 
-    def answering(self, pairs: list[tuple[float, np.ndarray]]) -> list[tuple[float, np.ndarray]]:
+    def answering(self, pairs: list[Pair]) -> list[Resonance]:
         """Return those of speeds and harmonics (h, k) whose motions turn with the excitation.
 
         Of a motion and its conjugate, one.
@@ -479,106 +544,24 @@ class Excitation:
         vectors = vectors / np.linalg.norm(vectors, axis=(0, 1))
         for group in same_speed(speeds):
             if len(group) > 1:
-                vectors[:, :, group] = _one_sense(vectors[:, :, group], self.seen, self.content)
+                vectors[:, :, group] = self._one_sense(vectors[:, :, group])
         share, mean = self.shares(vectors)
         kept = np.flatnonzero((share >= _SHARE) & (mean >= -_CONJUGATE))
-        return [(speeds[i], vectors[:, :, i]) for i in kept]
+        return [Resonance(speeds[i], vectors[:, :, i], self.multiples) for i in kept]
+
+    def _one_sense(self, vectors: np.ndarray) -> np.ndarray:
+        """Return motions (h, k, g) of one speed so that each turns one way in time, or in space."""
+        seen = np.where(np.abs(self.seen) < 1e-9, 0.0, self.seen)
+        return self.content.extremal(vectors[None], 10.0 * np.sign(seen) + self.content.waves)[0]
 
 
-def _energy(forms: np.ndarray, vectors: np.ndarray) -> np.ndarray:
-    """Return the energies (h, w, n) of harmonics (h, k, n) in forms (w, k, k)."""
-    moved = forms[None] @ vectors[:, None]
-    return np.sum((vectors[:, None].conj() * moved).real, axis=2)
+def named(
+    found: Sequence[Resonance], content: Content
+) -> tuple[list[Resonance], np.ndarray, np.ndarray, np.ndarray]:
+    """Return critical speeds, ascending, those of one speed from backward to forward waves.
 
-
-def _one_sense(vectors: np.ndarray, seen: np.ndarray, content: Content) -> np.ndarray:
-    """Return motions (h, k, g) of one speed so that each turns one way in time, then in space."""
-    flat = vectors.reshape(-1, vectors.shape[2])
-    span, lengths, _ = np.linalg.svd(flat, full_matrices=False)
-    if lengths[-1] < 1e-3 * lengths[0]:
-        return vectors
-    span = span.reshape(vectors.shape)
-    weights = 10.0 * np.sign(np.where(np.abs(seen) < 1e-9, 0.0, seen)) + content.waves
-    mean = np.tensordot(weights, content.forms, axes=(1, 0)) + 0.4 * content.axial
-    whole = content.whole + content.standing
-    form, size = (
-        sum(x.conj().T @ (F @ x) for F, x in zip(forms, span, strict=True))
-        for forms in (mean, [whole] * len(span))
-    )
-    floor = 1e-12 * max(np.trace(size).real, 1e-300)
-    form, size = (0.5 * (F + F.conj().T) for F in (form, size))
-    _, turn = la.eigh(form, size + floor * np.eye(len(size)))
-    turned = span @ turn
-    return turned / np.linalg.norm(turned, axis=(0, 1))
-
-
-# ------------------------------------------------------------------ one motion by itself
-
-
-def refined(
-    stiffness: Stiffness,
-    found: Resonance,
-    smooth: Stiffness | None = None,
-    tolerance: float = 1e-9,
-) -> Resonance:
-    """Return the critical speed next to one, and its motion, by inverse iteration.
-
-    The slope of H may be that of a `smooth` one. The speed is NaN where it does not converge.
+    With their frequencies in the frame of the rotor over Ω, whirl codes and nodal diameters.
     """
-    speed, multiples, smooth = found.speed, found.multiples, smooth or stiffness
-    x = stiffness.coordinates(found.vectors).ravel()
-    for _ in range(_ITERATIONS):
-        H = stiffness(speed, multiples)
-        later = H if smooth is stiffness else smooth(speed, multiples)
-        earlier = smooth(speed * (1.0 - _STEP), multiples)
-        try:
-            moved = np.linalg.solve(H, (later - earlier) @ x / (speed * _STEP))
-        except np.linalg.LinAlgError:  # there already
-            break
-        change = (np.vdot(x, x) / np.vdot(x, moved)).real
-        x, speed = moved / np.linalg.norm(moved), speed - change
-        if not abs(change) < _FAR * found.speed or speed <= 0.0:
-            return found._replace(speed=np.nan)
-        if abs(change) <= tolerance * speed:
-            break
-    else:
-        speed = np.nan
-    return Resonance(float(speed), stiffness.motions(x, multiples), multiples)
-
-
-def _settled(
-    stiffness: Stiffness, found: Resonance, step: int, tolerance: float
-) -> Resonance | None:
-    """Add harmonics to a motion until its critical speed does not change; None where it does."""
-    change = np.inf
-    for _ in range(_FEW, _MOST, 2):
-        last, multiples, before = found.speed, found.multiples, change
-        beyond = step * np.array([1, 2])
-        multiples = np.r_[multiples[0] - beyond[::-1], multiples, multiples[-1] + beyond]
-        wider = Resonance(last, np.pad(found.vectors, ((2, 2), (0, 0))), multiples)
-        try:  # what is left is the square of a change
-            found = refined(stiffness, wider, tolerance=0.1 * np.sqrt(tolerance))
-        except NO_EQUATIONS:
-            return None
-        change = abs(found.speed - last)
-        if change <= tolerance * last:
-            return found
-        if not change < 0.3 * before:
-            return None
-    return None
-
-
-def _polished(stiffness: Stiffness, smooth: Stiffness, found: Resonance) -> Resonance:
-    """Return a critical speed with the films that are there."""
-    try:
-        better = refined(stiffness, found, smooth, 1e-7)
-    except NO_EQUATIONS:
-        return found
-    return better if abs(better.speed - found.speed) < _OFF * found.speed else found
-
-
-def named(found: Sequence[Resonance], content: Content) -> tuple[list[Resonance], Names]:
-    """Return critical speeds, ascending, those of one speed from backward to forward waves."""
     rotor = np.zeros(len(found))
     codes, diameters = np.zeros((2, len(found)), dtype=np.int64)
     alike: dict[tuple, list[int]] = {}
@@ -591,10 +574,12 @@ def named(found: Sequence[Resonance], content: Content) -> tuple[list[Resonance]
         vectors = vectors / np.linalg.norm(vectors, axis=(0, 1))
         # all frequencies go with the speed, so that one speed stands for all
         values = np.full(len(places), 1j * center)
-        names = content.named(Motions(1.0, values, vectors, orders, 0.0), apart=True)
-        codes[places], diameters[places], rotor[places] = names.codes, names.diameters, names.rotor
+        given = values[None], vectors[None], orders, np.zeros(1)
+        names = content.named(Motions(np.ones(1), *given), apart=True)
+        codes[places], diameters[places] = names.codes[0], names.diameters[0]
+        rotor[places] = names.rotor[0]
     ascending = np.argsort([one.speed for one in found], kind="stable")
     senses = signed_diameters(codes, diameters)[ascending]
     groups = same_speed([found[i].speed for i in ascending])
     row = [ascending[i] for group in groups for i in sorted(group, key=senses.__getitem__)]
-    return [found[i] for i in row], Names(*(each[row] for each in (rotor, codes, diameters)))
+    return [found[i] for i in row], rotor[row], codes[row], diameters[row]

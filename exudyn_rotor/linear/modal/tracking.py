@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -18,12 +17,11 @@ _STEEPEST = 2.0  # change of a frequency over that of the speed: a thin disc's f
 _SPREAD = 1e-2  # share of a frequency by which it may change in any step
 # a match is another mode below this likeness, or beyond this many steepest changes
 _LEAST_LIKENESS, _MOST_CHANGES = 0.25, 3.0
+_DIGITS = 9  # of costs that are compared
 _SAME = 1e-6  # relative distance of λ of motions whose shapes are arbitrary
 
 
-def track(
-    named: Sequence[Named | None], speeds: np.ndarray, M: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def track(named: Named, M: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return which column continues each mode of the first speed, and whether it is the same mode.
 
     Neighbouring speeds are matched as a whole (assignment problem) by the mass-weighted modal
@@ -32,10 +30,8 @@ def track(
 
     Parameters
     ----------
-    named : sequence of Named or None
-        One for each speed.
-    speeds : ndarray, shape (s,)
-        [rad/s]
+    named : Named
+        At s speeds.
     M : ndarray, shape (k, k)
         Mass matrix.
 
@@ -44,74 +40,74 @@ def track(
     columns : ndarray of int, shape (s, k)
     continued : ndarray of bool, shape (s, k)
     """
-    known = [i for i, each in enumerate(named) if each is not None]
-    count = len(named[known[0]].inertial)
-    columns = np.tile(np.arange(count), (len(named), 1))
-    continued = np.ones(columns.shape, dtype=bool)
-    for before, after in itertools.pairwise(known):
-        matched, same = _step(named[before], named[after], speeds[after] - speeds[before], M)
+    known, (s, k) = named.motions.known, named.inertial.shape
+    columns, continued = np.tile(np.arange(k), (s, 1)), np.ones((s, k), dtype=bool)
+    matched, same = _steps(named.rows(known), M)
+    for step, (before, after) in enumerate(itertools.pairwise(known)):
         last = columns[before]
-        columns[after], continued[after] = matched[last], same[last]
+        columns[after], continued[after] = matched[step][last], same[step][last]
         columns[before + 1 : after] = last
     return columns, continued
 
 
-def _step(
-    before: Named, after: Named, change: float, M: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return which motion continues each, (k,), and whether as the same mode."""
-    likeness = _likeness(before.motions, after.motions, M)
-    jump = np.abs(after.inertial[None, :] - before.inertial[:, None])
-    larger = np.maximum(after.inertial[None, :], before.inertial[:, None])
-    allowed = _STEEPEST * abs(change) + _SPREAD * larger + before.motions.bound
-    growth = [each.motions.values.real for each in (before, after)]
-    apart = np.abs(growth[1][None, :] - growth[0][:, None])
-    size = np.abs(growth[1])[None, :] + np.abs(growth[0])[:, None] + before.motions.bound
+def _steps(named: Named, M: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return which motion continues each at the next speed, (s − 1, k), and whether as one mode."""
+    values, bounds = named.motions.values, named.motions.bounds[:-1, None, None]
+    likeness = _likeness(named.motions, M)
+    before, after = named.inertial[:-1, :, None], named.inertial[1:, None]
+    jump, change = np.abs(after - before), np.abs(np.diff(named.motions.speeds))[:, None, None]
+    allowed = _STEEPEST * change + _SPREAD * np.maximum(after, before) + bounds
+    growth = values.real[:-1, :, None], values.real[1:, None]
+    size = np.abs(growth[0]) + np.abs(growth[1]) + bounds
     cost = 1.0 - likeness + _JUMP_WEIGHT * np.minimum(jump / allowed, 4.0)
-    cost += _GROWTH_WEIGHT * np.minimum(apart / np.maximum(size, 1e-300), 1.0)
-    senses = [(each.codes == FORWARD) * 1 - (each.codes == BACKWARD) for each in (before, after)]
-    cost += _SENSE_WEIGHT * (senses[0][:, None] * senses[1] < 0)
-    _, matched = linear_sum_assignment(np.nan_to_num(cost, nan=10.0))
-    rows = np.arange(len(matched))
-    values = after.motions.values
-    alike = np.abs(values[:, None] - values) <= _SAME * np.abs(values) + after.motions.bound
-    together = np.sum(likeness[:, None, :] * alike[None], axis=2)[rows, matched]
-    same = (together >= _LEAST_LIKENESS) & (
-        jump[rows, matched] <= _MOST_CHANGES * allowed[rows, matched]
-    )
-    resting = (np.abs(before.motions.values) == 0.0) & (np.abs(values[matched]) == 0.0)
-    return matched, same | resting
+    apart = np.abs(growth[1] - growth[0]) / np.maximum(size, 1e-300)
+    cost += _GROWTH_WEIGHT * np.minimum(apart, 1.0)
+    senses = (named.codes == FORWARD) * 1 - (named.codes == BACKWARD)
+    cost += _SENSE_WEIGHT * (senses[:-1, :, None] * senses[1:, None] < 0)
+    cost = np.round(np.nan_to_num(cost, nan=10.0), _DIGITS)
+    found = [linear_sum_assignment(each)[1] for each in cost]
+    matched = np.array(found, dtype=int).reshape(-1, values.shape[1])
+
+    def of_match(X: np.ndarray) -> np.ndarray:
+        return np.take_along_axis(X, matched[:, :, None], 2)[:, :, 0]
+
+    later, sizes = values[1:], np.abs(values[1:, None]) + 0.0
+    alike = np.abs(later[:, :, None] - later[:, None]) <= _SAME * sizes + bounds
+    together = of_match(likeness @ np.swapaxes(alike, 1, 2))
+    same = (together >= _LEAST_LIKENESS) & (of_match(jump) <= _MOST_CHANGES * of_match(allowed))
+    ends = np.take_along_axis(later, matched, 1)
+    return matched, same | ((values[:-1] == 0.0) & (ends == 0.0))
 
 
-def _likeness(before: Motions, after: Motions, M: np.ndarray) -> np.ndarray:
-    """Return the modal assurance criterion of all pairs, the largest of all forms, (k, k)."""
-    if 0.0 in (before.speed, after.speed):  # at rest all harmonics are one motion
-        before, after = _together(before), _together(after)
-    first = dict(zip(before.orders.tolist(), before.vectors, strict=True))
-    norms = [_norms(each, M) for each in (before, after)]
-    best = np.zeros((len(before.values), len(after.values)))
-    for second in _forms(after):
-        product = sum(first[m].conj().T @ M @ X for m, X in second.items() if m in first)
-        if np.ndim(product):
-            sizes = np.maximum(np.outer(*norms), 1e-300)
-            best = np.maximum(best, np.abs(np.nan_to_num(product)) ** 2 / sizes)
-    return best
+def _likeness(motions: Motions, M: np.ndarray) -> np.ndarray:
+    """Return the modal assurance criterion of all pairs at neighbouring speeds, (s − 1, k, k)."""
+    vectors, speeds = motions.vectors, motions.speeds
+    if np.any(np.isnan(motions.values)):
+        vectors = np.nan_to_num(vectors)
+    found = _of_pairs(vectors, M)
+    rests = np.flatnonzero((speeds[1:] == 0.0) | (speeds[:-1] == 0.0))
+    if vectors.shape[1] > 1 and rests.size:  # at rest all harmonics are one motion
+        total = vectors.sum(axis=1, keepdims=True)
+        for place in rests:
+            found[place] = _of_pairs(total[place : place + 2], M)[0]
+    return found
 
 
-def _together(motions: Motions) -> Motions:
-    total = motions.vectors.sum(axis=0, keepdims=True)
-    return Motions(motions.speed, motions.values, total, np.array([0]), motions.bound)
+def _of_pairs(vectors: np.ndarray, M: np.ndarray) -> np.ndarray:
+    """Return the criterion of motions (s, h, c, k), the largest of the forms of the later one.
 
-
-def _norms(motions: Motions, M: np.ndarray) -> np.ndarray:
-    x = np.nan_to_num(motions.vectors)
-    return np.einsum("hck,cd,hdk->k", x.conj(), M, x, optimize=True).real
-
-
-def _forms(motions: Motions) -> Iterator[dict[int, np.ndarray]]:
-    """Yield the harmonics of motions in their other forms: copies λ + ipΩ, and conjugates."""
-    orders, vectors = motions.orders, np.nan_to_num(motions.vectors)
-    step = int(orders[1] - orders[0]) if len(orders) > 1 else 0
-    for shift in (-step, 0, step) if step else (0,):
-        yield {int(m) + shift: X for m, X in zip(orders, vectors, strict=True)}
-        yield {-int(m) - shift: X.conj() for m, X in zip(orders, vectors, strict=True)}
+    These are its copies λ + ipΩ, with harmonics by one more or less, and their conjugates.
+    """
+    weighted = M @ vectors
+    norms = np.sum(vectors.conj() * weighted, axis=(1, 2)).real
+    before, after = np.swapaxes(vectors[:-1].conj(), 2, 3), weighted[1:]
+    h, best = vectors.shape[1], 0.0
+    for later in (after, after[:, ::-1].conj()):
+        for shift in (-1, 0, 1) if h > 1 else (0,):
+            first, second = (
+                slice(max(shift, 0), h + min(shift, 0)),
+                slice(max(-shift, 0), h - max(shift, 0)),
+            )
+            product = np.sum(before[:, first] @ later[:, second], axis=1)
+            best = np.maximum(best, product.real**2 + product.imag**2)
+    return best / np.maximum(norms[:-1, :, None] * norms[1:, None], 1e-300)

@@ -11,17 +11,17 @@ the energy. Source: Genta, Dynamics of Rotating Systems (2005).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-import scipy.linalg as la
 
-from exudyn_rotor.linear.model.assembly import rotors_of
-from exudyn_rotor.linear.model.body import RotorBody
+from exudyn_rotor.cached import kept
+from exudyn_rotor.linear.model.body import RotorAlone, RotorBody
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.points import rotor_points
-from exudyn_rotor.linear.model.waves import wave_amplitudes
+from exudyn_rotor.linear.model.waves import compressed, wave_amplitudes
 from exudyn_rotor.linear.solve.motions import Motions
 
 WHIRLS = (
@@ -44,19 +44,21 @@ _STATIC = 1e-7  # share of the speed: a frequency seen from outside that is roun
 _SAME = 1e-8  # relative distance of λ of repeated motions
 _NO_OSCILLATION = 1e-6  # share of |λ| below which a frequency is that of critical damping
 _GONE = 100.0  # decay over Ω of a real exponent that is over before the rotor turns
+_DIGITS = 9  # of energies, and of what is sorted: beyond them numbers are equal
+_NO_ENERGY = 1e-12  # share of the energy of a unit motion that is none
 _SAMPLES = 8000  # nodes of the mesh
 
 
 class Named(NamedTuple):
-    """Motions at one speed with their names.
+    """Motions at s speeds with their names.
 
     Attributes
     ----------
     motions : Motions
         Repeated ones as waves of one sense.
-    inertial, rotor : ndarray, shape (k,)
+    inertial, rotor : ndarray, shape (s, k)
         Frequencies seen from outside, and in the frame of the rotor, of the strongest wave [rad/s].
-    codes, diameters : ndarray of int, shape (k,)
+    codes, diameters : ndarray of int, shape (s, k)
         Index into :data:`WHIRLS`, and nodal diameters, −1 where they are not known.
     """
 
@@ -67,220 +69,272 @@ class Named(NamedTuple):
     diameters: np.ndarray
 
     def columns(self, chosen: np.ndarray) -> Named:
-        """Return some of the motions."""
-        return Named(self.motions.columns(chosen), *(each[chosen] for each in self[1:]))
+        """Return at each speed some of the motions, `chosen` (s, j)."""
+        rest = (np.take_along_axis(each, chosen, 1) for each in self[1:])
+        return Named(self.motions.columns(chosen), *rest)
+
+    def rows(self, chosen: np.ndarray) -> Named:
+        """Return the motions at some of the speeds."""
+        return Named(self.motions[chosen], *(each[chosen] for each in self[1:]))
 
 
 @dataclass(frozen=True, eq=False)
 class Content:
-    """Quadratic forms of the coordinates of a model that tell the energy of waves.
+    """Energy of the waves in the motions of a model, and along each direction.
+
+    The energy of a wave in a motion x is ``|R x|²`` with some rows of R.
 
     Attributes
     ----------
     waves : ndarray of int, shape (w,)
-        The wave n of each form.
+        The number n of each wave.
     shifts : ndarray of float, shape (w,)
-        By how many Ω the frequency of that form seen from outside is above the harmonic's.
+        By how many Ω its frequency seen from outside is above the harmonic's.
     spins : ndarray of float, shape (w,)
         n times the speed ratio of its rotor: how many Ω lie between both frames.
-    forms : ndarray, shape (w, k, k)
-        Energy ``xᴴ F x`` of each.
-    axial, tangential, radial, whole, standing : ndarray, shape (k, k)
-        Energy along the axis, along the circumference and along the radius, of all motion of the
-        rotors, and of what stands still beside them.
+    rows : sequence of ndarray, shape (r, k)
+        R of each wave, then of the motion along the axis, along the circumference, along the
+        radius, of all motion of the rotors, and of what stands still beside them.
     """
 
     waves: np.ndarray
     shifts: np.ndarray
     spins: np.ndarray
-    forms: np.ndarray
-    axial: np.ndarray
-    tangential: np.ndarray
-    radial: np.ndarray
-    whole: np.ndarray
-    standing: np.ndarray
+    rows: Sequence[np.ndarray]
 
     @classmethod
     def of(cls, model: LinearModel) -> Content:
-        """Build the forms of a model from mode shapes, or from its interfaces."""
+        """Build the content of a model from mode shapes, or from its interfaces."""
         assembly = model.assembly(1.0)
-        k, found = assembly.size, []
-        parts = {name: np.zeros((k, k)) for name in ("axial", "tangential", "radial", "whole")}
-        share = 0.0
+        k, found, share = assembly.size, [], 0.0
+        directions: list[list[np.ndarray]] = [[] for _ in range(5)]
         for body, place in zip(assembly.bodies, assembly.slices, strict=True):
-            if not isinstance(body, RotorBody):
-                continue
-            points, motion = rotor_points(body.alone.rotor, _SAMPLES)
-            motion = motion @ body.alone.Q
-            share = max(share, len(points) / body.alone.invariants.mass)
-            orders, amplitudes, axial = wave_amplitudes(points, motion)
-            for n, W in zip(orders.tolist(), amplitudes, strict=True):
-                found += _forms_of(body, n, W, place, k)
-            for name, rows in _components(points, motion, axial).items():
-                parts[name][place, place] += rows.T @ rows
-        standing = np.zeros((k, k))
+            if isinstance(body, RotorBody):
+                seen = _seen(body.alone, body.mean)
+                share = max(share, seen.per_mass)
+                for n, turned, rows in seen.waves:
+                    shift, spin = n * body.ratio - turned * body.drift, n * body.ratio
+                    found.append((n, shift, spin, assembly.wide({0: rows}, place)[0]))
+                for wide, rows in zip(directions, seen.directions, strict=False):
+                    wide.append(assembly.wide({0: rows}, place)[0])
         for body, place in zip(assembly.bodies, assembly.slices, strict=True):
-            if not isinstance(body, RotorBody):  # mass for mass as large as the rotor's
-                standing[place, place] = share * body.M
-        found = found or [(0, 0.0, 0.0, np.zeros((k, k)))]  # no point that moves: no whirl
-        waves, shifts, spins, forms = zip(*found, strict=True)
-        return cls(np.array(waves), np.array(shifts), np.array(spins), np.array(forms), **parts,
-                   standing=standing)  # fmt: skip
+            if not isinstance(body, RotorBody) and body.size:  # as heavy as the rotor where alike
+                rows = np.sqrt(share) * np.linalg.cholesky(body.M).T
+                directions[4].append(assembly.wide({0: rows}, place)[0])
+        found = found or [(0, 0.0, 0.0, np.zeros((1, k)))]  # no point that moves: no whirl
+        waves, shifts, spins, rows = zip(*found, strict=True)
+        none = np.zeros((1, k))
+        rows = [*rows, *(np.vstack(each or [none]) for each in directions)]
+        return cls(np.array(waves), np.array(shifts), np.array(spins), rows)
+
+    @cached_property
+    def _forms(self) -> np.ndarray:
+        return np.array([R.conj().T @ R for R in self.rows])
+
+    @property
+    def forms(self) -> np.ndarray:
+        """Energy ``xᴴ F x`` of each wave, (w, k, k)."""
+        return self._forms[:-5]
+
+    @property
+    def axial(self) -> np.ndarray:
+        """Form of the energy along the axis, (k, k)."""
+        return self._forms[-5].real
+
+    @property
+    def whole(self) -> np.ndarray:
+        """Form of the energy of all motion of the rotors, (k, k)."""
+        return self._forms[-2].real
+
+    @property
+    def standing(self) -> np.ndarray:
+        """Form of the energy of what stands still beside the rotors, (k, k)."""
+        return self._forms[-1].real
+
+    @cached_property
+    def _mean(self) -> np.ndarray:
+        """Form of the mean wave number; 0.4 of axial motion parts it from torsion."""
+        return np.tensordot(self.waves, self.forms, 1) + 0.4 * self.axial
+
+    @cached_property
+    def _stacked(self) -> tuple[np.ndarray, np.ndarray]:
+        """All rows below one another, and where those of each energy begin."""
+        counts = [len(R) for R in self.rows]
+        return np.vstack(self.rows), np.r_[0, np.cumsum(counts)[:-1]]
+
+    def energies(self, vectors: np.ndarray) -> np.ndarray:
+        """Return the energies (s, h, w + 5, k) of harmonics (s, h, c, k)."""
+        rows, begins = self._stacked
+        moved = rows @ vectors
+        return np.add.reduceat(moved.real**2 + moved.imag**2, begins, axis=2)
 
     def named(self, motions: Motions, *, apart: bool = False) -> Named:
         """Return motions with their names; repeated ones are waves of one sense where `apart`."""
         motions = motions if apart else self._as_waves(motions)
-        values, speed = motions.values, motions.speed
-        nu = np.abs(np.nan_to_num(values.imag))
-        vectors = np.where(values.imag < 0.0, motions.vectors[::-1].conj(), motions.vectors)
-        vectors = np.nan_to_num(vectors)
-        energy = _energy(self.forms, vectors)  # (h, w, k)
-        standing, whole = (
-            _energy(form[None], vectors).sum(axis=(0, 1)) for form in (self.standing, self.whole)
+        values, speeds, orders = motions.values, motions.speeds[:, None], motions.orders
+        nu, vectors = np.abs(values.imag), motions.vectors
+        if np.any(np.isnan(values)):
+            nu, vectors = np.nan_to_num(nu), np.nan_to_num(vectors)
+        mirrored = values.imag < 0.0
+        if np.any(mirrored):
+            vectors = np.where(mirrored[:, None, None], vectors[:, ::-1].conj(), vectors)
+        energy = self.energies(vectors)
+        directions = energy[:, :, -5:].sum(axis=1).transpose(1, 0, 2)  # (5, s, k)
+        whole, standing = directions[3:]
+        # equal but for rounding is equal
+        energy = np.round(energy[:, :, :-5] / np.maximum(whole, 1e-300)[:, None, None], _DIGITS)
+        above = (orders[:, None] + self.shifts).ravel()  # of all waves in all harmonics
+        best = _strongest(energy.reshape(len(values), -1, energy.shape[-1]), above)
+        still = _STATIC * np.abs(speeds) + motions.bounds[:, None]
+        seen = nu[:, None, :] + above[:, None] * speeds[:, :, None]
+        wave = np.tile(self.waves, len(orders))[:, None]
+        turns = np.sign(wave * seen) * np.where(speeds < 0.0, -1.0, 1.0)[:, :, None]
+        turns = np.where(np.abs(seen) <= still[:, None], 0.0, turns)
+        energy = energy.reshape(turns.shape)
+        forward, backward = (
+            np.round(np.sum(energy * (turns == sense), axis=1), _DIGITS) for sense in (1.0, -1.0)
         )
-        seen = nu + (motions.orders[:, None, None] + self.shifts[None, :, None]) * speed
-        n = self.waves[None, :, None]
-        turns = np.sign(n * seen) * (-1.0 if speed < 0.0 else 1.0)
-        turns = np.where(np.abs(seen) <= _STATIC * abs(speed) + motions.bound, 0.0, turns)
-        best = _strongest(energy, motions.orders[:, None] + self.shifts[None, :])
-        columns = np.arange(len(values))
-        inertial = np.abs(seen.reshape(-1, len(values))[best, columns])
-        forward = np.sum(energy * (turns > 0), axis=(0, 1))
-        backward = np.sum(energy * (turns < 0), axis=(0, 1))
         codes = np.where(forward >= backward, FORWARD, BACKWARD)
         weaker, stronger = np.minimum(forward, backward), np.maximum(forward, backward)
         codes[weaker > MIXED_SHARE * stronger] = MIXED
-        wave = np.broadcast_to(n, energy.shape).reshape(-1, len(values))[best, columns]
-        spins = np.broadcast_to(self.spins[None, :, None], energy.shape)
-        spin = spins.reshape(-1, len(values))[best, columns]
-        rotor = np.abs(seen.reshape(-1, len(values))[best, columns] - spin * speed)
-        still = wave == 0
-        codes[(turns.reshape(-1, len(values))[best, columns] == 0) & ~still] = STATIC
-        components = [
-            _energy(form[None], vectors).sum(axis=(0, 1))
-            for form in (self.axial, self.tangential, self.radial)
-        ]
-        named = np.array([AXIAL, TORSIONAL, RADIAL])[np.argmax(components, axis=0)]
-        codes = np.where(still, named, codes)
-        fitted = energy.sum(axis=(0, 1))
-        unseen = whole <= 1e-12 * np.max(whole, initial=0.0)
-        unseen |= (fitted < _NOT_FITTED * whole) & (np.max(components, axis=0) < 0.5 * whole)
-        main = motions.orders[np.argmax(np.sum(np.abs(vectors) ** 2, axis=1), axis=0)]
-        heard = np.abs(nu + main * speed)
+        heard, turning = (np.take_along_axis(X, best[:, None], 1)[:, 0] for X in (seen, turns))
+        place = best % len(self.waves)
+        rotor, wave = np.abs(heard - self.spins[place] * speeds), self.waves[place]
+        codes = np.where((turning == 0.0) & (wave != 0), STATIC, codes)
+        named = np.array([AXIAL, TORSIONAL, RADIAL])[np.argmax(directions[:3], axis=0)]
+        codes = np.where(wave == 0, named, codes)
+        by_wave = energy.reshape(len(values), len(orders), -1, energy.shape[-1]).sum(axis=1)
+        fitted = by_wave.sum(axis=1)
+        unseen = whole <= 1e-12 * np.max(whole, axis=1, keepdims=True, initial=0.0)
+        unseen |= (fitted < _NOT_FITTED) & (np.max(directions[:3], axis=0) < 0.5 * whole)
         stands = standing > whole
-        codes = np.where(unseen, UNKNOWN, codes)
-        codes = np.where(stands, FOUNDATION, codes)
-        inertial = np.where(unseen | stands, heard, inertial)
+        codes = np.where(stands, FOUNDATION, np.where(unseen, UNKNOWN, codes))
+        main = orders[np.argmax(np.sum(np.abs(vectors) ** 2, axis=2), axis=1)]
+        inertial = np.where(unseen | stands, np.abs(nu + main * speeds), np.abs(heard))
         rotor = np.where(unseen | stands, nu, rotor)
-        diameters = np.where(stands, 0, self._diameters(energy, whole))
-        found = Named(motions, inertial, rotor, codes.astype(np.int64), diameters)
-        return _still(found)
+        diameters = np.where(stands, 0, self._diameters(by_wave))
+        lost = np.isnan(motions.bounds)[:, None]
+        inertial, rotor = (np.where(lost, np.nan, each) for each in (inertial, rotor))
+        codes, diameters = np.where(lost, UNKNOWN, codes), np.where(lost, -1, diameters)
+        return _still(Named(motions, inertial, rotor, codes.astype(np.int64), diameters))
 
-    def _diameters(self, energy: np.ndarray, whole: np.ndarray) -> np.ndarray:
-        """Return n where ±n hold most of the energy, −1 elsewhere."""
-        by_wave = energy.sum(axis=0)
+    def _diameters(self, energy: np.ndarray) -> np.ndarray:
+        """Return n where ±n hold most of the energy (s, w, k), of which 1 is all; −1 elsewhere."""
         counts = np.arange(np.abs(self.waves).max() + 1)
-        pairs = np.array([by_wave[np.abs(self.waves) == n].sum(axis=0) for n in counts])
-        whole, fitted, most = np.maximum(whole, 1e-300), pairs.sum(axis=0), pairs.max(axis=0)
-        clear = most >= _DIAMETER_SHARE * np.maximum(whole, fitted)
-        clear |= (fitted >= _FITTED * whole) & (most >= _PURE_SHARE * fitted)
-        return np.where(clear, np.argmax(pairs, axis=0), -1)
+        pairs = (np.abs(self.waves) == counts[:, None]).astype(float) @ energy
+        fitted, most = pairs.sum(axis=1), pairs.max(axis=1)
+        clear = most >= _DIAMETER_SHARE * np.maximum(1.0, fitted)
+        clear |= (fitted >= _FITTED) & (most >= _PURE_SHARE * fitted)
+        return np.where(clear, np.argmax(pairs, axis=1), -1)
 
     def _as_waves(self, motions: Motions) -> Motions:
         """Return repeated motions, whose shapes are arbitrary, as waves of one sense each."""
-        values, vectors = motions.values, motions.vectors
-        scale = _SAME * np.maximum(np.abs(values), abs(motions.speed)) + motions.bound
-        changed, left = vectors, list(np.flatnonzero(np.isfinite(values)))
-        while left:
-            first = left[0]
-            group = [i for i in left if abs(values[i] - values[first]) <= scale[first]]
-            left = [i for i in left if i not in group]
-            if len(group) > 1:
-                turned = self._extremal(vectors[:, :, group], motions.orders)
-                changed = vectors.astype(complex) if changed is vectors else changed
-                changed[:, :, group] = turned
-        if changed is vectors:
-            return motions
-        return Motions(motions.speed, values, changed, motions.orders, motions.bound)
-
-    def _extremal(self, vectors: np.ndarray, orders: np.ndarray) -> np.ndarray:
-        """Return combinations of motions (h, c, g) whose mean wave number is extremal."""
-        flat = vectors.reshape(-1, vectors.shape[2])
-        flat = flat / np.abs(flat).max(axis=0)
-        span, lengths, _ = np.linalg.svd(flat, full_matrices=False)
-        if lengths[-1] < 1e-3 * lengths[0]:  # a defective eigenvalue has one shape only
-            return vectors
-        span = span.reshape(vectors.shape)
-        # 0.4 lies between the waves, so that axial motion parts from torsion
-        mean = sum(n * self.forms[i] for i, n in enumerate(self.waves)) + 0.4 * self.axial
-        form, whole = (
-            sum(x.conj().T @ F @ x for x in span) for F in (mean, self.whole + self.standing)
+        values, vectors, alike = motions.values, motions.vectors, {}
+        scale = _SAME * np.maximum(np.abs(values), np.abs(motions.speeds[:, None]))
+        near = (
+            np.abs(values[:, :, None] - values[:, None])
+            <= (scale + motions.bounds[:, None])[:, :, None]
         )
-        sizes, parts = la.eigh(0.5 * (whole + whole.conj().T))
-        seen = sizes > 1e-9 * max(sizes[-1], 1e-300)  # others move nothing that has waves
-        unit = parts[:, seen] / np.sqrt(sizes[seen])
-        _, inner = la.eigh(unit.conj().T @ (0.5 * (form + form.conj().T)) @ unit)
-        turn = np.hstack([parts[:, ~seen], unit @ inner])
-        turned = span @ (turn / np.abs(turn).max(axis=0))
-        return turned / np.linalg.norm(turned.reshape(-1, turned.shape[2]), axis=0)
+        for row in np.flatnonzero(near.sum(axis=2).max(axis=1, initial=0) > 1):
+            left = np.ones(values.shape[1], dtype=bool)
+            for i in np.flatnonzero(near[row].sum(axis=1) > 1):
+                group = np.flatnonzero(near[row, i] & left)
+                if left[i] and group.size > 1:
+                    alike.setdefault(tuple(group), []).append(row)
+                left[group] = False
+        if not alike:
+            return motions
+        changed = vectors.copy()
+        for group, rows in alike.items():
+            at = np.ix_(rows, range(vectors.shape[1]), range(vectors.shape[2]), group)
+            changed[at] = self.extremal(vectors[at])
+        return replace(motions, vectors=changed)
+
+    def extremal(self, vectors: np.ndarray, weights: np.ndarray | None = None) -> np.ndarray:
+        """Return combinations of motions (s, h, c, g) whose mean wave number is extremal.
+
+        Or the mean of other `weights` (h, w) of the waves in each harmonic.
+        """
+        flat = vectors.reshape(len(vectors), -1, vectors.shape[3])
+        flat = flat / np.abs(flat).max(axis=1, keepdims=True)
+        span, lengths, _ = np.linalg.svd(flat, full_matrices=False)
+        span = span.reshape(vectors.shape)
+        across = np.swapaxes(span.conj(), 2, 3)
+        every, mean = self.whole + self.standing, self._mean
+        if weights is not None:
+            mean = np.tensordot(weights, self.forms, 1) + 0.4 * self.axial
+        form, whole = (np.sum(across @ F @ span, axis=1) for F in (mean, every))
+        # what moves nothing that has waves has the mean zero
+        floor = 1e-9 * np.abs(whole).max(axis=(1, 2), keepdims=True)
+        floor = floor + 1e-12 * np.abs(every).max() + 1e-200
+        unit = np.linalg.inv(np.linalg.cholesky(whole + floor * np.eye(len(whole[0]))))
+        across = np.swapaxes(unit.conj(), 1, 2)
+        turn = across @ np.linalg.eigh(unit @ form @ across)[1]
+        turned = span @ (turn / np.abs(turn).max(axis=1, keepdims=True))[:, None]
+        turned = turned / np.linalg.norm(turned, axis=(1, 2), keepdims=True)
+        # a defective eigenvalue has one shape only
+        return np.where(
+            (lengths[:, -1] < 1e-3 * lengths[:, 0])[:, None, None, None], vectors, turned
+        )
 
 
-def _forms_of(body: RotorBody, n: int, W: np.ndarray, place: slice, k: int) -> list:
-    """Return the forms of a wave, for each kind of coordinates that turn alike."""
-    found = []
-    parts = {0: W}
-    if body.mean:
-        turning = body.alone.turning
-        parts = {s: (W @ turning.T) * (turning.waves == s) @ turning.T.conj().T for s in (-1, 0, 1)}
-    for s, rows in parts.items():
-        if not np.any(np.abs(rows) > 0.0):
-            continue
-        form = np.zeros((k, k), dtype=complex)
-        form[place, place] = rows.conj().T @ rows
-        found.append((n, n * body.ratio - s * body.drift, n * body.ratio, form))
-    return found
+class _Seen(NamedTuple):
+    """What is seen of a rotor: rows of each wave n, of coordinates that turn alike.
+
+    Then rows along the axis, the circumference and the radius, and of all motion; and the number
+    of points over the mass.
+    """
+
+    waves: list[tuple[int, int, np.ndarray]]
+    directions: list[np.ndarray]
+    per_mass: float
 
 
-def _components(points: np.ndarray, motion: np.ndarray, axial: np.ndarray) -> dict[str, np.ndarray]:
+@kept
+def _seen(alone: RotorAlone, mean: bool) -> _Seen:
+    points, motion = rotor_points(alone.rotor, _SAMPLES)
+    motion = motion @ alone.Q
+    orders, amplitudes, axial = wave_amplitudes(points, motion)
     u1, u2, _ = motion.reshape(len(points), 3, -1).transpose(1, 0, 2)
     angle = np.arctan2(points[:, 1], points[:, 0])[:, None]
-    return {
-        "axial": axial,
-        "tangential": np.cos(angle) * u2 - np.sin(angle) * u1,
-        "radial": np.cos(angle) * u1 + np.sin(angle) * u2,
-        "whole": motion,
-    }
-
-
-def _energy(forms: np.ndarray, vectors: np.ndarray) -> np.ndarray:
-    """Return the energies (h, w, k) of harmonics (h, c, k)."""
-    moved = forms[None] @ vectors[:, None]
-    return np.sum(vectors[:, None].conj() * moved, axis=2).real
+    around, outwards = (
+        np.cos(angle) * u2 - np.sin(angle) * u1,
+        np.cos(angle) * u1 + np.sin(angle) * u2,
+    )
+    directions = [compressed(rows) for rows in (axial, around, outwards, motion)]
+    least, waves = _NO_ENERGY * np.linalg.norm(directions[3]) ** 2, []
+    for n, W in zip(orders.tolist(), amplitudes, strict=True):
+        parts = alone.turning.parts(W) if mean else {0: W}
+        for turned, rows in parts.items():
+            rows = compressed(rows, least)
+            if len(rows):
+                waves.append((n, turned, rows))
+    return _Seen(waves, directions, len(points) / alone.invariants.mass)
 
 
 def _strongest(energy: np.ndarray, multiples: np.ndarray) -> np.ndarray:
-    """Return which entry (h, w) has the strongest wave of the strongest frequency, shape (k,).
+    """Return which wave (n,) is the strongest one of the strongest frequency, (s, k).
 
-    Waves of one of the `multiples` (h, w) of Ω have one frequency seen from outside.
+    Waves (s, n, k) of one of the `multiples` (n,) of Ω have one frequency seen from outside.
     """
-    flat = energy.reshape(-1, energy.shape[2])
-    known, place = np.unique(np.round(multiples.ravel(), 6), return_inverse=True)
-    together = np.zeros((known.size, flat.shape[1]))
-    np.add.at(together, place, flat)
-    first = np.argmax(together, axis=0)
-    return np.argmax(np.where(place[:, None] == first, flat, -1.0), axis=0)
+    known, place = np.unique(np.round(multiples, 6), return_inverse=True)
+    alike = (place == np.arange(known.size)[:, None]).astype(float)
+    first = np.argmax(np.round(alike @ energy, _DIGITS), axis=1)
+    return np.argmax(np.where(place[:, None] == first[:, None], energy, -1.0), axis=1)
 
 
 def _still(found: Named) -> Named:
     """Return names of which motions that do not oscillate have the frequency 0."""
-    growth, speed = found.motions.values.real, abs(found.motions.speed)
-    moves = oscillates(growth, found.inertial, found.motions.bound)
+    growth, bounds = found.motions.values.real, found.motions.bounds[:, None]
+    moves = oscillates(growth, found.inertial, bounds)
     # what is over before the rotor turns has no frequency of its own
-    moves &= oscillates(growth, found.rotor) | (-growth <= _GONE * speed)
-    decays = growth < -found.motions.bound
+    gone = -growth > _GONE * np.abs(found.motions.speeds[:, None])
+    moves &= oscillates(growth, found.rotor) | ~gone
     lateral = np.isin(found.codes, (FORWARD, BACKWARD, MIXED, STATIC))
-    codes = np.where(lateral & ~moves, np.where(decays, OVERDAMPED, STATIC), found.codes)
-    return found._replace(inertial=np.where(moves, found.inertial, 0.0), codes=codes)
+    overdamped = np.where(growth < -bounds, OVERDAMPED, STATIC)
+    codes = np.where(lateral & ~moves, overdamped, found.codes)
+    inertial = np.where(moves | np.isnan(found.inertial), found.inertial, 0.0)
+    return found._replace(inertial=inertial, codes=codes)
 
 
 def oscillates(
@@ -318,10 +372,11 @@ def signed_diameters(codes: np.ndarray, diameters: np.ndarray) -> np.ndarray:
     return signs * diameters
 
 
-def names_of(motions: Sequence[Motions], content: Content) -> list[Named]:
-    """Return the motions at several speeds with their names."""
-    return [content.named(each) for each in motions]
+def rounded(values: np.ndarray, nan: float = 2.0) -> np.ndarray:
+    """Return numbers (s, k) over the largest of their row, rounded so that equal ones are equal.
 
-
-__all__ = ["FAMILIES", "WHIRLS", "Content", "Named", "damping_of", "families", "names_of",
-           "oscillates", "rotors_of", "signed_diameters"]  # fmt: skip
+    They are what tables are sorted by; `nan` takes the place of what is not known.
+    """
+    largest = np.nanmax(np.abs(values), axis=1, keepdims=True, initial=0.0)
+    shares = values / np.where(largest > 0.0, largest, 1.0)
+    return np.round(np.nan_to_num(shares, nan=nan), _DIGITS)

@@ -249,6 +249,8 @@ class RotorBody(Body):
     def supported(self, name: str) -> dict[int, np.ndarray]:
         """Return the motion of an interface that a support acts on, seen from outside, (6, k)."""
         U = self.motion(name)
+        if self.spin is not None:
+            U = self.spin.centred(U, self.alone.invariants.mass, self.is_apart)
         return turned({0: self.alone.turning.motion(U)[0] if self.mean else U}, self.turns)
 
     @cached_property

@@ -40,6 +40,7 @@ from exudyn_rotor.linear.model.body import (
 )
 from exudyn_rotor.linear.model.element import Element, elements_of
 from exudyn_rotor.linear.model.links import Link
+from exudyn_rotor.linear.model.spin import ARM
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.stiffening import LEVELS
@@ -48,7 +49,6 @@ AXES = ("auto", "inertial", "rotor")
 ON_FOUNDATION = "{} (foundation)"
 _HELD = 1e-10  # share of the largest stiffness per unit mass that counts as none
 _ALONE = 1.0 - 1e-6  # share of a free motion's energy in one rigid motion, but for rounding
-_ARM = 1e-4  # arm off the axis, squared and in radii of gyration, at which springs hold the spin
 
 
 class Matrices(NamedTuple):
@@ -224,7 +224,7 @@ class LinearModel:
             if element.turns and element.ends[0][0] == name:
                 turned_by = alone.motion(element.ends[0][1]) @ alone.spin.turn
                 K, _ = element.matrices(0.0)
-                arm = np.abs(turned_by[:2]).max() ** 2 * alone.invariants.mass > _ARM
+                arm = np.abs(turned_by[:2]).max() ** 2 * alone.invariants.mass > ARM
                 if np.any(K[5]) or (arm and turned_by @ K @ turned_by != 0.0):
                     return True
         return False

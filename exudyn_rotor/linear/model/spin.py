@@ -28,6 +28,8 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import mean_rotation
 from exudyn_rotor.theory.invariants import Invariants
 
+ARM = 1e-4  # arm off the axis, squared and in radii of gyration, at which springs hold the spin
+
 
 @dataclass(frozen=True, eq=False)
 class Spin:
@@ -51,6 +53,19 @@ class Spin:
     def about_axis(self, U: np.ndarray) -> np.ndarray:
         """Return what rows (…, k) show where the spin is the rotation about the axis."""
         return U + np.multiply.outer(U @ (self.turn - self.momentum), self.momentum)
+
+    def centred(self, U: np.ndarray, mass: float, is_apart: bool) -> np.ndarray:
+        """Return the motion (6, k) of a place that lies on the axis but for the mesh, as if on it.
+
+        By an arm of micrometres springs would hold the spin next to nothing. `is_apart` tells
+        whether U is that of :meth:`about_axis`.
+        """
+        arm = U[:2] @ (self.momentum if is_apart else self.turn)
+        if mass * (arm @ arm) > ARM:
+            return U
+        U = U.copy()
+        U[:2] -= np.multiply.outer(arm, self.momentum)
+        return U
 
     def averaged(self, wave_free: np.ndarray) -> Spin:
         """Return the spin of a rotor whose matrices are means over a turn.

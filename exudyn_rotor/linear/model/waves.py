@@ -6,8 +6,6 @@ The wave n of a motion turns in the rotor frame as ``exp(i(νt − nα))``, see
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import scipy.linalg as la
 
@@ -116,33 +114,8 @@ def _new_fields(within: np.ndarray, shared: np.ndarray) -> np.ndarray:
     )
 
 
-def compressed(matrix: np.ndarray) -> np.ndarray:
-    """Return a square matrix with the same Gram matrix, where that is smaller."""
-    if matrix.shape[0] <= matrix.shape[1]:
-        return matrix
-    squares, turn = np.linalg.eigh(matrix.conj().T @ matrix)
-    return np.sqrt(np.maximum(squares, 0.0))[:, None] * turn.conj().T
-
-
-def stacked(matrices: Sequence[np.ndarray]) -> np.ndarray:
-    """Return matrices with the same Gram matrices and equally many rows, in one array."""
-    small = [compressed(X) for X in matrices]
-    result = np.zeros((len(small), max(map(len, small)), small[0].shape[1]), dtype=complex)
-    for rows, X in zip(result, small, strict=True):
-        rows[: len(X)] = X
-    return result
-
-
-def averaged(orders: np.ndarray, waves: np.ndarray, vectors: np.ndarray) -> np.ndarray:
-    """Return the mean of the `orders` (o,) over the energy of motions (s, c, k), shape (s, k).
-
-    `waves` (o, p, c) are amplitudes of each order per coordinate; 0 where there is no motion.
-    """
-    counts = np.array([orders, np.ones_like(orders)])
-    if vectors.shape[1] > len(vectors) * vectors.shape[2]:
-        energies = np.array([np.sum(np.abs(wave @ vectors) ** 2, axis=1) for wave in waves])
-        sums = np.tensordot(counts, energies, 1)
-    else:  # fewer coordinates than motions: by forms, in a fifth of the time
-        forms = np.tensordot(counts, waves.conj().swapaxes(1, 2) @ waves, 1)
-        sums = np.sum(vectors.conj() * (forms[:, None] @ vectors), axis=2).real
-    return sums[0] / np.maximum(sums[1], 1e-300)
+def compressed(rows: np.ndarray, least: float = 0.0) -> np.ndarray:
+    """Return fewest rows of the same energy ``|R x|²``, without those of `least` or less."""
+    squares, turn = np.linalg.eigh(rows.conj().T @ rows)
+    chosen = squares > least
+    return np.sqrt(squares[chosen])[:, None] * turn[:, chosen].conj().T

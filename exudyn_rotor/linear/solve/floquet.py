@@ -22,9 +22,6 @@ _STEPS = (64, 128, 256, 512, 1024)  # of a period
 _SLOW = 20.0  # |λ| over Ω up to which motions are waited for
 _STILL = 1e-6  # relative change of an exponent by twice the steps
 _LEAST = 1e-10  # of the largest multiplier: one below is rounding
-_FEWEST, _MOST = 16, 64  # steps of a period by which growth is sought
-_ROUNDING = 1e-12  # of a multiplier, by every step
-_SMALL = 1e-2  # share of Ω that a growth counts as at least
 
 
 def magnus_exponent(first: np.ndarray, second: np.ndarray) -> np.ndarray:
@@ -51,37 +48,6 @@ def _followed(system: PeriodicSystem, made: States, steps: int) -> list[np.ndarr
     for step in la.expm(exponents) if np.all(np.isfinite(exponents)) else np.nan * exponents:
         followed.append(step @ followed[-1])
     return followed
-
-
-def floquet_growth(
-    system: PeriodicSystem, made: States, tolerance: float, begin: int = 0
-) -> tuple[np.ndarray, float, int]:
-    """Return the growth of all motions, what rounding can change of it, and how many steps it took.
-
-    It begins with half of the steps that were needed last, `begin`.
-
-    The growth of those that matter: NaN where the largest one, of motions that are not neutral,
-    changes by more than the `tolerance` of its own, or of a hundredth of Ω, with twice the steps.
-    """
-    period = 2.0 * np.pi / (system.step * abs(system.speed))
-    before, steps = np.nan, max(_FEWEST, begin // 2)
-    while True:
-        with np.errstate(all="ignore"):  # too few steps of a stiff film overflow
-            last = _followed(system, made, steps)[-1]
-        multipliers = np.full(len(last), np.nan)
-        if np.all(np.isfinite(last)):
-            multipliers = np.linalg.eigvals(last)
-        growth = np.log(np.maximum(np.abs(multipliers), 1e-300)) / period
-        bound = _ROUNDING * steps / period
-        largest = growth[np.abs(growth) > bound].max(initial=-np.inf)
-        largest = np.nan if np.any(np.isnan(growth)) else largest
-        if largest == before or abs(largest - before) <= tolerance * max(
-            abs(largest), _SMALL * abs(system.speed)
-        ):
-            return growth, bound, steps
-        if steps >= _MOST:
-            return np.full_like(growth, np.nan), bound, steps
-        before, steps = largest, 2 * steps
 
 
 def floquet_motions(system: PeriodicSystem, made: States) -> Exponents:

@@ -14,6 +14,7 @@ import scipy.linalg as la
 
 from exudyn_rotor.linear.equations import PeriodicSystem
 from exudyn_rotor.linear.solve.chain import chained, reach
+from exudyn_rotor.linear.solve.state import others
 
 Harmonics = Mapping[int, np.ndarray]
 _STILL = 1e-12  # share of ω and Ω: a frequency that is zero but for rounding
@@ -21,7 +22,7 @@ _FREE = 1e-12  # share of the largest stiffness: a coordinate that nothing resis
 _NONE = 1e-14  # of matrices with diagonals of one: a motion that nothing resists
 _FAR = 1e6  # of matrices with diagonals of one: size of a solution without free motions
 _LOADED = 1e-6  # share of a load on a free motion that is the rounding of a mesh
-_SINGULAR = 1e-13  # reciprocal condition of equations without a solution
+_SINGULAR = 1e-14  # reciprocal condition of equations without a solution
 _MOST = 12  # harmonics that are added on either side, in steps of the coefficients
 
 
@@ -165,7 +166,7 @@ def _solved(
     if driven is None or not driven.shape[1]:
         still = still[~_plainly(matrices, loads, still, X)]
     for i in still:
-        X[i] = _static(matrices[i], loads[i], driven)
+        X[i] = static_motion(matrices[i], loads[i], driven)
     return X
 
 
@@ -203,11 +204,22 @@ def _one(A: np.ndarray, b: np.ndarray) -> np.ndarray:
         return np.full(len(b), np.nan, dtype=complex)
 
 
-def _static(A: np.ndarray, load: np.ndarray, driven: np.ndarray | None) -> np.ndarray:
-    """Return the motion under a constant load; free motions that it does not act on rest."""
+def static_motion(A: np.ndarray, load: np.ndarray, driven: np.ndarray | None = None) -> np.ndarray:
+    """Return the motion (k,) under a constant load; free motions that it does not act on rest.
+
+    NaN where it acts on a motion that nothing holds.
+
+    Parameters
+    ----------
+    A : ndarray, shape (k, k)
+        Stiffness.
+    load : ndarray, shape (k,)
+    driven : ndarray, shape (k, d), optional
+        Momenta of motions that a drive keeps at zero.
+    """
     if driven is not None and driven.shape[1]:
-        basis = la.null_space(driven.T)
-        return basis @ _static(basis.T @ A @ basis, basis.T @ load, None)
+        basis = others(driven, np.eye(len(A)))  # mixes no soft coordinates with stiff ones
+        return basis @ static_motion(basis.T @ A @ basis, basis.T @ load, None)
     diagonal = np.abs(A).max(axis=1)
     alone = diagonal <= _FREE * diagonal.max(initial=0.0)
     scale = 1.0 / np.sqrt(np.where(alone, 1.0, diagonal))

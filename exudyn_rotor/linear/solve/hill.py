@@ -42,12 +42,18 @@ class Exponents(NamedTuple):
 
 
 def hill_motions(
-    system: PeriodicSystem, made: States, tolerance: float, begin: int = 0
+    system: PeriodicSystem,
+    made: States,
+    tolerance: float,
+    begin: int = 0,
+    neutral: float | None = None,
 ) -> tuple[Exponents, int]:
     """Return the motions of a system, and with how many harmonics to begin at the next speed.
 
     Harmonics are added until those at the edge of the sum hold next to nothing of each motion. Fast
-    decays are not waited for. Exponents that do not get there are NaN.
+    decays are not waited for; where only the growth of the least stable motion is asked for, nor
+    are motions that decay faster than it. Growth up to `neutral` [1/s] then counts as none.
+    Exponents that do not get there are NaN.
     """
     place = begin
     while True:
@@ -58,14 +64,17 @@ def hill_motions(
         energy = np.sum(np.abs(states) ** 2, axis=1)
         energy = energy / energy.sum(axis=0)
         edges = energy[0] + energy[-1]
-        fast = -values.real > _FAST * abs(system.speed)
+        growth = values.real
+        fast = -growth > _FAST * abs(system.speed)
+        if neutral is not None:
+            fast |= growth < growth[np.abs(growth) > neutral].max(initial=-np.inf)
         done = fast | (edges <= _EDGE * tolerance)
         larger = 2 * system.size * (2 * _SIZES[min(place + 1, len(_SIZES) - 1)] + 1)
         if np.all(done) or place + 1 == len(_SIZES) or larger > _LARGEST:
             break
         place += 1
     fewer = np.all(fast | (energy[1] + energy[-2] <= _EDGE * tolerance))
-    found = fast | (edges <= _LOST)
+    found = (-growth > _FAST * abs(system.speed)) | (edges <= _LOST)
     return Exponents(np.where(found, values, np.nan), states, orders), max(place - fewer, 0)
 
 

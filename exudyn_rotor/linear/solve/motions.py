@@ -7,198 +7,251 @@ motions stand for all. A free motion, which nothing resists, has λ = 0.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_rotor.linear.equations import PeriodicSystem, UnconvergedError
-from exudyn_rotor.linear.solve.floquet import floquet_growth, floquet_motions
+from exudyn_rotor.linear.equations import PeriodicSystem
+from exudyn_rotor.linear.solve.floquet import floquet_motions
 from exudyn_rotor.linear.solve.hill import Exponents, hill_motions
 from exudyn_rotor.linear.solve.state import EPSILON, States, free_directions, others, states_of
 
 METHODS = ("auto", "hill", "floquet")
 _ROUNDING = 20.0 * EPSILON  # of the size of a state matrix: what a real part may be off by
 _REAL = 1e-9  # share of |λ|: a frequency that is rounding
+_AT_ONCE = 2_000_000  # entries of matrices that are solved at once
 
 
 @dataclass(frozen=True, eq=False)
 class Motions:
-    """Motions ``exp(λt) Σ_m X_m exp(imΩt)`` at one speed.
+    """Motions ``exp(λt) Σ_m X_m exp(imΩt)`` at s speeds, or of s models.
 
     Attributes
     ----------
-    speed : float
+    speeds : ndarray, shape (s,)
         Ω [rad/s].
-    values : ndarray of complex, shape (k,)
-        λ [1/s], Im λ ≥ 0 but for motions of periodic equations; NaN where it did not converge.
-    vectors : ndarray of complex, shape (h, c, k)
+    values : ndarray of complex, shape (s, k)
+        λ [1/s], Im λ ≥ 0 but for motions of periodic equations; NaN where it did not converge, and
+        where there are no equations.
+    vectors : ndarray of complex, shape (s, h, c, k)
         Harmonics X_m, all together of unit length.
     orders : ndarray of int, shape (h,)
         The harmonics m; only 0 of constant equations.
-    bound : float
+    bounds : ndarray, shape (s,)
         By how much rounding can change a real part [1/s].
     """
 
-    speed: float
+    speeds: np.ndarray
     values: np.ndarray
     vectors: np.ndarray
     orders: np.ndarray
-    bound: float
+    bounds: np.ndarray
+
+    @property
+    def known(self) -> np.ndarray:
+        """Speeds at which there are equations, as indices."""
+        return np.flatnonzero(~np.isnan(self.bounds))
+
+    def __getitem__(self, rows: np.ndarray | slice) -> Motions:
+        """Return the motions at some of the speeds."""
+        kept = (each[rows] for each in (self.speeds, self.values, self.vectors))
+        return Motions(*kept, self.orders, self.bounds[rows])
 
     def columns(self, chosen: np.ndarray) -> Motions:
-        """Return some of the motions."""
-        return Motions(
-            self.speed, self.values[chosen], self.vectors[:, :, chosen], self.orders, self.bound
-        )
+        """Return at each speed some of the motions, `chosen` (s, j)."""
+        values = np.take_along_axis(self.values, chosen, 1)
+        vectors = np.take_along_axis(self.vectors, chosen[:, None, None, :], 3)
+        return Motions(self.speeds, values, vectors, self.orders, self.bounds)
 
     @property
     def main(self) -> np.ndarray:
-        """The largest harmonic of every motion, shape (c, k)."""
-        strongest = np.argmax(np.linalg.norm(self.vectors, axis=1), axis=0)
-        return np.take_along_axis(self.vectors, strongest[None, None], axis=0)[0]
+        """The largest harmonic of every motion, shape (s, c, k)."""
+        if len(self.orders) == 1:
+            return self.vectors[:, 0]
+        strongest = np.argmax(np.linalg.norm(self.vectors, axis=2), axis=1)
+        return np.take_along_axis(self.vectors, strongest[:, None, None], axis=1)[:, 0]
+
+    def in_all(self, basis: np.ndarray, still: np.ndarray) -> Motions:
+        """Return motions of a `basis` (c, r) in all coordinates, after free motions (c, f).
+
+        What stands `still` has λ = 0. Each model of a stack may have its own, (s, c, …).
+        """
+        basis, still = (X if X.ndim == 3 else X[None] for X in (basis, still))
+        vectors = basis[:, None] @ self.vectors
+        vectors = vectors * (1.0 / np.linalg.norm(vectors, axis=(1, 2), keepdims=True))
+        free = np.zeros((*vectors.shape[:3], still.shape[2]), dtype=complex)
+        free[:, self.orders == 0] = (still / np.linalg.norm(still, axis=1, keepdims=True))[:, None]
+        zero = np.where(np.isnan(self.bounds)[:, None], np.nan, np.zeros(still.shape[2]))
+        values = np.hstack([zero, self.values])
+        joined = np.concatenate([free, vectors], axis=3)
+        return Motions(self.speeds, values, joined, self.orders, self.bounds)
 
 
 def motions_of(
-    systems: Sequence[PeriodicSystem | None], method: str = "auto", tolerance: float = 1e-6
-) -> list[Motions | None]:
-    """Return the motions of systems of the same coordinates; None where a system is None.
+    stack: PeriodicSystem,
+    method: str = "auto",
+    tolerance: float = 1e-6,
+    *,
+    least_stable: bool = False,
+    told: Callable[[int], object] | None = None,
+) -> Motions:
+    """Return the motions of a stack of equations; NaN where it has none.
 
     Parameters
     ----------
-    systems : sequence of PeriodicSystem or None
+    stack : PeriodicSystem
+        At s speeds.
     method : {'auto', 'hill', 'floquet'}
         For periodic equations: harmonics, or the monodromy matrix.
     tolerance : float
         Largest relative error of λ by harmonics that are left out.
-
-    Raises
-    ------
-    UnconvergedError
-        Where no speed has an answer.
+    least_stable : bool
+        Whether harmonics need to suffice for the least stable motion only.
+    told : callable, optional
+        Is told of how many speeds more are solved.
     """
-    known = [system for system in systems if system is not None]
-    if not known:
-        return [None] * len(systems)
-    reduced, free, basis = _resisted(known)
-    solved = iter(_solved(reduced, method, tolerance))
-    if basis is not None:
-        solved = (_beside(found, free, basis) for found in solved)
-    return [None if system is None else next(solved) for system in systems]
+    known = np.flatnonzero(stack.known)
+    reduced, free, basis = _resisted(stack[known])
+    if reduced.is_constant:
+        parts = _constant(reduced, told)
+    else:
+        parts = _periodic(reduced, method, tolerance, least_stable, told)
+    found = _joined(stack.speed, [(known[places], part) for places, part in parts])
+    return found if basis is None else found.in_all(basis, free)
 
 
-def margins_of(
-    systems: Sequence[PeriodicSystem], method: str = "auto", tolerance: float = 1e-6
-) -> list[float]:
-    """Return by how much the least stable motion of each system grows beyond its bound [1/s].
+def margins_of(stack: PeriodicSystem, method: str = "auto", tolerance: float = 1e-6) -> np.ndarray:
+    """Return by how much the least stable motion at each speed grows beyond its bound [1/s], (s,).
 
-    Of motions that are not neutral; less the bound where all are. The same as from
-    :func:`motions_of`, in a fraction of the time: of periodic equations by Floquet's method without
-    shapes, and by Hill's where that does not settle.
+    Of motions that are not neutral; less the bound where all are; NaN where there are no equations.
+    The same as from :func:`motions_of` for the least stable motion, of constant equations without
+    shapes.
     """
-    reduced, _, _ = _resisted(systems)
-    found = [-0.0] * len(systems)
-    constant = [i for i, s in enumerate(reduced) if s.is_constant and s.size]
-    if constant:
-        made = [states_of(reduced[i]) for i in constant]
-        for i, values, each in zip(
-            constant, np.linalg.eigvals(np.stack([each.A[0] for each in made])), made, strict=True
-        ):
-            found[i] = _margin(values, _bound(each))
-    rest, steps = [], 0
-    for i in (i for i, s in enumerate(reduced) if not s.is_constant and s.size):
-        made = states_of(reduced[i])
-        growth, bound, steps = floquet_growth(reduced[i], made, tolerance, steps)
-        found[i] = _margin(growth, max(bound, _bound(made)))
-        if method == "hill" or np.any(np.isnan(growth)):
-            rest.append(i)
-    for i, each in zip(rest, _solved([reduced[i] for i in rest], method, tolerance), strict=True):
-        found[i] = _margin(each.values, each.bound)
-    return found
+    margins, known = np.full(len(stack.speed), np.nan), np.flatnonzero(stack.known)
+    reduced, _, _ = _resisted(stack[known])
+    if not reduced.size:
+        margins[known] = -0.0
+    elif reduced.is_constant:
+        made = states_of(reduced)
+        margins[known] = _margins(np.linalg.eigvals(made.A[0]), _bounds(made))
+    else:
+        for places, part in _periodic(reduced, method, tolerance, True, None):
+            margins[known[places]] = _margins(part.values, part.bounds)
+    return margins
 
 
-def _margin(values: np.ndarray, bound: float) -> float:
-    growth = values.real[np.abs(values.real) > bound]
-    return float(growth.max(initial=0.0 if not growth.size else -np.inf) - bound)
+def _margins(values: np.ndarray, bounds: np.ndarray) -> np.ndarray:
+    moves = np.abs(values.real) > bounds[:, None]
+    growth = np.where(moves, values.real, -np.inf).max(axis=1, initial=-np.inf)
+    return np.where(np.any(moves, axis=1), growth, 0.0) - bounds
 
 
 def _resisted(
-    systems: Sequence[PeriodicSystem],
-) -> tuple[list[PeriodicSystem], np.ndarray, np.ndarray | None]:
-    """Return systems without what nothing resists at any of them, those motions, and a basis."""
-    free = free_directions([systems[0], systems[-1]] if len(systems) > 1 else [systems[0]])
+    stack: PeriodicSystem,
+) -> tuple[PeriodicSystem, np.ndarray, np.ndarray | None]:
+    """Return equations without what nothing resists at any speed, those motions, and a basis."""
+    free = free_directions(stack)
     if not free.shape[1]:
-        return list(systems), free, None
-    basis = others(free, systems[0].M)
-    return [system.projected(basis) for system in systems], free, basis
+        return stack, free, None
+    basis = others(free, stack.M if stack.M.ndim == 2 else stack.M[0])
+    return stack.projected(basis), free, basis
 
 
-def _solved(systems: list[PeriodicSystem], method: str, tolerance: float) -> list[Motions]:
-    """Return the motions of each system that something resists everywhere."""
-    made = [states_of(system) for system in systems]
-    found: list[Motions | None] = [None] * len(systems)
-    constant = [i for i, system in enumerate(systems) if system.is_constant]
-    if constant and systems[0].size:
-        matrices = np.stack([made[i].A[0] for i in constant])
-        for i, values, vectors in zip(constant, *np.linalg.eig(matrices), strict=True):
-            found[i] = _constant(systems[i].speed, values, vectors, made[i])
-    size = 0
-    for i, system in enumerate(systems):
-        if found[i] is not None:
+def _constant(
+    stack: PeriodicSystem, told: Callable[[int], object] | None = None
+) -> list[tuple[np.ndarray, Motions]]:
+    """Return the motions of constant equations, with their places in the stack."""
+    k, parts = stack.size, []
+    count = max(1, _AT_ONCE // (2 * k + 1) ** 2)
+    for first in range(0, len(stack.speed), count):
+        places = np.arange(first, min(first + count, len(stack.speed)))
+        few = stack[places]
+        made = states_of(few)
+        values, vectors = np.linalg.eig(made.A[0])
+        values, chosen = values.astype(complex), one_of_each_pair(values)
+        shapes = made.shape @ np.take_along_axis(vectors, chosen[:, None], 2)
+        shapes = shapes / np.linalg.norm(shapes, axis=1, keepdims=True)
+        values = np.take_along_axis(values, chosen, 1)
+        given = values, shapes[:, None].astype(complex), np.array([0]), _bounds(made)
+        parts.append((places, Motions(few.speed, *given)))
+        if told is not None:
+            told(len(places))
+    return parts
+
+
+def _periodic(
+    stack: PeriodicSystem,
+    method: str,
+    tolerance: float,
+    least_stable: bool,
+    told: Callable[[int], object] | None,
+) -> list[tuple[np.ndarray, Motions]]:
+    """Return the motions of equations that repeat every revolution, one speed after the other."""
+    parts, size = [], 0
+    for place in range(len(stack.speed)):
+        places, system = np.array([place]), stack[place]
+        if system.is_constant:  # at rest
+            parts += [(places, part) for _, part in _constant(joined_at_rest(system))]
             continue
-        if not system.size:
-            none = np.zeros((1, 0, 0), dtype=complex)
-            found[i] = Motions(system.speed, none[0, 0], none, np.array([0]), 0.0)
-            continue
+        made = states_of(system)
+        bound = float(_bounds(made))
         if method == "floquet":
-            exponents = floquet_motions(system, made[i])
+            exponents = floquet_motions(system, made)
         else:
-            exponents, size = hill_motions(system, made[i], tolerance, size)
-        found[i] = _periodic(system.speed, exponents, made[i])
-    return found
+            neutral = bound if least_stable else None
+            exponents, size = hill_motions(system, made, tolerance, size, neutral)
+        parts.append((places, _ascending(system.speed, exponents, made, bound)))
+        if told is not None:
+            told(1)
+    return parts
 
 
-def _bound(made: States) -> float:
-    sizes = (np.linalg.norm(X, 1) * np.linalg.norm(X, np.inf) for X in made.A.values())
-    return float(_ROUNDING * np.sum(np.sqrt(list(sizes))))
+def joined_at_rest(system: PeriodicSystem) -> PeriodicSystem:
+    """Return equations at rest, the sum of all their harmonics, as a stack of one speed."""
+    M, D, K = (X[None] for X in system.matrices())
+    return PeriodicSystem(np.array([system.speed]), M, {0: D}, {0: K}, system.H)
 
 
-def _constant(speed: float, values: np.ndarray, vectors: np.ndarray, made: States) -> Motions:
-    chosen = one_of_each_pair(values)
-    shapes = made.shape @ vectors[:, chosen]
-    shapes = shapes / np.linalg.norm(shapes, axis=0)
-    return Motions(speed, values[chosen], shapes[None], np.array([0]), _bound(made))
+def _ascending(speed: float, found: Exponents, made: States, bound: float) -> Motions:
+    """Return motions in ascending order, in the coordinates of the system."""
+    vectors = made.shape @ found.states
+    sizes = np.linalg.norm(vectors, axis=(0, 1))
+    vectors = vectors / np.where(sizes > 0.0, sizes, 1.0)
+    order = np.lexsort((found.values.real, np.abs(found.values.imag)))
+    given = found.values[order][None], vectors[None, :, :, order], found.orders
+    return Motions(np.array([speed]), *given, np.array([bound]))
+
+
+def _joined(speeds: np.ndarray, parts: Sequence[tuple[np.ndarray, Motions]]) -> Motions:
+    """Return parts, each with its places among the speeds (s,), as one; NaN elsewhere."""
+    if len(parts) == 1 and len(parts[0][0]) == len(speeds):
+        return parts[0][1]
+    orders = np.unique(np.concatenate([part.orders for _, part in parts]))
+    _, _, c, k = parts[0][1].vectors.shape
+    values, bounds = np.full((len(speeds), k), np.nan + 0j), np.full(len(speeds), np.nan)
+    vectors = np.full((len(speeds), len(orders), c, k), np.nan + 0j)
+    for places, part in parts:
+        values[places], bounds[places], vectors[places] = part.values, part.bounds, 0.0
+        vectors[np.ix_(places, np.searchsorted(orders, part.orders))] = part.vectors
+    return Motions(speeds, values, vectors, orders, bounds)
+
+
+def _bounds(made: States) -> np.ndarray:
+    """Return by how much rounding can change a real part [1/s], (s,) of a stack."""
+    absolute = [np.abs(X) for X in made.A.values()]
+    sizes = (
+        X.sum(axis=-1).max(axis=-1, initial=0.0) * X.sum(axis=-2).max(axis=-1, initial=0.0)
+        for X in absolute
+    )
+    return _ROUNDING * sum(np.sqrt(size) for size in sizes)
 
 
 def one_of_each_pair(values: np.ndarray) -> np.ndarray:
-    """Return which of 2k eigenvalues of a real matrix stand for all, k, ascending in frequency."""
-    count = len(values) // 2
+    """Return which of 2k eigenvalues of real matrices (s, 2k) stand for all, (s, k), ascending."""
     real = np.abs(values.imag) <= _REAL * np.abs(values.real)
-    upper = np.flatnonzero(~real & (values.imag > 0.0))
-    single = np.flatnonzero(real)
-    single = single[np.argsort(-values[single].real, kind="stable")]
-    chosen = np.r_[upper, single[: count - len(upper)]]
-    return chosen[np.lexsort((values[chosen].real, np.abs(values[chosen].imag)))]
-
-
-def _periodic(speed: float, found: Exponents, made: States) -> Motions:
-    """Return motions in ascending order, in the coordinates of the system."""
-    vectors = made.shape @ found.states
-    sizes = np.linalg.norm(vectors.reshape(-1, len(found.values)), axis=0)
-    vectors = vectors / np.where(sizes > 0.0, sizes, 1.0)
-    order = np.lexsort((found.values.real, np.abs(found.values.imag)))
-    return Motions(speed, found.values[order], vectors[:, :, order], found.orders, _bound(made))
-
-
-def _beside(found: Motions, free: np.ndarray, basis: np.ndarray) -> Motions:
-    """Return the motions of a basis together with free ones, in all coordinates."""
-    vectors = np.einsum("ck,hkj->hcj", basis, found.vectors)
-    vectors = vectors / np.linalg.norm(vectors, axis=(0, 1))
-    still = np.zeros((len(found.orders), *free.shape), dtype=complex)
-    still[list(found.orders).index(0)] = free / np.linalg.norm(free, axis=0)
-    values = np.r_[np.zeros(free.shape[1]), found.values]
-    joined = np.concatenate([still, vectors], axis=2)
-    return Motions(found.speed, values, joined, found.orders, found.bound)
-
-
-__all__ = ["METHODS", "Motions", "UnconvergedError", "motions_of", "one_of_each_pair"]
+    lower = ~real & (values.imag <= 0.0)
+    chosen = np.lexsort((np.where(real, -values.real, 0.0), real + 2.0 * lower), axis=-1)
+    chosen = chosen[:, : values.shape[1] // 2]
+    kept = np.take_along_axis(values, chosen, 1)
+    return np.take_along_axis(chosen, np.lexsort((kept.real, np.abs(kept.imag)), axis=-1), 1)

@@ -21,57 +21,69 @@ _FREE = 1e-12  # of matrices with diagonals of one: a free motion
 
 
 class States(NamedTuple):
-    """``ż = Σ A_n exp(inθ) z`` and ``x = shape z``: Fourier terms A_n (2k, 2k), shape (k, 2k)."""
+    """``ż = Σ A_n exp(inθ) z`` and ``x = shape z``: Fourier terms A_n (2k, 2k), shape (k, 2k).
+
+    Of a stack of equations both have the axis of the speeds first.
+    """
 
     A: dict[int, np.ndarray]
     shape: np.ndarray
 
 
 def states_of(system: PeriodicSystem) -> States:
-    """Return the first-order form of a system."""
+    """Return the first-order form of a system, or of a stack."""
     M, k = system.M, system.size
     root = None
     if np.any(np.eye(k) != M):  # Lᵀx are mass-orthonormal coordinates
-        root = la.solve_triangular(la.cholesky(M, lower=True), np.eye(k), lower=True).T
+        root = _transposed(np.linalg.inv(np.linalg.cholesky(M)))
     D, K = _terms(system, root)
-    symmetric = 0.5 * (K[0] + K[0].T)
+    symmetric = 0.5 * (K[0] + _transposed(K[0]))
     squares, V = np.linalg.eigh(symmetric)
     omega = np.sqrt(np.abs(squares))
-    omega = np.maximum(omega, max(_LEAST * omega.max(initial=0.0), 1e-3))
-    A = {}
+    least = _LEAST * omega.max(axis=-1, keepdims=True, initial=0.0)
+    omega = np.maximum(omega, np.maximum(least, 1e-3))
+    A, diagonal, across = {}, np.arange(k), _transposed(V)
     for n in sorted({*D, *K}):
-        damping, stiffness = (V.T @ X[n] @ V if n in X else np.zeros((k, k)) for X in (D, K))
-        if n == 0:
-            stiffness = V.T @ (K[0] - symmetric) @ V + np.diag(squares)
-        A[n] = np.zeros((2 * k, 2 * k), dtype=stiffness.dtype if n == 0 else complex)
-        A[n][k:, :k], A[n][k:, k:] = -stiffness / omega, -damping
-    A[0][:k, k:] = np.diag(omega)
-    shape = (V if root is None else root @ V) / omega
-    return States(A, np.hstack([shape, np.zeros((k, k))]))
+        A[n] = np.zeros((*V.shape[:-2], 2 * k, 2 * k), dtype=complex if n else float)
+        if n in D:
+            A[n][..., k:, k:] = -(across @ D[n] @ V)
+        if n in K:
+            stiffness = across @ (K[0] - symmetric if n == 0 else K[n]) @ V
+            A[n][..., k:, :k] = -stiffness / omega[..., None, :]
+    A[0][..., k + diagonal, diagonal] -= squares / omega
+    A[0][..., diagonal, k + diagonal] = omega
+    shape = np.zeros((*V.shape[:-1], 2 * k))
+    shape[..., :k] = (V if root is None else root @ V) / omega[..., None, :]
+    return States(A, shape)
+
+
+def _transposed(X: np.ndarray) -> np.ndarray:
+    return np.swapaxes(X, -1, -2)
 
 
 def _terms(system: PeriodicSystem, root: np.ndarray | None) -> tuple[dict, dict]:
     """Return damping and stiffness per unit of mass; at rest the sum of all harmonics."""
-    if system.speed == 0.0:
+    D, K = system.D, system.K
+    if np.ndim(system.speed) == 0 and system.speed == 0.0:
         _, D, K = system.matrices()
         D, K = {0: D}, {0: K}
-    else:
-        D, K = system.D, system.K
     if root is None:
         return dict(D), dict(K)
-    return tuple({n: root.T @ X @ root for n, X in terms.items()} for terms in (D, K))
+    across = _transposed(root)
+    return tuple({n: across @ X @ root for n, X in terms.items()} for terms in (D, K))
 
 
-def free_directions(systems: list[PeriodicSystem]) -> np.ndarray:
-    """Return motions that neither stiffness nor damping resist at any of some speeds.
+def free_directions(stack: PeriodicSystem) -> np.ndarray:
+    """Return motions that neither stiffness nor damping resist at the first and last speed.
 
     Columns, mass-orthonormal, shape (k, f). Coordinates by themselves come as they are.
     """
-    k = systems[0].size
-    matrices = [X for s in systems for terms in (s.D, s.K) for X in terms.values()]
+    k, M = stack.size, stack.M if stack.M.ndim == 2 else stack.M[0]
+    ends = [0, -1] if len(stack.speed) > 1 else [0]
+    matrices = [X[i] for terms in (stack.D, stack.K) for X in terms.values() for i in ends]
     parts = [part for X in matrices for part in (X.real, X.imag) if np.any(part)]
     if not parts:
-        return _orthonormal(np.eye(k), systems[0].M)
+        return _orthonormal(np.eye(k), M)
     rows, columns = (np.max([np.abs(X).max(axis=axis) for X in parts], axis=0) for axis in (1, 0))
     size = np.maximum(rows, columns)
     alone = size <= _FREE * size.max()
@@ -82,7 +94,7 @@ def free_directions(systems: list[PeriodicSystem]) -> np.ndarray:
     free[np.flatnonzero(alone), np.arange(int(alone.sum()))] = 1.0
     combined = vectors[values <= _FREE * values[0]].T
     free[~alone, int(alone.sum()) :] = scale[~alone, None] * combined
-    return _orthonormal(free, systems[0].M)
+    return _orthonormal(free, M)
 
 
 def _orthonormal(columns: np.ndarray, M: np.ndarray) -> np.ndarray:

@@ -113,12 +113,12 @@ def sensitivity(
         for element, motion in zip(assembly.elements, assembly.motions, strict=True)
         if isinstance(element.law, ControlledSupport)
     ]
-    motions = motions_over(model, [speed], held=True)[0]
+    motions = motions_over(model, [speed], held=True)
     named = Content.of(model).named(motions)
     growth = motions.values.real
-    if np.nanmax(growth) > motions.bound:
+    if np.nanmax(growth) > motions.bounds[0]:
         raise _unstable(named, [motion for _, motion in loops], [n for n, _ in bearings], speed)
-    own = named.inertial[np.abs(growth) > motions.bound]
+    own = named.inertial[np.abs(growth) > motions.bounds[0]]
     values = np.union1d(values, own[(own > values[0]) & (own < values[-1])])
     rows = [
         _of_axis(model, *loop, axis, values, speed)
@@ -151,8 +151,8 @@ def _unstable(
 
     `loops` are the motions of the controllers of bearings of the `names`.
     """
-    which = least_stable_of(named.motions)
-    shape = named.motions.main[:, which]
+    which = 0, int(least_stable_of(named.motions)[0])
+    shape = named.motions.main[0, :, which[1]]
     moves = [np.linalg.norm([U[_OWN] @ shape for U in loop.values()]) for loop in loops]
     return ValueError(
         f"supports: unstable at {speed:g} rad/s: a motion of {named.inertial[which]:.4g} rad/s, in "

@@ -19,7 +19,7 @@ from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal import basis_error
 from exudyn_rotor.linear.modal.tracking import track
-from exudyn_rotor.linear.modal.whirl import UNKNOWN, Content, Named
+from exudyn_rotor.linear.modal.whirl import Content, Named, rounded
 from exudyn_rotor.linear.model.build import (
     Target,
     linear_model,
@@ -113,9 +113,7 @@ def stability(
         model, values, held=True, method=method, tolerance=tolerance, progress=progress,
         label="stability",
     )  # fmt: skip
-    content = Content.of(model)
-    named = [None if each is None else content.named(each) for each in motions]
-    result = _collected(values, named, model, tolerance, accuracy)
+    result = _collected(Content.of(model).named(motions), model, tolerance, accuracy)
     _warn_of_basis(result, model, accuracy)
     return result
 
@@ -127,10 +125,11 @@ def check_options(method: str, tolerance: float, accuracy: float | None) -> None
     options.check_basis_accuracy(accuracy)
 
 
-def least_stable_of(motions: Motions) -> int:
-    """Return which motion is the least stable one of those that are not neutral."""
+def least_stable_of(motions: Motions) -> np.ndarray:
+    """Return which motion is the least stable one of those that are not neutral, (s,)."""
     growth = motions.values.real
-    return int(np.argmax(np.where(np.abs(growth) > motions.bound, growth, -np.inf)))
+    moves = np.abs(growth) > motions.bounds[:, None]
+    return np.argmax(rounded(np.where(moves, growth, np.nan), nan=-2.0), axis=1)
 
 
 def warn_of_refused(refused: Sequence[tuple[str, Exception]], count: int) -> None:
@@ -147,65 +146,40 @@ def warn_of_refused(refused: Sequence[tuple[str, Exception]], count: int) -> Non
 
 
 def _collected(
-    speeds: np.ndarray,
-    named: list[Named | None],
-    model: LinearModel,
-    tolerance: float,
-    accuracy: float | None,
+    named: Named, model: LinearModel, tolerance: float, accuracy: float | None
 ) -> Stability:
     """Return the result, in each row the least stable motion first."""
-    shape = len(speeds), next(len(each.inertial) for each in named if each is not None)
-    exponents, inertial = np.full(shape, np.nan, dtype=complex), np.full(shape, np.nan)
-    codes, diameters = np.full(shape, UNKNOWN, dtype=np.int64), np.full(shape, -1, dtype=np.int64)
-    bounds = np.full(len(speeds), np.nan)
-    for row, found in enumerate(named):
-        if found is None:
-            continue
-        growth, bounds[row] = found.motions.values.real, found.motions.bound
-        order = np.lexsort((found.inertial, -growth))
-        found, growth = found.columns(order), growth[order]
-        exponents[row] = growth + 1j * np.where(np.isnan(growth), np.nan, found.rotor)
-        inertial[row] = np.where(np.isnan(growth), np.nan, found.inertial)
-        codes[row], diameters[row] = found.codes, found.diameters
-    growth = np.fmax.reduce(exponents.real, axis=1, initial=np.nan)
+    found = named.columns(
+        np.lexsort((rounded(named.inertial), -rounded(named.motions.values.real, nan=-2.0)))
+    )
+    values = found.motions.values
+    growth = np.fmax.reduce(values.real, axis=1, initial=np.nan)
     return Stability(
-        speeds=speeds,
-        exponents=exponents,
+        speeds=found.motions.speeds,
+        exponents=values.real + 1j * np.where(np.isnan(values), np.nan, found.rotor),
         growth=growth,
-        stable=growth <= bounds,
-        bounds=bounds,
-        frequencies_inertial=inertial,
-        whirl_codes=codes,
-        nodal_diameters=diameters,
+        stable=growth <= found.motions.bounds,
+        bounds=found.motions.bounds,
+        frequencies_inertial=np.where(np.isnan(values), np.nan, found.inertial),
+        whirl_codes=found.codes,
+        nodal_diameters=found.diameters,
         tolerance=tolerance,
-        basis_shifts=_shifts(model, speeds, named, accuracy),
+        basis_shifts=_shifts(model, named, accuracy),
         stiffening=model.stiffening,
         axes=model.axes,
         unevenness=model.unevenness,
     )
 
 
-def _shifts(
-    model: LinearModel, speeds: np.ndarray, named: list[Named | None], accuracy: float | None
-) -> np.ndarray | None:
+def _shifts(model: LinearModel, named: Named, accuracy: float | None) -> np.ndarray | None:
     """Return the shifts (s,) of the least stable motions by what the basis leaves out."""
     if not basis_error.is_known(model, accuracy):
         return None
-    if model.is_full:
-        return np.zeros(len(speeds), dtype=complex)
-    columns, _ = track(named, speeds, model.mass_matrix)
-    tracked = [
-        None if each is None else each.columns(row)
-        for each, row in zip(named, columns, strict=True)
-    ]
-    shifts = basis_error.shifts_over(model, speeds, tracked, held=True)
-    return np.array(
-        [
-            np.nan if each is None else row[least_stable_of(each.motions)]
-            for each, row in zip(tracked, shifts, strict=True)
-        ],
-        dtype=complex,
-    )
+    tracked = named.columns(track(named, model.mass_matrix)[0])
+    shifts = basis_error.shifts_over(model, tracked, held=True)
+    if shifts is None:
+        return None
+    return np.take_along_axis(shifts, least_stable_of(tracked.motions)[:, None], 1)[:, 0]
 
 
 def _warn_of_basis(result: Stability, model: LinearModel, accuracy: float | None) -> None:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from operator import itemgetter
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from tqdm import tqdm
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.checks import ascending
-from exudyn_rotor.linear.equations import PeriodicSystem
+from exudyn_rotor.linear.equations import PeriodicSystem, joined
 from exudyn_rotor.linear.modal import basis_error
 from exudyn_rotor.linear.modal.basis_error import NOT_KNOWN
 from exudyn_rotor.linear.modal.whirl import (
@@ -24,7 +26,6 @@ from exudyn_rotor.linear.modal.whirl import (
 )
 from exudyn_rotor.linear.model.build import Target, linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.over import motions_over
 from exudyn_rotor.linear.solve.motions import Motions, motions_of
 from exudyn_rotor.linear.stability.stability import (
     check_options,
@@ -285,51 +286,97 @@ def stability_map(
         raise ValueError(f"labels: needs two names, of x and of y, got {checks.shown(labels)}")
     grid = [ascending(values, name) for values, name in ((x, "x"), (y, "y"))]
     shape = len(grid[0]), len(grid[1])
-    growth, least, inertial, errors = (np.full(shape, np.nan) for _ in range(4))
-    stable, codes = np.zeros(shape, dtype=bool), np.full(shape, UNKNOWN, dtype=np.int64)
-    diameters = np.full(shape, -1, dtype=np.int64)
     judged = {(a, b) for a in (0, shape[0] - 1) for b in (0, shape[1] - 1)}
     judged.add((shape[0] // 2, shape[1] // 2))
-    refused, contents, worst = [], {}, (0.0, "", None)
-    places = list(np.ndindex(*shape))
-    if progress:
-        from tqdm import tqdm
-
-        places = tqdm(places, desc="stability map")
-    for at in places:
+    refused, alike, worst = [], {}, (0.0, "", None)
+    for at in tqdm(list(np.ndindex(*shape)), desc="stability map", disable=not progress):
         point = float(grid[0][at[0]]), float(grid[1][at[1]])
         shown = f"({point[0]:.5g}, {point[1]:.5g})"
         try:
-            built = _built(build, point)
-            motions = _motions(built, method, tolerance)
+            one = _Point.of(at, shown, _built(build, point))
         except ValueError as error:
             refused.append((shown, error))
+        else:
+            alike.setdefault(one.kind, []).append(one)
+    warn_of_refused(refused, shape[0] * shape[1])
+    made = {name: np.full(shape, np.nan) for name in ("growth", "least", "inertial", "errors")}
+    stable, codes = np.zeros(shape, dtype=bool), np.full(shape, UNKNOWN, dtype=np.int64)
+    diameters = np.full(shape, -1, dtype=np.int64)
+    for points in alike.values():
+        places = tuple(np.array([one.at for one in points]).T)
+        motions = _motions(points, method, tolerance)
+        which = least_stable_of(motions)[:, None]
+        made["growth"][places] = np.fmax.reduce(motions.values.real, axis=1, initial=np.nan)
+        stable[places] = made["growth"][places] <= motions.bounds
+        value = np.take_along_axis(motions.values, which, 1)[:, 0]
+        made["least"][places], made["inertial"][places] = value.real, np.abs(value.imag)
+        if points[0].model is None:
             continue
-        growth[at], which = np.nanmax(motions.values.real), least_stable_of(motions)
-        least[at], stable[at] = motions.values[which].real, growth[at] <= motions.bound
-        inertial[at] = abs(motions.values[which].imag)
-        if isinstance(built, PeriodicSystem):
-            continue
-        named = _content_of(built[0], contents).named(motions)
-        inertial[at], codes[at], diameters[at] = (each[which] for each in named[1:2] + named[3:])
-        if at in judged and basis_error.is_known(built[0], accuracy):
-            errors[at] = _basis_error(*built, named, which)
-            one = np.nan_to_num(errors[at]), shown, built[0]
-            worst = max(worst, one, key=lambda each: each[0])
-    warn_of_refused(refused, growth.size)
+        named = Content.of(points[0].model).named(motions)
+        found = named.columns(which)
+        made["inertial"][places], codes[places] = found.inertial[:, 0], found.codes[:, 0]
+        diameters[places] = found.diameters[:, 0]
+        for row, one in enumerate(points):
+            if one.at in judged and basis_error.is_known(one.model, accuracy):
+                error = _basis_error(one.model, named.rows([row]), which[[row]])
+                made["errors"][one.at] = error
+                worst = max(worst, (np.nan_to_num(error), one.shown, one.model), key=itemgetter(0))
     if worst[2] is not None:
         basis_error.warn(worst[0], f"the least stable motion at {worst[1]}", worst[2], accuracy)
     return StabilityMap(
         *grid,
-        growth,
+        made["growth"],
         stable,
         names,
-        basis_errors=None if np.all(np.isnan(errors)) else errors,
-        frequencies_inertial=inertial,
+        basis_errors=None if np.all(np.isnan(made["errors"])) else made["errors"],
+        frequencies_inertial=made["inertial"],
         whirl_codes=codes,
         nodal_diameters=diameters,
-        log_decrement=damping_of(least, inertial)[1],
+        log_decrement=damping_of(made["least"], made["inertial"])[1],
     )
+
+
+class _Point(NamedTuple):
+    """A point of a map: its place, its name, its model, its equations without what nothing holds.
+
+    `basis` has the motions of these, `neutral` the others; points of one `kind` have equally many
+    of both, in the same coordinates.
+    """
+
+    at: tuple[int, int]
+    shown: str
+    model: LinearModel | None
+    system: PeriodicSystem
+    basis: np.ndarray
+    neutral: np.ndarray
+    kind: tuple
+
+    @classmethod
+    def of(
+        cls, at: tuple[int, int], shown: str, built: PeriodicSystem | tuple[LinearModel, float]
+    ) -> _Point:
+        """Make a point of a model and a speed, or of equations."""
+        if isinstance(built, PeriodicSystem):
+            kept = np.eye(built.size)
+            return cls(at, shown, None, built, kept, kept[:, :0], (built.size, built.step))
+        model, speed = built
+        system, basis, neutral = model.at(speed), model.moving_basis, model.neutral_motions
+        neutral = neutral[:, : neutral.shape[1] - model.free_spins.shape[1]]
+        if basis is None:
+            basis = np.eye(system.size)
+        else:
+            system = system.projected(basis)
+        same = *map(id, model.rotors.values()), *model.ratios.values(), id(model.foundation)
+        kind = *same, model.axes, model.coordinates, basis.shape, neutral.shape[1], system.step
+        return cls(at, shown, model, system, basis, neutral, kind)
+
+
+def _motions(points: Sequence[_Point], method: str, tolerance: float) -> Motions:
+    """Return the motions at points of one kind."""
+    stack = joined([one.system for one in points])
+    found = motions_of(stack, method, tolerance, least_stable=True)
+    bases, neutral = (np.array([each[i] for each in points]) for i in (4, 5))
+    return found.in_all(bases, neutral)
 
 
 def _built(
@@ -348,27 +395,10 @@ def _built(
     return linear_model(built[0]), speed
 
 
-def _motions(
-    built: PeriodicSystem | tuple[LinearModel, float], method: str, tolerance: float
-) -> Motions:
-    if isinstance(built, PeriodicSystem):
-        return motions_of([built], method, tolerance)[0]
-    model, speed = built
-    return motions_over(model, [speed], held=True, method=method, tolerance=tolerance)[0]
-
-
-def _content_of(model: LinearModel, contents: dict) -> Content:
-    """Return the forms of a model, the same for models of the same coordinates."""
-    key = (tuple(map(id, model.rotors.values())), tuple(model.ratios.values()), model.axes,
-           model.coordinates, id(model.foundation))  # fmt: skip
-    if key not in contents:
-        contents[key] = (Content.of(model), model)  # the model keeps the objects of the key alive
-    return contents[key][0]
-
-
-def _basis_error(model: LinearModel, speed: float, named: Named, which: int) -> float:
+def _basis_error(model: LinearModel, named: Named, which: np.ndarray) -> float:
     """Return the relative error of the least stable motion; NaN where it is not found again."""
-    at = np.array([speed])
-    shift = basis_error.shifts_over(model, at, [named], held=True)[:, [which]]
-    given = named.motions.values.real[None, [which]], named.inertial[None, [which]]
-    return float(basis_error.relative_errors(shift, *given, at)[0, 0])
+    shift = np.take_along_axis(basis_error.shifts_over(model, named, held=True), which, 1)
+    growth, inertial = (
+        np.take_along_axis(X, which, 1) for X in (named.motions.values.real, named.inertial)
+    )
+    return float(basis_error.relative_errors(shift, growth, inertial, named.motions.speeds)[0, 0])

@@ -347,25 +347,25 @@ def _limits(
         width = ends[place + 1 if onset else place - 1] - value
         beside = value + np.sign(width) * min(_ASIDE * span, 0.5 * abs(width))
         model, speed = growth.model_at(beside)
-        motions = motions_over(model, [speed], held=True, **growth.given)[0]
+        motions = motions_over(model, [speed], held=True, **growth.given)
         if id(model) not in contents:
             contents[id(model)] = Content.of(model)
         named = contents[id(model)].named(motions)
-        which = least_stable_of(motions)
-        name = named.inertial[which], int(named.codes[which]), int(named.diameters[which])
+        which = int(least_stable_of(motions)[0])
+        name = tuple(each[0, which] for each in (named.inertial, named.codes, named.diameters))
         shift = None
         if basis_error.is_known(model, accuracy):
             slope = (growth(beside) - growth(value)) / (beside - value)
-            shift = _shift(model, speed, named, which, slope if onset else min(slope, 0.0))
+            shift = _shift(model, named, which, slope if onset else min(slope, 0.0))
         limits.append(_Limit(value, onset, name, shift, model))
     return limits
 
 
-def _shift(model: LinearModel, speed: float, named: Named, which: int, slope: float) -> float:
+def _shift(model: LinearModel, named: Named, which: int, slope: float) -> float:
     """Return how far a limit moves by the shift of the growth over its slope."""
     if model.is_full:
         return 0.0
-    shift = basis_error.shifts_over(model, np.array([speed]), [named], held=True)[0, which].real
+    shift = basis_error.shifts_over(model, named, held=True)[0, which].real
     return float(-shift / slope) if slope else np.nan
 
 

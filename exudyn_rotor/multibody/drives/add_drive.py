@@ -7,22 +7,20 @@ from typing import Any
 
 import exudyn
 import numpy as np
-from exudyn.itemInterface import (
-    CoordinateSpringDamper,
-    MarkerNodeCoordinate,
-    NodePointGround,
-    RigidBodySpringDamper,
-)
+from exudyn.itemInterface import CoordinateSpringDamper, MarkerNodeCoordinate, NodePointGround
 
 from exudyn_rotor import checks
 from exudyn_rotor.drives.drive import Drive
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.sensors import add_function_sensor
-from exudyn_rotor.multibody.supports.seats import Base, Seat, rigid_marker
-from exudyn_rotor.multibody.supports.support_connectors import PYTHON, SYMBOLIC, symbolic_function
+from exudyn_rotor.multibody.supports.connector import Connector, Force
+from exudyn_rotor.multibody.supports.ends import BaseEnd, RotorEnd
+from exudyn_rotor.multibody.supports.native import PYTHON, SYMBOLIC, symbolic_function
+from exudyn_rotor.multibody.supports.seats import Base, Seat
 
 _KINDS = exudyn.OutputVariableType
+_STEP = 1e-6  # of the speed, or of 1 rad/s
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +37,8 @@ class SceneDrive:
         Its connector.
     evaluation : str
         Who evaluates it in a time step.
+    connector : DriveConnector or None
+        Its law by the coordinates of the rotor and of the base; None for the whole rotor.
     """
 
     body: RotorBody | FullRotorBody
@@ -46,6 +46,7 @@ class SceneDrive:
     at: str | None
     object: exudyn.ObjectIndex
     evaluation: str
+    connector: DriveConnector | None = None
 
     @property
     def uses_python(self) -> bool:
@@ -65,13 +66,15 @@ class SceneDrive:
         TypeError, ValueError
             For other options.
         """
-        law = self.drive.law
+        law, made = self.drive.law, self.connector
+        node, spin = self.body.nodes["rigid"], self.body.locks.spin
 
         def output(mbs, t, sensors, factors, configuration):
-            if self.at is None:
-                speed = float(mbs.GetObjectOutput(self.object, _KINDS.Velocity))
+            if made is None:
+                speed = float(mbs.GetNodeOutput(node, _KINDS.Coordinates_t, configuration)[spin])
             else:
-                speed = float(mbs.GetObjectOutput(self.object, _KINDS.AngularVelocityLocal)[2])
+                made.read(*made.state(mbs, configuration))
+                speed = made.speed
             torque = float(law(speed, t))
             return [torque, torque * speed]
 
@@ -195,30 +198,45 @@ def _on_the_spin(body: RotorBody | FullRotorBody, drive: Drive) -> tuple[exudyn.
     def force(mbs, t, item, u, v, stiffness, damping, offset):
         return -law(v, t)
 
-    return _added(body, drive, item, force, "springForceUserFunction")
+    if drive.is_formula:
+        force = symbolic_function(mbs, force, item, "springForceUserFunction")
+    item.springForceUserFunction = force
+    return mbs.AddObject(item), SYMBOLIC if drive.is_formula else PYTHON
 
 
 def _on_an_interface(
     body: RotorBody | FullRotorBody, drive: Drive, at: str, seat: Seat
-) -> tuple[exudyn.ObjectIndex, str]:
-    law, formula = drive.law, drive.is_formula
-    item = RigidBodySpringDamper(
-        markerNumbers=[seat.marker(body.mbs), rigid_marker(body, at)],
-        stiffness=np.zeros((6, 6)),
-        damping=np.zeros((6, 6)),
-    )
-
-    def torque(mbs, t, item, u, angles, v, omega, stiffness, damping, r0, r1, offset):
-        values = [0.0, 0.0, 0.0, 0.0, 0.0, -law(omega[2], t)]
-        return exudyn.symbolic.Vector(values) if formula else values
-
-    return _added(body, drive, item, torque, "springForceTorqueUserFunction")
+) -> tuple[exudyn.ObjectIndex, str, DriveConnector]:
+    made = DriveConnector(drive, RotorEnd(body, at), seat.end(body.mbs))
+    return body.mbs.AddObject(made.item()), PYTHON, made
 
 
-def _added(
-    body: RotorBody | FullRotorBody, drive: Drive, item: Any, function: Any, name: str
-) -> tuple[exudyn.ObjectIndex, str]:
-    if drive.is_formula:
-        function = symbolic_function(body.mbs, function, item, name)
-    setattr(item, name, function)
-    return body.mbs.AddObject(item), SYMBOLIC if drive.is_formula else PYTHON
+class DriveConnector(Connector):
+    """A torque about the axis by the speed of an interface against what carries the stator."""
+
+    whole = True
+
+    def __init__(self, drive: Drive, end: RotorEnd, base: BaseEnd | None) -> None:
+        super().__init__(end, base)
+        self._law = drive.law
+
+    @property
+    def speed(self) -> float:
+        """Speed of the interface against the base [rad/s]."""
+        turning = self.end.speed + self.end.tilt_rate[2]
+        return turning - (0.0 if self.base is None else self.base.speed)
+
+    def wrench(self, t: float) -> tuple:
+        """Return the torque on the rotor."""
+        return 0.0, 0.0, 0.0, (0.0, 0.0, float(self._law(self.speed, t)))
+
+    def tangent(self, t: float) -> Force:
+        """Return the torque, its derivative by the speed, and the row (1, size)."""
+        torque, step = self._law(self.speed, t), _STEP * max(abs(self.speed), 1.0)
+        try:
+            ahead = self._law(self.speed + step, t)
+        except ValueError:  # at the end of a table
+            ahead, step = self._law(self.speed - step, t), -step
+        damping = np.array([[(torque - ahead) / step]])
+        rows = self.rows()[5:], self.rate_rows()[5:]
+        return Force(np.array([torque]), *rows, 0.0 * damping, damping)

@@ -6,31 +6,28 @@ both interfaces: action and reaction are exact, and the Jacobian has what couple
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import exudyn
 import numpy as np
-from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 
 from exudyn_rotor import checks
 from exudyn_rotor.drives.connection import Connection
 from exudyn_rotor.multibody.drives.add_drive import check_turning_interface
-from exudyn_rotor.multibody.drives.interface_coordinates import InterfaceCoordinates
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.sensors import add_function_sensor
+from exudyn_rotor.multibody.supports.connector import Connector, Force
+from exudyn_rotor.multibody.supports.ends import RotorEnd
+from exudyn_rotor.multibody.supports.native import PYTHON
 from exudyn_rotor.multibody.supports.seats import Seat
-from exudyn_rotor.multibody.supports.support_connectors import PYTHON
 from exudyn_rotor.solid.places import off_place
 from exudyn_rotor.theory.formulation import ConstantSpeed, PrescribedMotion, start_values
 
-_KINDS = exudyn.OutputVariableType
 _SAME_SPEED = 1e-9  # share of a speed by which constant ones may differ
 _SHAFTS = (ConstantSpeed, PrescribedMotion)
 Body = RotorBody | FullRotorBody
-State = Callable[[float, Any, Any], tuple[np.ndarray, np.ndarray, np.ndarray]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,8 +42,8 @@ class SceneConnection:
     at : str
         Its interface.
     object : ObjectIndex
-    nodes : tuple of NodeIndex
-        Nodes whose coordinates it acts on.
+    connector : RotorConnector
+        Its law by the coordinates of both rotors.
     other : RotorBody or FullRotorBody, optional
         The second rotor; None for a shaft.
     other_at : str, optional
@@ -59,8 +56,7 @@ class SceneConnection:
     body: Body
     at: str
     object: exudyn.ObjectIndex
-    nodes: tuple[exudyn.NodeIndex, ...]
-    state: State
+    connector: RotorConnector
     other: Body | None = None
     other_at: str | None = None
     shaft: ConstantSpeed | PrescribedMotion | None = None
@@ -88,11 +84,9 @@ class SceneConnection:
         law = self.connection.law
 
         def output(mbs, t, sensors, factors, configuration):
-            q, q_t = (
-                np.hstack([mbs.GetNodeOutput(node, kind, configuration) for node in self.nodes])
-                for kind in (_KINDS.Coordinates, _KINDS.Coordinates_t)
-            )
-            x, x_t, _ = self.state(t, q, q_t)
+            made = self.connector
+            made.read(*made.state(mbs, configuration))
+            x, x_t = made.motion(t)
             return [law.transmitted(x, x_t), law.energy(x), law.loss(x, x_t)]
 
         return add_function_sensor(self.body, output, options)
@@ -189,12 +183,11 @@ def connect_rotors(
         sense = float(np.sign(axis @ connection.second_axis))
         _check_speeds(connection, body, other.formulation.spin, sense)
         ends = [(body, at, first), (other, other_at, second)]
-    parts = [InterfaceCoordinates.of(*end) for end in ends]
-    state = _state(parts, other, first, connection.law.second_axis)
-    item = _item(connection, parts, state)
-    nodes = tuple(node for part in parts for node in part.nodes)
+    parts = [RotorEnd(rotor, name) for rotor, name, _ in ends]
+    shaft = other if isinstance(other, _SHAFTS) else None
+    made = RotorConnector(connection, parts[0], parts[1] if parts[1:] else None, shaft)
     end = ends[1][:2] if ends[1:] else (None, None, other)
-    added = SceneConnection(connection, body, at, body.mbs.AddObject(item), nodes, state, *end)
+    added = SceneConnection(connection, body, at, body.mbs.AddObject(made.item()), made, *end)
     for rotor, *_ in ends:
         rotor.drives.append(added)
     return added
@@ -226,55 +219,71 @@ def _check_speeds(connection: Connection, body: Body, other: object, sense: floa
         )
 
 
-def _state(
-    parts: list[InterfaceCoordinates],
-    other: Body | ConstantSpeed | PrescribedMotion,
-    first: Seat,
-    axis: np.ndarray,
-) -> State:
-    """Return motion (12,), rate (12,) and derivative of both ends, in axes of the first."""
-    count = parts[0].size
-    J = np.zeros((12, sum(part.size for part in parts)))
-    if len(parts) == 1:
-        angle = other.value(0.0)
+class RotorConnector(Connector):
+    """A gear or coupling between two rotors, whose motions count from where they start.
 
-        def of_rotor_and_shaft(t, q, q_t):
-            x, x_t = np.zeros(12), np.zeros(12)
-            x[:6], x_t[:6], J[:6] = parts[0].motion(q, q_t)
-            x[9:], x_t[9:] = (other.value(t) - angle) * axis, other.rate(t) * axis
-            return x, x_t, J
+    In axes of the first rotor, in which the second has rows of its own; or between a rotor and a
+    shaft, whose angle is a function of time.
+    """
 
-        return of_rotor_and_shaft
-    into = np.kron(np.eye(2), first.axes.T @ parts[1].axes)
+    whole = True
 
-    def of_rotors(t, q, q_t):
-        x, x_t, own = parts[0].motion(q[:count], q_t[:count])
-        y, y_t, others = parts[1].motion(q[count:], q_t[count:])
-        J[:6, :count], J[6:, count:] = own, into @ others
-        return np.concatenate([x, into @ y]), np.concatenate([x_t, into @ y_t]), J
+    def __init__(
+        self,
+        connection: Connection,
+        end: RotorEnd,
+        other: RotorEnd | None = None,
+        shaft: ConstantSpeed | PrescribedMotion | None = None,
+    ) -> None:
+        super().__init__(end, None)
+        self._law, self._other, self._shaft = connection.law, other, shaft
+        if other is not None:
+            self.nodes = (*end.nodes, *other.nodes)
+            self.size = end.size + other.size
+            self._into = np.kron(np.eye(2), end.axes.T @ other.axes)
 
-    return of_rotors
+    def read(self, q: list[float], q_t: list[float]) -> None:
+        """Take the motion of both ends from coordinates and their rates."""
+        super().read(q, q_t)
+        if self._other is not None:
+            self._other.read(q[self._first :], q_t[self._first :], True)
 
+    def motion(self, t: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return motion and rate of both ends, each (12,)."""
+        x, x_t = self.end.motion
+        if self._other is not None:
+            y, y_t = self._other.motion
+            return np.concatenate([x, self._into @ y]), np.concatenate([x_t, self._into @ y_t])
+        axis, none = self._law.second_axis, np.zeros(3)
+        angle, rate = self._shaft.value(t) - self._shaft.value(0.0), self._shaft.rate(t)
+        return np.concatenate([x, none, angle * axis]), np.concatenate([x_t, none, rate * axis])
 
-def _item(
-    connection: Connection, parts: list[InterfaceCoordinates], state: State
-) -> ObjectGenericODE2:
-    law = connection.law
+    def rows(self) -> np.ndarray:
+        """Return the rows J (12, size) of both ends."""
+        J = np.zeros((12, self.size))
+        J[:6, : self._first] = self.end.rows()
+        if self._other is not None:
+            J[6:, self._first :] = self._into @ self._other.rows()
+        return J
 
-    def force(mbs, t, item, q, q_t):
-        x, x_t, J = state(t, q, q_t)
-        return (law.forces(x, x_t) @ J).tolist()
+    def wrench(self, t: float) -> tuple[np.ndarray]:
+        """Return the forces on all coordinates."""
+        return (self._law.forces(*self.motion(t)) @ self.rows(),)
 
-    def jacobian(mbs, t, item, q, q_t, factor_q, factor_v):
-        x, x_t, J = state(t, q, q_t)
-        K, D = law.tangent(x, x_t)
-        return J.T @ (factor_q * K + factor_v * D) @ J
+    def pull(self, forces: np.ndarray) -> list[float]:
+        """Return the forces on all coordinates as a list."""
+        return forces.tolist()
 
-    size = sum(part.size for part in parts)
-    return ObjectGenericODE2(
-        nodeNumbers=[node for part in parts for node in part.nodes],
-        massMatrix=np.zeros((size, size)),
-        forceUserFunction=force,
-        jacobianUserFunction=jacobian,
-        visualization=VObjectGenericODE2(show=False),
-    )
+    def tangent(self, t: float) -> Force:
+        """Return the law's forces on both ends, its tangent, and rows (12, size)."""
+        x, x_t = self.motion(t)
+        rows = self.rows(), self.rate_rows()
+        return Force(self._law.forces(x, x_t), *rows, *self._law.tangent(x, x_t))
+
+    def rate_rows(self) -> np.ndarray:
+        """Return the derivative (12, size) of the rates of both ends by the coordinates."""
+        L = np.zeros((12, self.size))
+        L[:6, : self._first] = self.end.rate_rows()
+        if self._other is not None:
+            L[6:, self._first :] = self._into @ self._other.rate_rows()
+        return L

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import exudyn
 import numpy as np
@@ -16,23 +17,23 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing, bearing_of
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
-from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.rolling import RollingBearing
-from exudyn_rotor.bearings.support import Support, acts, varies
+from exudyn_rotor.bearings.support import Support, acts
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.known_rotor import carrying_rotor
+from exudyn_rotor.multibody.rotor.plan import generic_node
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.multibody.supports.magnetic_connectors import add_magnetic
+from exudyn_rotor.multibody.rotor.sensors import add_function_sensor
+from exudyn_rotor.multibody.supports.bearing_connector import BearingConnector, has_torque
+from exudyn_rotor.multibody.supports.clearances import watch_clearance
+from exudyn_rotor.multibody.supports.connector import CURRENT, Connector
+from exudyn_rotor.multibody.supports.ends import FoundationEnd, RotorEnd
+from exudyn_rotor.multibody.supports.magnetic_connector import MagneticConnector
+from exudyn_rotor.multibody.supports.native import PYTHON, native_parts
 from exudyn_rotor.multibody.supports.seats import Base, Seat
-from exudyn_rotor.multibody.supports.support_connectors import (
-    PYTHON,
-    bearing_connector,
-    displacement_connector,
-    tilt_connector,
-)
-from exudyn_rotor.multibody.supports.tilting_pads import add_pads
+from exudyn_rotor.multibody.supports.support_connector import SupportConnector
 
 _PARALLEL = 1e-9  # of the cosine between axes of two rotors
 
@@ -43,34 +44,67 @@ class SceneSupport:
 
     Attributes
     ----------
+    body : RotorBody or FullRotorBody
     support : Support or bearing
     objects : tuple of ObjectIndex
-        Its connectors: for displacements, for tilts, where it acts on them; of a magnetic bearing
-        that of the magnets and the controller; of tilting pads their films and, last, the pads,
-        whose coordinates are the tilts [rad].
+        Its connectors: of a linear support those that Exudyn evaluates, for displacements and for
+        tilts, and one for the rest; of a bearing the one with its law.
     evaluation : tuple of str
         Who evaluates each of them in a time step.
+    connector : Connector
+        Its law by the coordinates of the rotor, of the base, and of its own.
     base : SceneFoundation, MarkerIndex, ObjectIndex or None
         What carries it; None for the ground.
     """
 
+    body: RotorBody | FullRotorBody
     support: Given
     objects: tuple[exudyn.ObjectIndex, ...]
     evaluation: tuple[str, ...]
+    connector: Connector
     base: Base | None = None
 
     def own_coordinates(self, mbs: exudyn.MainSystem) -> np.ndarray:
         """Return where coordinates of its own are in an assembled system, shape (p,); else none."""
-        if not isinstance(self.support, MagneticBearing | TiltingPadBearing):
+        if not self.connector.own:
             return np.zeros(0, dtype=int)
-        return np.asarray(mbs.systemData.GetObjectLTGODE2(self.objects[-1]), dtype=int)
+        places = mbs.systemData.GetObjectLTGODE2(self.objects[-1])
+        return np.asarray(places, dtype=int)[-self.connector.own :]
 
-    def carrier_rotations(self, mbs: exudyn.MainSystem) -> np.ndarray:
-        """Return which coordinates of an assembled system turn what carries pads; else none."""
-        if not isinstance(self.support, TiltingPadBearing):
-            return np.zeros(0, dtype=int)
-        pad = mbs.GetMarker(mbs.GetObject(self.objects[0])["markerNumbers"][0])
-        return np.asarray(mbs.systemData.GetObjectLTGODE2(pad["bodyNumber"])[3:6], dtype=int)
+    def values(
+        self, configuration: exudyn.ConfigurationType = CURRENT
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return displacement [m], velocity [m/s] and force [N] on the rotor there, each (3,).
+
+        Along (n1, n2, e). Displacement and velocity are those against the base.
+        """
+        self.body.check_assembled()
+        made, mbs = self.connector, self.body.mbs
+        made.read(*made.state(mbs, configuration))
+        place, rate = np.array([made.end.place, made.end.rate])
+        if made.base is not None:
+            place, rate = place - made.base.place, rate - made.base.rate
+        fx, fy, *rest = made.wrench(mbs.systemData.GetTime(configuration))
+        return place, rate, np.array([fx, fy, rest[0] if rest else 0.0])
+
+    def add_sensor(self, **options: Any) -> exudyn.SensorIndex:
+        """Add a sensor of displacement [m], velocity [m/s] and force [N], as :meth:`values`.
+
+        Parameters
+        ----------
+        **options
+            Of ``SensorUserFunction``: name, storeInternal, writeToFile, fileName.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For other options.
+        """
+
+        def output(mbs, t, sensors, factors, configuration):
+            return np.concatenate(self.values(configuration)).tolist()
+
+        return add_function_sensor(self.body, output, options)
 
     @property
     def uses_python(self) -> bool:
@@ -162,7 +196,7 @@ def add_supports(
     check_interfaces(supports, body.selection.source.interfaces)
     for support in supports:
         if isinstance(support, Bearing):
-            _check_law(body, _with_law(support))
+            _check_law(body, support)
         elif isinstance(support, Support):
             _check_about_the_axis(body, support)
     _check_base(body, base)
@@ -224,19 +258,12 @@ def _check_base(body: RotorBody | FullRotorBody, base: Base | Mapping[str, Base]
         )
 
 
-def _with_law(bearing: Bearing) -> Bearing:
-    """Return a bearing whose law scenes take: of tilting pads with inertia, that of one film."""
-    if isinstance(bearing, TiltingPadBearing) and bearing.pad_inertia is not None:
-        return bearing.pad_bearings[0]
-    return bearing
-
-
 def _check_law(body: RotorBody | FullRotorBody, bearing: Bearing) -> None:
     """Refuse a bearing without a law for scenes, and one that could not brake a free spin."""
-    remembers = isinstance(bearing, JournalBearing) and bearing.remembers
-    turns = remembers or (bearing.law and bearing.law_with_torque is not None)
+    if isinstance(bearing, TiltingPadBearing):
+        bearing.check_coordinates()
     interface = body.selection.source.interfaces[bearing.interface]
-    if turns and body.formulation.has_spin and interface.radius == 0.0:
+    if has_torque(bearing) and body.formulation.has_spin and interface.radius == 0.0:
         raise ValueError(
             f"support at {bearing.interface!r}: its torque would not brake the free spin, since "
             "the interface is a single node, which has no rotation; make the interface of three "
@@ -262,7 +289,7 @@ def _check_about_the_axis(body: RotorBody | FullRotorBody, support: Support) -> 
 
 
 def _check_on_rotor(body: RotorBody | FullRotorBody, support: Given, seat: Seat) -> None:
-    """Refuse what another rotor cannot carry: its markers have axes that turn."""
+    """Refuse what another rotor cannot carry."""
     rotor = carrying_rotor(body.mbs, seat.base)
     if rotor is None:
         return
@@ -286,22 +313,11 @@ def _check_on_rotor(body: RotorBody | FullRotorBody, support: Given, seat: Seat)
             f"{where}, and has the coefficients of a {type(bearing).__name__} whose bore is at "
             "rest; give the bearing itself"
         )
-    if tilts and not _is_alike_in_all_tilts(support):
+    if tilts and any(np.any(X[5]) or np.any(X[:, 5]) for X in support.matrices(0.0)):
         raise ValueError(
-            f"{where}, against whose tilts it has to be constant and alike in all directions, "
-            "without tilt_damping and without moments about the axis; between rotors of one speed "
-            "connect_rotors with a FlexibleCoupling has torsion, tilts and their damping"
+            f"{where}, to which it would act about the axis; between rotors of one speed "
+            "connect_rotors with a FlexibleCoupling has torsion"
         )
-
-
-def _is_alike_in_all_tilts(support: Support) -> bool:
-    """Return whether the moments of a support are the same in axes that turn."""
-    given = support.tilt_stiffness, support.tilt_damping
-    if support.frame == "rotor" or any(map(varies, given)) or acts(support.tilt_damping):
-        return False
-    K = support.matrices(0.0)[0][3:, 3:]
-    about = np.any(K[2]) or np.any(K[:, 2])
-    return not about and K[0, 0] == K[1, 1] and K[0, 1] == -K[1, 0]
 
 
 def _seat_of_sensor(
@@ -324,22 +340,54 @@ def _added(
     body: RotorBody | FullRotorBody, support: Given, seat: Seat, sensed: Seat | None
 ) -> SceneSupport:
     mbs, parts = body.mbs, []
+    end, base = RotorEnd(body, support.interface), seat.end(mbs)
     if isinstance(support, MagneticBearing):
-        items = add_magnetic(body, support, seat, seat.marker(mbs), sensed.marker(mbs))
-        return SceneSupport(support, items, (PYTHON, PYTHON), seat.base)
-    if isinstance(support, TiltingPadBearing):
-        return SceneSupport(support, *add_pads(body, support, seat), seat.base)
+        return _magnetic(body, support, (end, base), seat, sensed)
     if isinstance(support, Bearing):
-        item = bearing_connector(body, support, seat, seat.marker(mbs))
-        return SceneSupport(support, (item,), (PYTHON,), seat.base)
-    across = support.stiffness, support.damping
-    tilts = support.tilt_stiffness, support.tilt_damping
-    if not any(map(acts, (*across, *tilts))):
-        return SceneSupport(support, (), (), seat.base)
-    base = seat.marker(mbs)
-    if any(map(acts, across)):
-        parts.append(displacement_connector(body, support, seat, base))
-    if any(map(acts, tilts)):
-        parts.append(tilt_connector(body, support, seat, base))
-    objects, evaluation = zip(*parts, strict=True)
-    return SceneSupport(support, objects, evaluation, seat.base)
+        count, own = 0, None
+        if isinstance(support, TiltingPadBearing):
+            count = len(support.tangents)
+            own = mbs.AddNode(generic_node(*np.zeros((2, count))))
+        spins = body.formulation.has_spin
+        # a foundation hardly turns, which a prescribed spin leaves out as linear analyses do
+        feels = base is not None and (spins or not isinstance(base, FoundationEnd))
+        made = BearingConnector(support, end, base, spins, feels, own)
+        mass = np.zeros((made.size, made.size))
+        if own is not None:
+            mass[-count:, -count:] = support.pad_inertia * np.eye(count)
+        number = mbs.AddObject(made.item(massMatrix=mass))
+        watch_clearance(body, made)
+        return SceneSupport(body, support, (number,), (PYTHON,), made, seat.base)
+    parts, left = native_parts(body, support, seat, base is None)
+    rotor = carrying_rotor(mbs, seat.base) is not None
+    made = SupportConnector(support, end, base, rotor)
+    if left is not None:
+        rest = made if left is support else SupportConnector(left, end, base, rotor)
+        parts.append((mbs.AddObject(rest.item(made)), PYTHON))
+    objects, evaluation = zip(*parts, strict=True) if parts else ((), ())
+    return SceneSupport(body, support, objects, evaluation, made, seat.base)
+
+
+def _magnetic(
+    body: RotorBody | FullRotorBody,
+    support: MagneticBearing,
+    ends: tuple,
+    seat: Seat,
+    sensed: Seat,
+) -> SceneSupport:
+    mbs, own, both = body.mbs, support.controller.realisation(), np.eye(2)
+    apart = support.sensor_interface != support.interface
+    sensors = ends
+    if apart:
+        sensors = RotorEnd(body, support.sensor_interface), sensed.end(mbs)
+    count = 2 * len(own.inertia)
+    node = mbs.AddNode(generic_node(*np.zeros((2, count))))
+    made = MagneticConnector(support, ends, sensors, node)
+    matrices = np.zeros((3, made.size, made.size))
+    matrices[:, -count:, -count:] = support.scale * np.array(
+        [np.kron(X, both) for X in (np.diag(own.inertia), own.damping, own.stiffness)]
+    )
+    names = "massMatrix", "dampingMatrix", "stiffnessMatrix"
+    number = mbs.AddObject(made.item(**dict(zip(names, matrices, strict=True))))
+    watch_clearance(body, made)
+    return SceneSupport(body, support, (number,), (PYTHON,), made, seat.base)

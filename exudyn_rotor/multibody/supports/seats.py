@@ -17,9 +17,11 @@ from exudyn.itemInterface import (
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.full.full_markers import interface_carrier
+from exudyn_rotor.multibody.rotor.known_rotor import carrying_rotor
 from exudyn_rotor.multibody.rotor.marker_body import append_nodes, virtual_nodes
 from exudyn_rotor.multibody.rotor.more_markers import interface_motion
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
+from exudyn_rotor.multibody.supports.ends import BaseEnd, FoundationEnd, MarkerEnd
 from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation, foundation_marker
 from exudyn_rotor.solid.places import SAME_PLACE, leeway, off_place
 from exudyn_rotor.theory.axis import SpinAxis
@@ -86,6 +88,26 @@ class Seat:
                 f"is at {place.tolist()}; put it there, or give the rigid body itself"
             )
         return cls(name, place, axes, free, base, origin, orientation)
+
+    def end(self, mbs: exudyn.MainSystem) -> BaseEnd | None:
+        """Return the end of the base at the place; None of the ground.
+
+        Raises
+        ------
+        ValueError
+            For a base without the coordinates of a frame.
+        """
+        if isinstance(self.base, SceneFoundation):
+            motion = self.base.foundation.points[self.name]
+            return FoundationEnd(self.base.node, motion, self.axes)
+        if self.base is None:
+            return None
+        item = {"bodyNumber": self.base}
+        if isinstance(self.base, exudyn.MarkerIndex):
+            item = mbs.GetMarker(self.base)
+        if "bodyNumber" in item and mbs.GetObject(item["bodyNumber"])["objectType"] == "Ground":
+            return None
+        return MarkerEnd(mbs, item, self.place, self.axes, carrying_rotor(mbs, self.base))
 
     def marker(self, mbs: exudyn.MainSystem) -> exudyn.MarkerIndex:
         """Add a marker of the base at the place, with the axes (n1, n2, e)."""

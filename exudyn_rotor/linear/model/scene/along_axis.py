@@ -81,5 +81,4 @@ def _load(probe: Probe, Y: np.ndarray, theta: float) -> np.ndarray:
     waves = np.exp(1j * theta * _ORDERS)
     y, y_t = ((waves * (1j * probe.speed * _ORDERS) ** n @ Y).real for n in range(2))
     constant = probe.rotor_terms(theta)[3]
-    with probe.held():  # films that conserve mass have a force where they are held alone
-        return T.T @ (constant + probe.force(theta, T @ y, T @ y_t + probe.speed * T1 @ y))
+    return T.T @ (constant + probe.force(theta, T @ y, T @ y_t + probe.speed * T1 @ y))

@@ -91,7 +91,7 @@ class LinearScene(SceneCoordinates):
             Where no steady motion is found, or 192 angles do not resolve the coefficients.
         """
         with self._probing(checks.number(speed, "speed", "rad/s")) as probe:
-            return points_about(self, probe), [film.seen for film in probe.remembering]
+            return points_about(self, probe), [one.seen[0] for one in probe.remembering]
 
     @property
     def remembering(self) -> list[SceneSupport]:
@@ -101,9 +101,12 @@ class LinearScene(SceneCoordinates):
 
     def base_motion(self, support: SceneSupport) -> np.ndarray:
         """Return the displacement (3, k) along (n1, n2, e) of what carries a support, inertial."""
-        marker = self.body.mbs.GetObject(support.objects[0])["markerNumbers"][0]
-        with probing(self, 0.0) as probe:
-            return self.body.standing_axes.T @ probe.motion_of(marker) @ self.N
+        made, motion = support.connector, np.zeros((3, len(self.rest)))
+        read = self.body.mbs.systemData.GetNodeLTGODE2
+        places = np.concatenate([read(node) for node in made.base.nodes]).astype(int)
+        made.base.read(*np.zeros((2, len(places))).tolist())
+        motion[:, places] = made.base.rows()[:3]
+        return motion[:, self.free] @ self.N
 
     def steady_motion(
         self, speed: float, tolerance: float, start: tuple | None = None

@@ -11,15 +11,10 @@ from typing import NamedTuple
 import exudyn
 import numpy as np
 
-from exudyn_rotor.bearings.held_law import (
-    HeldBearing,
-    MovingJournalError,
-    TangentContacts,
-    TangentFilm,
-    TangentShortFilm,
-)
-from exudyn_rotor.bearings.support import BelowTableError
+from exudyn_rotor.bearings.journal_bearing import JournalBearing
+from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.linear.model.scene.attached import Attached, AttachedBearing, attached_to
 from exudyn_rotor.linear.model.scene.differences import (
     CURVATURE,
     chosen_step,
@@ -30,9 +25,7 @@ from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.linear.solve.state import EPSILON
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
 from exudyn_rotor.multibody.rotor.equations import without_forces
-from exudyn_rotor.multibody.supports.held_tilts import HeldTilts, held_tilts
-from exudyn_rotor.multibody.supports.linear_laws import linear_laws
-from exudyn_rotor.multibody.supports.magnetic_connectors import TangentMagnets, tangent_magnets
+from exudyn_rotor.multibody.supports.support_connector import SupportConnector
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
 
@@ -40,31 +33,29 @@ from exudyn_rotor.theory.motion import Motion
 # Exudyn's forces are differences of positions of order 1 m
 _STEPS = (1e-4, 1e-5, 1e-6, 1e-7)
 _VELOCITY_STEPS = (1e-3, 1e-4, 1e-5, 1e-6)  # m/s
-_MOVED, _POSITION = 1e-4, exudyn.OutputVariableType.Position  # of a coordinate
 _KEPT = 48  # angles whose terms of the rotor, and whose turned axes, are kept
 
 
 class Probe:
-    """Exudyn's forces and masses at any state of a scene, spin Ω, beside the rotor's own terms."""
+    """Forces and masses at any state of a scene, spin Ω, beside the rotor's own terms.
+
+    What is attached to the rotor is known by its laws; differences are taken of what else Exudyn
+    has in the scene.
+    """
 
     def __init__(
         self,
         scene: SceneCoordinates,
         speed: float,
         solver: exudyn.MainSolverStatic,
-        bearings: tuple[HeldBearing, ...],
-        magnets: tuple[TangentMagnets, ...],
-        tilts: tuple[HeldTilts, ...],
+        attached: list[Attached],
     ) -> None:
-        self.scene, self.speed, self.solver = scene, speed, solver
-        self.bearings, self.magnets, self.tilts = bearings, magnets, tilts
+        self.scene, self.speed, self.solver, self.attached = scene, speed, solver, attached
         self.mbs = scene.body.mbs
-        self.laws = [law for bearing in bearings for law in bearing.laws]
-        self.films = [law for law in self.laws if isinstance(law, TangentFilm)]
-        self.carriers = _carriers_of_pads(scene)
-        self._held, self._carried = False, None
+        self.bearings = [one for one in attached if isinstance(one, AttachedBearing)]
         self.spin = scene.spin_coordinate
         self.is_constrained = bool(solver.GetAEsize())
+        self.has_foreign = bool(scene.foreign)
         self.rotor = np.arange(scene.modal.stop)
         self.step = self.velocity_step = None
         self.rotor_terms = lru_cache(_KEPT)(self._rotor_terms)
@@ -78,59 +69,65 @@ class Probe:
     @property
     def straight(self) -> float:
         """Motion [m] along which the forces are straight enough for their derivatives."""
-        by_tangent = TangentFilm | TangentShortFilm | TangentContacts
-        known = any(isinstance(law, by_tangent) for law in self.laws)
-        return min(self.step, _STEPS[-1]) if known or self.magnets else self.step
+        known = [one for one in self.attached if not isinstance(one.connector, SupportConnector)]
+        return min(self.step, _STEPS[-1]) if known else self.step
 
     @property
-    def remembering(self) -> list[TangentFilm]:
-        """Films that conserve mass."""
-        return [film for film in self.films if film.bearing.remembers]
+    def films(self) -> list[AttachedBearing]:
+        """Bearings with films of finite length."""
+        kinds = JournalBearing | TiltingPadBearing
+        return [one for one in self.bearings if isinstance(one.bearing, kinds)]
+
+    @property
+    def remembering(self) -> list[AttachedBearing]:
+        """Bearings whose films conserve mass."""
+        journals = [one for one in self.films if isinstance(one.bearing, JournalBearing)]
+        return [one for one in journals if one.bearing.remembers]
 
     @contextmanager
     def without_tangents(self) -> Iterator[None]:
         """Let films that conserve mass have the same force at all states, and note it."""
-        for film in self.remembering:
-            film.stiff, film.seen = False, []
+        for one in self.remembering:
+            one.stiff = False
+            one.forget()
         try:
             yield
         finally:
-            for film in self.remembering:
-                film.stiff = True
+            for one in self.remembering:
+                one.stiff = True
 
     @contextmanager
     def as_in_lists(self, wanted: bool) -> Iterator[None]:
         """Let bearings be without torque, dampers with the force of small harmonic motions."""
         try:
-            for law in self.laws:
-                law.rest(wanted)
+            for one in self.attached:
+                one.rest(wanted)
             yield
         finally:
-            for law in self.laws:
-                law.rest(False)
+            for one in self.attached:
+                one.rest(False)
 
     def at_rest(self) -> Probe:
         """Return the same at the speed 0."""
-        return Probe(self.scene, 0.0, self.solver, self.bearings, self.magnets, self.tilts)
+        return Probe(self.scene, 0.0, self.solver, self.attached)
 
     def forget(self) -> None:
         """Forget where bearings have been seen."""
-        for law in (*self.laws, *self.magnets):
-            law.seen = []
+        for one in self.attached:
+            one.forget()
 
     def see(self, theta: float, y: np.ndarray, y_t: np.ndarray) -> None:
         """See where bearings are in a motion y (k,) of the rate y_t, at one angle."""
         T, T1, _ = self.turn(theta)
-        with self.held():
-            self.force(theta, T @ y, T @ y_t + self.speed * T1 @ y)
+        self.force(theta, T @ y, T @ y_t + self.speed * T1 @ y)
 
     @property
-    def settling(self) -> list[HeldBearing | TangentMagnets]:
+    def settling(self) -> list[Attached]:
         """Bearings that lists take otherwise than where they have been seen."""
-        return [one for one in (*self.bearings, *self.magnets) if one.settles]
+        return [one for one in self.attached if one.settles]
 
     @contextmanager
-    def settled(self, bearings: Sequence[HeldBearing | TangentMagnets]) -> Iterator[None]:
+    def settled(self, bearings: Sequence[Attached]) -> Iterator[None]:
         """Take bearings as lists do under the mean of the forces seen.
 
         Raises
@@ -146,26 +143,12 @@ class Probe:
             for one in bearings:
                 one.release()
 
-    def _settle(self, bearing: HeldBearing | TangentMagnets) -> None:
+    def _settle(self, bearing: Attached) -> None:
         try:
             bearing.settle(self.speed)
         except (ValueError, ArithmeticError) as error:
             where = f"linear scene at {self.speed:g} rad/s"
             raise UnconvergedError(f"{where}: {error}") from error
-
-    @contextmanager
-    def held(self) -> Iterator[None]:
-        """Hold laws of bearings and supports, and what carries pads, from the next state on."""
-        self._hold(True)
-        try:
-            yield
-        finally:
-            self._hold(False)
-
-    def _hold(self, held: bool) -> None:
-        self._held, self._carried = held, None
-        for law in (*self.laws, *self.magnets, *self.tilts):
-            law.hold(held)
 
     def constraints(self, theta: float) -> np.ndarray:
         """Return the constraints' Jacobian by the free coordinates, rows that are zero left out."""
@@ -216,34 +199,40 @@ class Probe:
         full[(slice(None), *np.ix_(self.rotor, self.rotor))] = matrices
         return *full, np.r_[motion.forces(0.0, zero, zero), np.zeros(size - motion.size)]
 
-    def motion_of(self, marker: exudyn.MarkerIndex) -> np.ndarray:
-        """Return the displacement (3, free coordinates) of a marker beside the rotor."""
-        motion, still = np.zeros((3, len(self.scene.free))), np.zeros(len(self.scene.free))
-        for column in range(self.scene.modal.stop, len(self.scene.free)):
-            ends = []
-            for step in (_MOVED, -_MOVED):
-                moved = still.copy()
-                moved[column] = step
-                self._set(0.0, moved, still)
-                ends.append(self.mbs.GetMarkerOutput(marker, _POSITION))
-            motion[:, column] = (ends[0] - ends[1]) / (2.0 * _MOVED)
-        return motion
-
     def force(self, theta: float, x: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Return the forces of all but the rotor's own equations, free coordinates."""
+        return self.foreign(theta, x, v) + self.laws(theta, x, v)[0]
+
+    def foreign(self, theta: float, x: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Return the forces of what is neither the rotor nor attached to it."""
         q, q_t = self._set(theta, x, v)
-        try:  # the rotor's own object has none while it is probed
-            self.solver.ComputeODE2RHS(self.mbs)
-        except ValueError as error:  # Exudyn's, from what a support's function raised
-            if isinstance(error.__cause__, BelowTableError | MovingJournalError):
-                raise error.__cause__ from None
-            raise
+        self.solver.ComputeODE2RHS(self.mbs)  # the rotor's own object has none while it is probed
         total = np.array(self.solver.GetSystemResidual())[: len(q)]
-        if self._carried is not None:
-            total[self.carriers] = self._carried[2]
-        elif self._held:
-            self._carried = tuple(each[self.carriers] for each in (q, q_t, total))
+        for one in self.attached:
+            for matrix, state in zip(one.connector.native, (q, q_t), strict=True):
+                if matrix is not None:
+                    total[one.places] += matrix @ state[one.places]
         return total[self.scene.free]
+
+    def laws(
+        self, theta: float, x: np.ndarray, v: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the forces of what is attached, and less their derivatives by x and v."""
+        q, q_t = self._state(theta, x, v)
+        size = len(self.scene.rest)
+        force, (K, D) = np.zeros(size), np.zeros((2, size, size))
+        for one in self.attached:
+            one.read(q, q_t)
+            found, places = one.force(self._time(theta)), one.places
+            force[places] += found.values @ found.J
+            parts = zip((K, D), found.slopes(), one.connector.native, (q, q_t), strict=True)
+            for total, block, native, state in parts:
+                if native is not None:
+                    block += native
+                    force[places] -= native @ state[places]
+                total[np.ix_(places, places)] += block
+        free = self.scene.free
+        return force[free], *(X[np.ix_(free, free)] for X in (K, D))
 
     def unbalanced(self, theta: float, y: np.ndarray) -> np.ndarray:
         """Return what the forces lack for an equilibrium at rest (k,), as the residual of y."""
@@ -252,19 +241,24 @@ class Probe:
         x = T @ y
         return T.T @ (K @ x - constant - self.force(theta, x, np.zeros_like(x)))
 
-    def _set(self, theta: float, x: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Put a deviation x of the free coordinates and their velocity v into the scene."""
-        data = self.mbs.systemData
+    def _time(self, theta: float) -> float:
+        return theta / self.speed if self.speed else 0.0
+
+    def _state(self, theta: float, x: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return all coordinates and rates by a deviation x of the free ones, and their rates v."""
         q, q_t = self.scene.rest.copy(), np.zeros(len(self.scene.rest))
         q[self.scene.free] += x
         q_t[self.scene.free] = v
         if self.spin is not None:
             q[self.spin], q_t[self.spin] = theta, self.speed
-        if self._carried is not None:
-            q[self.carriers], q_t[self.carriers], _ = self._carried
+        return q, q_t
+
+    def _set(self, theta: float, x: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Put a deviation x of the free coordinates and their velocity v into the scene."""
+        data, (q, q_t) = self.mbs.systemData, self._state(theta, x, v)
         data.SetODE2Coordinates(q)
         data.SetODE2Coordinates_t(q_t)
-        data.SetTime(theta / self.speed if self.speed else 0.0)
+        data.SetTime(self._time(theta))
         if self.is_constrained:  # as every implicit solver does: some forces rely on it
             self.solver.ComputeAlgebraicEquations(self.mbs, False)
         return q, q_t
@@ -277,23 +271,32 @@ def probing(scene: SceneCoordinates, speed: float, cage: float | None = None) ->
     With an angle [rad], cages of rolling bearings stand where they are when the spin has it.
     """
     body = scene.body
+    attached = attached_to(body.mbs, body.supports, body.drives, cage)
     with (
-        linear_laws(body, cage) as bearings,
-        tangent_magnets(body) as magnets,
-        held_tilts(body) as tilts,
+        _muted(body.mbs, attached, scene.native),
         without_forces(body.mbs, body.objects["physics"]),
         evaluating(body.mbs) as solver,
     ):
-        yield Probe(scene, speed, solver, bearings, magnets, tilts)
+        yield Probe(scene, speed, solver, attached)
 
 
-def _carriers_of_pads(scene: SceneCoordinates) -> np.ndarray:
-    """Return the coordinates by which what carries tilting pads turns with a base.
+@contextmanager
+def _muted(
+    mbs: exudyn.MainSystem, attached: Sequence[Attached], native: Sequence[exudyn.ObjectIndex]
+) -> Iterator[None]:
+    """Let objects of what is attached be without force, the `native` ones inactive."""
 
-    Static tilts that turn with it are left out as static forces that do.
-    """
-    found = (one.carrier_rotations(scene.body.mbs) for one in scene.body.supports)
-    return np.concatenate([np.zeros(0, dtype=int), *found])
+    def let(muted: bool) -> None:
+        for one in attached:
+            one.connector.muted = muted
+        for number in native:
+            mbs.SetObjectParameter(number, "activeConnector", not muted)
+
+    let(True)
+    try:
+        yield
+    finally:
+        let(False)
 
 
 class Rest(NamedTuple):
@@ -320,70 +323,64 @@ class LinearPoint(NamedTuple):
     rest: Rest
 
 
-def linearised(
-    probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray
-) -> LinearPoint:
-    """Return the scene linearised about y at one angle."""
-    with probe.held():
-        return _linearised(probe, theta, y, y_t, y_tt)
-
-
 def unbalanced(
     probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray
 ) -> np.ndarray:
     """Return the residual of y at one angle (k,), as :func:`linearised` has it."""
-    with probe.held():
-        return probe.turn(theta)[0].T @ _state(probe, theta, y, y_t, y_tt).residual
-
-
-class _State(NamedTuple):
-    """Free coordinates and velocities at one angle, the rotor's D and K, all M, and forces."""
-
-    x: np.ndarray
-    v: np.ndarray
-    M: np.ndarray
-    D: np.ndarray
-    K: np.ndarray
-    force: np.ndarray
-    residual: np.ndarray
-
-
-def _state(probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray) -> _State:
     T, T1, T2 = (probe.speed**n * X for n, X in enumerate(probe.turn(theta)))
     x, v = T @ y, T @ y_t + T1 @ y
     M, D, K, constant = probe.rotor_terms(theta)
     force = probe.force(theta, x, v)
-    M = M + probe.mass()
-    inertia = M @ (T @ y_tt + 2.0 * T1 @ y_t + T2 @ y)
-    return _State(x, v, M, D, K, force, inertia + D @ v + K @ x - constant - force)
+    inertia = (M + probe.mass()) @ (T @ y_tt + 2.0 * T1 @ y_t + T2 @ y)
+    return T.T @ (inertia + D @ v + K @ x - constant - force)
 
 
-def _linearised(
+def linearised(
     probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray
 ) -> LinearPoint:
+    """Return the scene linearised about y at one angle."""
     T, T1, T2 = (probe.speed**n * X for n, X in enumerate(probe.turn(theta)))
-    x, v, M, rotor_D, rotor_K, force, residual = _state(probe, theta, y, y_t, y_tt)
-    sizes = probe.scene.metre(np.diag(T.T @ M @ T))
-
-    def moved(x_i: np.ndarray) -> np.ndarray:
-        return probe.force(theta, x + x_i, v)
-
-    def sped_up(v_i: np.ndarray) -> np.ndarray:
-        return probe.force(theta, x, v + v_i)
-
-    if probe.step is None:
-        probe.step = chosen_step(moved, T * sizes, _STEPS)
-        probe.velocity_step = chosen_step(sped_up, T * sizes, _VELOCITY_STEPS)
-    rest_K = -slopes(moved, probe.step * T * sizes) / (probe.step * sizes)
-    faster = probe.velocity_step
-    rest_D = -differences(sped_up, faster * T * sizes)[0] / (faster * sizes)
-    rest = Rest(theta, (T, T1, T2), M - probe.rotor_terms(theta)[0], T.T @ rest_D, T.T @ rest_K)
-    carried = rest.D @ (T.T @ T1)  # the columns of rest_D are derivatives along T
+    x, v = T @ y, T @ y_t + T1 @ y
+    rotor_M, rotor_D, rotor_K, constant = probe.rotor_terms(theta)
+    foreign = probe.foreign(theta, x, v)
+    M = rotor_M + probe.mass()
+    law, law_K, law_D = probe.laws(theta, x, v)
+    foreign_D, foreign_K = _foreign_slopes(probe, theta, x, v, T, M)
+    force = foreign + law
+    rest_D, rest_K = T.T @ (law_D @ T + foreign_D), T.T @ (law_K @ T + foreign_K)
+    inertia = M @ (T @ y_tt + 2.0 * T1 @ y_t + T2 @ y)
+    residual = inertia + rotor_D @ v + rotor_K @ x - constant - force
+    rest = Rest(theta, (T, T1, T2), M - rotor_M, rest_D, rest_K)
+    carried = rest_D @ (T.T @ T1)  # the columns of rest_D are derivatives along T
     return LinearPoint(
         T.T @ M @ T,
-        T.T @ (2.0 * M @ T1 + rotor_D @ T) + rest.D,
-        T.T @ (M @ T2 + rotor_D @ T1 + rotor_K @ T) + rest.K + carried,
+        T.T @ (2.0 * M @ T1 + rotor_D @ T) + rest_D,
+        T.T @ (M @ T2 + rotor_D @ T1 + rotor_K @ T) + rest_K + carried,
         T.T @ residual,
         T.T @ force,
         rest,
     )
+
+
+def _foreign_slopes(
+    probe: Probe, theta: float, x: np.ndarray, v: np.ndarray, T: np.ndarray, M: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return less the derivatives by rates and motions along T of what is not attached."""
+    if not probe.has_foreign:
+        probe.step, probe.velocity_step = _STEPS[0], _VELOCITY_STEPS[0]
+        return np.zeros((2, *T.shape))
+    sizes = probe.scene.metre(np.diag(T.T @ M @ T))
+
+    def moved(x_i: np.ndarray) -> np.ndarray:
+        return probe.foreign(theta, x + x_i, v)
+
+    def sped_up(v_i: np.ndarray) -> np.ndarray:
+        return probe.foreign(theta, x, v + v_i)
+
+    if probe.step is None:
+        probe.step = chosen_step(moved, T * sizes, _STEPS)
+        probe.velocity_step = chosen_step(sped_up, T * sizes, _VELOCITY_STEPS)
+    faster = probe.velocity_step
+    K = -slopes(moved, probe.step * T * sizes) / (probe.step * sizes)
+    D = -differences(sped_up, faster * T * sizes)[0] / (faster * sizes)
+    return D, K

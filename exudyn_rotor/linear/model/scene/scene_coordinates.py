@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
+import exudyn
 import numpy as np
 import scipy.linalg
 
@@ -113,6 +114,24 @@ class SceneCoordinates:
     def axes(self) -> np.ndarray:
         """``(n1, n2, e)`` in mesh axes."""
         return axes_of(SpinAxis(self.body.motion.invariants.direction))
+
+    @cached_property
+    def native(self) -> list[exudyn.ObjectIndex]:
+        """Connectors of linear supports that Exudyn evaluates."""
+        mbs, numbers = self.body.mbs, [n for one in self.body.supports for n in one.objects]
+        return [n for n in numbers if "activeConnector" in mbs.GetObject(n)]
+
+    @cached_property
+    def foreign(self) -> list[int]:
+        """Objects and loads that are neither the rotor's own nor attached to it."""
+        mbs, body = self.body.mbs, self.body
+        own = {*map(int, body.objects.values()), *map(int, body.constraints.values())}
+        own |= {int(n) for one in body.supports for n in one.objects}
+        own |= {int(one.object) for one in body.drives}
+        kinds = [mbs.GetObject(n)["objectType"] for n in range(mbs.systemData.NumberOfObjects())]
+        found = [n for n, kind in enumerate(kinds) if n not in own and kind != "Ground"]
+        weight = [] if body.gravity_load is None else [int(body.gravity_load)]
+        return found + [n for n in range(mbs.systemData.NumberOfLoads()) if n not in weight]
 
     @cached_property
     def pairs(self) -> np.ndarray:

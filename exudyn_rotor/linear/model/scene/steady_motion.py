@@ -331,7 +331,7 @@ class _Search:
             "that nothing holds, a resonance without damping, a stop or a bearing with clearance "
             "that the rotor leaves and hits, or an oil film that unbalance all but closes, or that "
             "whirls at half the speed? A run shows what the rotor does there: a damped one from "
-            "rest, or one from the steady_state with less unbalance; rolling_bearing_response "
+            "rest, or one from the steady_state with less unbalance; periodic_response "
             "shows its motion on rolling bearings; about='given' needs no steady motion"
         )
 

@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.bearings.held_law import TangentFilm
 from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.linear.model.scene.attached import AttachedBearing
 from exudyn_rotor.linear.model.scene.equilibrium import solved
 from exudyn_rotor.linear.model.scene.journal_start import journal_places, journal_start
 from exudyn_rotor.linear.model.scene.probe import Probe, linearised
@@ -33,7 +33,7 @@ def check_films(scene: SceneCoordinates, probe: Probe) -> None:
     ------
     UnconvergedError
     """
-    films = [film for film in probe.films if _needs_a_side(film)]
+    films = [one for one in probe.films if _needs_a_side(one)]
     if not films or probe.speed == 0.0:
         return
     start = journal_start(scene, probe.speed, _ORDERS)
@@ -54,8 +54,8 @@ def check_films(scene: SceneCoordinates, probe: Probe) -> None:
     )
 
 
-def _needs_a_side(film: TangentFilm) -> bool:
-    given = film.bearing.film
+def _needs_a_side(one: AttachedBearing) -> bool:
+    given = one.bearing.film
     return given.cavitation != "none" and given.supply_pressure == 0.0
 
 
@@ -70,18 +70,26 @@ def _pressed(scene: SceneCoordinates, probe: Probe, motion: list[np.ndarray]) ->
 
 
 def _in_the_middle(
-    films: list[TangentFilm], probe: Probe, motion: list[np.ndarray]
-) -> list[TangentFilm]:
-    """Return the films in which a motion holds the journal in the centre of a pad."""
+    films: list[AttachedBearing], probe: Probe, motion: list[np.ndarray]
+) -> list[AttachedBearing]:
+    """Return the bearings in which a motion holds the journal in the centre of a pad."""
     probe.forget()
     probe.see(0.0, motion[0], motion[1])
-    return [film for film in films if film.seen[-1] is not None and _is_central(film)]
+    return [one for one in films if _is_central(one)]
 
 
-def _is_central(film: TangentFilm) -> bool:
+def _is_central(one: AttachedBearing) -> bool:
     """Return whether the place seen last is the centre of a pad."""
-    place, near = film.seen[-1][0], _MIDDLE * film.bearing.film.clearance
-    return any(np.linalg.norm(place - pad.center) < near for pad in film.bearing.film.pads)
+    near = _MIDDLE * one.bearing.film.clearance
+    last = [
+        (part.film.pads, seen[-1]) for part, seen in zip(one.connector.parts, one.seen, strict=True)
+    ]
+    return any(
+        np.linalg.norm(seen[0] - pad.center) < near
+        for pads, seen in last
+        if seen is not None
+        for pad in pads
+    )
 
 
 def loose_bearing(scene: SceneCoordinates, probe: Probe) -> str | None:

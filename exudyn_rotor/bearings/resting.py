@@ -1,0 +1,138 @@
+"""Bearings at rest under a load: the linear equation between place and force beside a state.
+
+Where a bearing has the force R on the journal, which rests at u (and u_s at a sensor),
+
+    A u + A_s u_s + B R = c.
+
+A film has the equation of its compliance, about its equilibrium under the load −R: films stiffen so
+much that Newton's method in the place would overshoot the clearance. All others have the equation
+of their force at the place.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.journal_bearing import JournalBearing, tangent_of
+from exudyn_rotor.bearings.magnetic import MagneticBearing
+from exudyn_rotor.bearings.rolling import RollingBearing, contacts
+from exudyn_rotor.bearings.short_journal import ShortJournalBearing
+from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
+
+_FILMS = JournalBearing | ShortJournalBearing | TiltingPadBearing
+_STEP = 1e-9  # of differences of a law [m]
+
+
+@dataclass(frozen=True, eq=False)
+class Resting:
+    """``A u + A_s u_s + B R = c`` of a bearing, each (2, 2), c (2,).
+
+    A rigid bearing is next to rigid, so that several under a rigid rotor share its weight.
+    """
+
+    A: np.ndarray
+    A_s: np.ndarray
+    B: np.ndarray
+    c: np.ndarray
+    is_rigid: bool = False
+
+
+@dataclass(frozen=True)
+class RigidBearing:
+    """A bearing that holds the journal in its centre, rigidly, across the axis."""
+
+    carries: ClassVar[bool] = True
+
+    interface: str
+
+
+Nonlinear = Bearing | MagneticBearing | RigidBearing
+
+
+def held() -> Resting:
+    """Return the equation of a journal that is held in the centre."""
+    none = np.zeros((2, 2))
+    return Resting(np.eye(2), none, none, np.zeros(2), is_rigid=True)
+
+
+def unloaded() -> Resting:
+    """Return the equation of a journal on which no force acts."""
+    none = np.zeros((2, 2))
+    return Resting(none, none, np.eye(2), np.zeros(2))
+
+
+def starting_place(bearing: Nonlinear, speed: float, force: np.ndarray) -> np.ndarray:
+    """Return where a search begins (2,) [m]: in contact under a force on the journal (2,) [N]."""
+    if isinstance(bearing, RollingBearing) and np.any(force):
+        return bearing.equilibrium(speed, -force)
+    return np.zeros(2)
+
+
+def resting(
+    bearing: Nonlinear,
+    speed: float,
+    place: np.ndarray,
+    sensed: np.ndarray,
+    force: np.ndarray,
+) -> Resting:
+    """Return the equation of a bearing beside a state.
+
+    Parameters
+    ----------
+    bearing : Bearing, MagneticBearing or RigidBearing
+    speed : float
+        Spin speed [rad/s].
+    place, sensed : ndarray, shape (2,)
+        Of the journal and of a magnetic bearing's sensor along (n1, n2) [m].
+    force : ndarray, shape (2,)
+        On the journal [N].
+
+    Raises
+    ------
+    ValueError, ArithmeticError
+        Where a film has no equilibrium under this force.
+    """
+    if isinstance(bearing, RigidBearing):
+        return held()
+    if isinstance(bearing, MagneticBearing):
+        return _of_magnets(bearing, place, sensed)
+    if isinstance(bearing, _FILMS):
+        compliance = np.linalg.inv(_film_stiffness(bearing, speed, -force))
+        rest = bearing.equilibrium(speed, -force)
+        return Resting(np.eye(2), np.zeros((2, 2)), compliance, rest + compliance @ force)
+    law, still = bearing.law, (0.0, 0.0, 0.0, speed)
+    at = np.array(law(*place, *still)[:2])
+    if isinstance(bearing, RollingBearing):
+        tangent = contacts(bearing, place, 0.0)[2]
+    else:
+        steps = _STEP * np.eye(2)
+        ends = [np.array(law(*(place + step), *still)[:2]) for step in (*steps, *-steps)]
+        tangent = np.column_stack([ends[2] - ends[0], ends[3] - ends[1]]) / (2.0 * _STEP)
+    return Resting(tangent, np.zeros((2, 2)), np.eye(2), at + tangent @ place)
+
+
+def _film_stiffness(bearing: Bearing, speed: float, load: np.ndarray) -> np.ndarray:
+    """Return the stiffness (2, 2) of a film against slow changes of its load [N/m]."""
+    if isinstance(bearing, TiltingPadBearing):
+        return bearing._state(speed, load).impedance(0.0).real
+    if isinstance(bearing, JournalBearing):
+        return tangent_of(bearing._state(speed, load))[0]
+    return bearing.coefficients(speed, load)[0]
+
+
+def _of_magnets(bearing: MagneticBearing, place: np.ndarray, sensed: np.ndarray) -> Resting:
+    """Return the equation of magnets; an integral brings what the sensors show to zero."""
+    none = np.zeros((2, 2))
+    offset = np.asarray(bearing.sensor_offset)
+    if bearing.controller.integral:
+        return Resting(none, np.eye(2), none, -offset)
+    axes, gain = bearing.control_axes, bearing.controller.proportional
+    at = list(zip(-gain * (axes @ (sensed + offset)), axes @ place, strict=True))
+    force = axes.T @ [bearing.actuator.force(*one) for one in at]
+    by_current, by_place = np.array([bearing.actuator.slopes(*one) for one in at]).T
+    A, A_s = -axes.T @ np.diag(by_place) @ axes, axes.T @ np.diag(gain * by_current) @ axes
+    return Resting(A, A_s, np.eye(2), force + A @ place + A_s @ sensed)

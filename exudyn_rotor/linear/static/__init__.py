@@ -1,0 +1,1 @@
+"""Loads that stand still: deflection, reactions, stress."""

@@ -1,0 +1,163 @@
+"""Equilibrium of rotors on linear and nonlinear bearings under loads that stand still.
+
+With the stiffness K of rotors and linear supports, the loads f, and forces R of the other bearings
+on journals that move by ``u = U y``,
+
+    K y − Σ Uᵀ R = f,    A u + A_s u_s + B R = c,
+
+the second line of every bearing by itself (:mod:`exudyn_rotor.bearings.resting`). Newton's method
+solves both together, from the forces of bearings that hold their journals in the centre.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from exudyn_rotor.bearings.resting import (
+    Nonlinear,
+    Resting,
+    RigidBearing,
+    held,
+    resting,
+    starting_place,
+    unloaded,
+)
+from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.linear.solve.forced import static_motion
+from exudyn_rotor.linear.solve.state import others
+
+_MOST, _CONVERGED = 100, 1e-10  # of Newton's steps; of the largest force and place
+_SLOW = 15  # steps from which they are halved: contacts that open and close by turns
+_RIGID = 1e-7  # compliance of a rigid bearing, over that of the rotor's highest mode
+_SHORTEST = 1e-6  # share of a step below which a film is taken not to carry
+
+
+@dataclass(frozen=True, eq=False)
+class Journal:
+    """A nonlinear bearing and what it acts on.
+
+    Attributes
+    ----------
+    bearing : Bearing, MagneticBearing or RigidBearing
+    speed : float
+        Its spin speed [rad/s].
+    U, U_s : ndarray, shape (2, k)
+        Motion of the journal in the bearing, and of its sensor, along (n1, n2).
+    """
+
+    bearing: Nonlinear
+    speed: float
+    U: np.ndarray
+    U_s: np.ndarray
+
+
+def equilibrium(
+    K: np.ndarray,
+    load: np.ndarray,
+    journals: Sequence[Journal],
+    driven: np.ndarray,
+) -> tuple[np.ndarray | None, np.ndarray]:
+    """Return the coordinates (k,), and the forces of the journals' bearings on them (b, 2) [N].
+
+    None for the coordinates where a load acts on a motion that nothing holds.
+
+    Parameters
+    ----------
+    K : ndarray, shape (k, k)
+    load : ndarray, shape (k,)
+    journals : sequence of Journal
+    driven : ndarray, shape (k, d)
+        Momenta of the spins that a drive holds.
+
+    Raises
+    ------
+    ValueError, ArithmeticError
+        Where a film does not carry.
+    UnconvergedError
+        Where there is no equilibrium.
+    """
+    basis = others(driven, np.eye(len(K)))
+    K, load = basis.T @ K @ basis, basis.T @ load
+    rows = [(one.U @ basis, one.U_s @ basis) for one in journals]
+
+    def solved(equations: Sequence[Resting]) -> tuple[np.ndarray | None, np.ndarray]:
+        return _solved(K, load, rows, equations)
+
+    begin = [held() if one.bearing.carries else unloaded() for one in journals]
+    y, R = solved(begin)
+    if y is None or all(isinstance(one.bearing, RigidBearing) for one in journals):
+        return (None if y is None else basis @ y), R
+    places = [
+        (starting_place(one.bearing, one.speed, force), U_s @ y)
+        for one, (_, U_s), force in zip(journals, rows, R, strict=True)
+    ]
+    equations = _equations(journals, places, R)
+    for step in range(_MOST):
+        new_y, new_R = solved(equations)
+        if new_y is None:
+            return None, R
+        share = 1.0 if step < _SLOW else 0.5
+        while True:
+            tried = y + share * (new_y - y), R + share * (new_R - R)
+            places = [(U @ tried[0], U_s @ tried[0]) for U, U_s in rows]
+            try:
+                equations = _equations(journals, places, tried[1])
+                break
+            except (ValueError, ArithmeticError):
+                share *= 0.5
+                if share < _SHORTEST:
+                    raise
+        changes = [(tried[1] - R, tried[1])]
+        changes += [(U @ (tried[0] - y), U @ tried[0]) for U, _ in rows]
+        y, R = tried
+        # the first equations are those of journals in the centre
+        if step and all(
+            np.abs(d).max() <= _CONVERGED * np.abs(x).max(initial=1e-12) for d, x in changes
+        ):
+            return basis @ y, R
+    raise UnconvergedError(
+        f"static_response: no equilibrium found in {_MOST} steps; a bearing with clearance or at "
+        "the end of its film may have none under these loads"
+    )
+
+
+def _equations(
+    journals: Sequence[Journal],
+    places: Sequence[tuple[np.ndarray, np.ndarray]],
+    forces: np.ndarray,
+) -> list[Resting]:
+    return [
+        resting(one.bearing, one.speed, u, u_s, R)
+        for one, (u, u_s), R in zip(journals, places, forces, strict=True)
+    ]
+
+
+def _solved(
+    K: np.ndarray,
+    load: np.ndarray,
+    rows: Sequence[tuple[np.ndarray, np.ndarray]],
+    equations: Sequence[Resting],
+) -> tuple[np.ndarray | None, np.ndarray]:
+    """Return coordinates and forces of the linear equations, forces in units of a stiffness."""
+    k, count = len(K), 2 * len(rows)
+    most = max((np.abs(U).max(initial=0.0) for U, _ in rows), default=0.0)
+    unit = max(np.abs(K).max(initial=0.0), 1.0) / (most or 1.0)
+    A, b = np.zeros((k + count, k + count)), np.zeros(k + count)
+    A[:k, :k], b[:k] = K, load
+    for i, ((U, U_s), one) in enumerate(zip(rows, equations, strict=True)):
+        own = slice(k + 2 * i, k + 2 * i + 2)
+        # the equation of a compliance counts as many times as its forces do
+        scale = unit if np.array_equal(one.A + one.A_s, np.eye(2)) else 1.0
+        A[:k, own] = -unit * U.T
+        A[own, :k] = -scale * (one.A @ U + one.A_s @ U_s)
+        A[own, own] = -scale * unit * one.B
+        if one.is_rigid:
+            A[own, own] -= _RIGID * unit * (most or 1.0) * np.eye(2)
+        b[own] = -scale * one.c
+    x = static_motion(A, b)
+    if np.any(np.isnan(x)):
+        return None, np.zeros((len(rows), 2))
+    return x[:k], unit * x[k:].reshape(-1, 2)

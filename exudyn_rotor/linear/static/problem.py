@@ -1,0 +1,313 @@
+"""A rotor on its supports under loads that stand still: its equations, and what is seen of it.
+
+A constant force leaves a rotor that turns in the equilibrium ``K(Ω) y = f`` of the equations in
+axes in which the force stands still (:mod:`exudyn_rotor.linear.model.body`): the axes of the ground
+for weight, process forces and bearings, those of the rotor for what turns with it. With the speed
+comes the centrifugal load that stands still in these axes: in those of the ground the part that is
+alike around the axis, which pulls on supports along it by Poisson's contraction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from exudyn_rotor.bearings.given import Given, check_interfaces
+from exudyn_rotor.bearings.resting import Nonlinear
+from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.linear.equations import Terms, turned
+from exudyn_rotor.linear.model.body import RotorBody, rigid_columns_of
+from exudyn_rotor.linear.model.build import linear_model
+from exudyn_rotor.linear.model.element import Element
+from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.model.rotor_train import RotorTrain
+from exudyn_rotor.linear.response.places import At, place, places
+from exudyn_rotor.linear.static.equilibrium import Journal, equilibrium
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.theory.rotating_axes import axes_of, axial_skew
+
+_ROUNDING = 1e-9  # share of a load that is none
+
+
+def with_supports(
+    target: LinearModel | ReducedRotor | RotorTrain, given: tuple[Given, ...], stiffening: str
+) -> LinearModel:
+    """Return a model with the supports that are given, bearings among them as they are."""
+    if isinstance(target, ReducedRotor):
+        check_interfaces(given, target.interfaces)
+        return replace(linear_model(target, stiffening=stiffening), supports={"": given})
+    model = linear_model(target, supports=given, stiffening=stiffening)
+    if type(model) is not LinearModel:
+        raise TypeError(
+            "target: needs a rotor, a train or a linear model of these; of a scene, "
+            "steady_state(body) finds the equilibrium"
+        )
+    return model
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A rotor on its supports under loads that stand still.
+
+    Attributes
+    ----------
+    model : LinearModel
+        With the linear supports; a bearing is a spring without stiffness there, its sensor another.
+    acting : sequence
+        What each element is: a Support or link, a bearing, None for a rigid bearing, or the number
+        of the element whose sensor it is.
+    speed : float
+    frame : str
+    """
+
+    model: LinearModel
+    acting: tuple[object, ...]
+    speed: float
+    frame: str
+
+    @classmethod
+    def of(cls, model: LinearModel, speed: float, frame: str) -> Problem:
+        """Return the problem of a model whose supports are as they were given.
+
+        Raises
+        ------
+        ValueError
+            For bearings of a law of their own in axes that turn.
+        """
+        acting, plain = [], {}
+        for name, supports in model.supports.items():
+            plain[name] = []
+            for one in supports:
+                linear = isinstance(one, Support)
+                if not linear and frame == "rotor" and speed:
+                    raise ValueError(
+                        f"frame: the bearing at {one.interface!r} stands still, and its force is "
+                        "not proportional; loads that turn with the rotor need supports that are "
+                        "alike in all directions"
+                    )
+                plain[name].append(one if linear else Support(one.interface))
+                acting.append(one)
+                if getattr(one, "sensor", None):
+                    plain[name].append(Support(one.sensor))
+                    acting.append(len(acting) - 1)
+        acting += model.links
+        # at rest nothing is averaged, and all modes count, halves of pairs among them
+        axes = "inertial" if frame == "inertial" and speed else "rotor"
+        return cls(replace(model, supports=plain, wanted_axes=axes), tuple(acting), speed, frame)
+
+    @cached_property
+    def stiffness(self) -> np.ndarray:
+        """K (k, k) in the axes of the loads.
+
+        Raises
+        ------
+        ValueError
+            Where it changes as the rotor turns.
+        """
+        system = self.model.at(self.speed)
+        if not system.is_constant:
+            raise ValueError(
+                "frame: the supports are not alike in all directions, so that no motion stands "
+                "still in axes that turn with the rotor; unbalance_response and harmonic_response "
+                "have motions that repeat"
+            )
+        K = system.matrices()[2]
+        for n, H in system.H:
+            K = K - (1j * np.sign(n * self.speed) * H).real
+        return K
+
+    @property
+    def _turns(self) -> int:
+        return int(self.frame == "rotor" and self.speed != 0.0)
+
+    def _still(self, seen: Terms) -> np.ndarray:
+        """Return what stands still in the axes of the loads of a motion seen from outside."""
+        return turned(seen, -self._turns)[0].real
+
+    def load(self, loads: Mapping[At, np.ndarray], gravity: np.ndarray) -> np.ndarray:
+        """Return the load (k,) of forces and moments (6,), of gravity (3,) and of the rotation.
+
+        Raises
+        ------
+        ValueError
+            For a moment at a node, and gravity across a rotor in axes that turn with it.
+        """
+        model, axes = self.model, self.axes
+        total = np.zeros(model.size)
+        for key, wrench in loads.items():
+            point = place(model, key, self.speed)
+            if point.is_node and np.any(wrench[3:]):
+                raise ValueError(
+                    f"loads[{key!r}]: a mesh node has no rotation for a moment; use an interface"
+                )
+            total += self._still(point.seen).T @ np.r_[axes.T @ wrench[:3], axes.T @ wrench[3:]]
+        if np.any(gravity):
+            across = np.abs(axes[:, :2].T @ gravity).max() > _ROUNDING * np.linalg.norm(gravity)
+            if self._turns and across:
+                raise ValueError("gravity: stands still in space; leave frame='rotor' out")
+            base = model.base_loads(self.speed)
+            if base is None:
+                raise ValueError("gravity: needs a foundation with its participation")
+            total -= base[0].real.T @ (axes.T @ gravity)
+        return total + self._of_rotation()
+
+    def _of_rotation(self) -> np.ndarray:
+        """Return the centrifugal load (k,) that stands still."""
+        assembly = self.model.assembly(self.speed)
+        total = np.zeros(assembly.size)
+        for body, place_of in zip(assembly.bodies, assembly.slices, strict=True):
+            if self.speed and isinstance(body, RotorBody):
+                total[place_of] = (body.ratio * self.speed) ** 2 * body.unbalance.get(
+                    0, np.zeros(1)
+                ).real
+        return total
+
+    @property
+    def axes(self) -> np.ndarray:
+        """(n1, n2, e) of the first rotor as columns."""
+        return axes_of(next(iter(self.model.rotors.values())).axis)
+
+    @cached_property
+    def _motions(self) -> list[np.ndarray]:
+        """Motion (p, k) of each element in the axes of the loads."""
+        return [self._still(U) for U in self.model.assembly(self.speed).motions]
+
+    @property
+    def _elements(self) -> tuple[Element, ...]:
+        return self.model.assembly(self.speed).elements
+
+    def _rate(self, element: Element) -> float:
+        """Return the spin speed of the rotor in a support [rad/s]."""
+        return self.model.ratios[element.ends[0][0]] * self.speed
+
+    @cached_property
+    def journals(self) -> dict[int, Journal]:
+        """Bearings with a law of their own by the numbers of their elements."""
+        sensors = {one: i for i, one in enumerate(self.acting) if isinstance(one, int)}
+        return {
+            i: Journal(
+                one,
+                self._rate(self._elements[i]),
+                self._motions[i][:2],
+                self._motions[sensors.get(i, i)][:2],
+            )
+            for i, one in enumerate(self.acting)
+            if isinstance(one, Nonlinear)
+        }
+
+    def solved(self, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the coordinates (k,) and the force on the rotor of each bearing (b, 2) [N].
+
+        Raises
+        ------
+        ValueError, ArithmeticError
+            Where something acts on a motion that nothing holds, or a film does not carry.
+        """
+        journals = list(self.journals.values())
+        y, forces = equilibrium(self.stiffness, load, journals, self.model.free_spins)
+        if y is None:
+            raise ValueError(
+                f"loads: {self._not_held(load)}: a motion that no support holds; give one that "
+                "does (a 3 × 3 stiffness acts along the axis, too)"
+            )
+        return y, forces
+
+    def _not_held(self, load: np.ndarray) -> str:
+        """Name the rigid motions that a load acts on and nothing resists."""
+        K = self.stiffness + sum(one.U.T @ one.U for one in self.journals.values())
+        names, assembly = [], self.model.assembly(self.speed)
+        most = np.abs(np.diag(K)).max()
+        for body, place_of in zip(assembly.bodies, assembly.slices, strict=True):
+            if not isinstance(body, RotorBody):
+                continue
+            rigid, columns = rigid_columns_of(body.alone)
+            acted = np.abs(columns.T @ load[place_of]) > _ROUNDING * np.linalg.norm(load)
+            resisted = np.einsum("ik,ij,jk->k", columns, K[place_of, place_of], columns)
+            for name, is_free in zip(rigid, acted & (resisted <= _ROUNDING * most), strict=True):
+                names += [": ".join(filter(None, (body.name, name)))] if is_free else []
+        return f"a load acts on {', '.join(names) or 'a combination of rigid motions'}"
+
+    def seen(self, y: np.ndarray, forces: np.ndarray, at: Sequence[At] | None) -> dict[str, object]:
+        """Return the fields of a result that are known of coordinates and forces of bearings."""
+        observed = places(self.model, at, self.speed)
+        motion = np.array([self._still(one.seen) @ y for one in observed])
+        motion[[one.is_node for one in observed], 3:] = np.nan
+        own = dict(zip(self.journals, forces, strict=True))
+        shown = [i for i, one in enumerate(self.acting) if not isinstance(one, int)]
+        reactions, moved = np.zeros((2, len(shown), 6))
+        for row, i in enumerate(shown):
+            element, u = self._elements[i], self._motions[i] @ y
+            moved[row] = u[:6]
+            reactions[row] = -(self._resistance(element) @ u)[:6]
+            reactions[row, :2] += own.get(i, 0.0)
+        ends = [self._elements[i].ends for i in shown]
+        return {
+            "places": tuple(one.label for one in observed),
+            "motion": motion,
+            "supports": _different([self._label(each) for each in ends]),
+            "reactions": reactions,
+            "journals": moved,
+            "heights": np.array([self._height(one.label) for one in observed]),
+            "support_heights": np.array([self._height(self._label(each[:1])) for each in ends]),
+            "axes": self.axes,
+        }
+
+    def _resistance(self, element: Element) -> np.ndarray:
+        """Return the stiffness of an element in the axes of the loads, past which it may turn."""
+        K, D = element.matrices(self.speed)
+        return K + (self._turns - element.turns) * self.speed * D @ axial_skew(len(D))
+
+    def _label(self, ends: Sequence[tuple[str, str]]) -> str:
+        """Return the rotors and interfaces that an element acts on, without foundations."""
+        known = [end for end in ends if end[0] in self.model.rotors]
+        return " – ".join(":".join(filter(None, end)) for end in known)
+
+    def _height(self, label: str) -> float:
+        """Return the position of a place along the axis [m]."""
+        rotor = next(iter(self.model.rotors.values()))
+        if label.startswith("node ") and label not in self.model.interfaces:
+            place_of = rotor.shapes.nodes[int(label.removeprefix("node "))]
+        else:
+            body, name = self.model.owner(label)
+            rotor = body.alone.rotor if isinstance(body, RotorBody) else rotor
+            place_of = rotor.interfaces[name].reference
+        return float((place_of - rotor.axis.point) @ rotor.axis.direction)
+
+    def mesh(self, y: np.ndarray, stress: bool) -> dict[str, np.ndarray]:
+        """Return the fields of a result at the nodes of the only rotor, as far as they are known.
+
+        Raises
+        ------
+        ValueError
+            For the stress of several rotors, or of a rotor without stress modes.
+        """
+        body = self.model.assembly(self.speed).bodies[0]
+        rotor, several = body.alone.rotor, len(self.model.rotors) > 1
+        if stress and several:
+            raise ValueError("stress: is found for one rotor alone, not for a train")
+        if several or (rotor.shapes is None and not stress):
+            return {}
+        columns = body.spin.about_axis(body.alone.Q) if body.is_apart else body.alone.Q
+        x = columns @ y[: body.size]
+        nodes = rotor.shapes.nodes
+        fields = {
+            "nodes": nodes,
+            "displacement": (rotor.shapes.matrix @ x).reshape(-1, 3),
+            "along": (nodes - rotor.axis.point) @ rotor.axis.direction,
+            "triangles": rotor.shapes.triangles,
+        }
+        if stress:
+            fields["stress"] = rotor.stress_of(x, self.speed)
+        return fields
+
+
+def _different(names: Sequence[str]) -> tuple[str, ...]:
+    """Return names with a number behind each that came before."""
+    found: list[str] = []
+    for name in names:
+        number = sum(each == name for each in names[: len(found)]) + 1
+        found.append(name if number == 1 else f"{name}, {number}")
+    return tuple(found)

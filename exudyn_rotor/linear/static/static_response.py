@@ -1,0 +1,171 @@
+"""Static response: deflection, reactions and stress of rotors under loads that stand still."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks
+from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
+from exudyn_rotor.linear import options
+from exudyn_rotor.linear.modal.basis_error import is_known, warn
+from exudyn_rotor.linear.model.build import warn_of_left_out_stiffening
+from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.model.rotor_train import RotorTrain
+from exudyn_rotor.linear.response.basis_check import motion_error
+from exudyn_rotor.linear.response.places import At, checked_places
+from exudyn_rotor.linear.static.problem import Problem, with_supports
+from exudyn_rotor.linear.static.static_result import StaticResponse
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.reduction.static_modes import reduced_for_loads
+from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.theory.rotating_axes import FRAMES
+from exudyn_rotor.theory.stiffening import CHOICES
+
+Loads = Mapping[At, ArrayLike]
+
+
+def static_response(
+    target: LinearModel | ReducedRotor | SolidRotor | RotorTrain,
+    loads: Loads | None = None,
+    *,
+    gravity: ArrayLike | None = None,
+    supports: Sequence[Given] | Given = (),
+    speed: float = 0.0,
+    frame: str = "inertial",
+    at: Sequence[At] | At | None = None,
+    stiffening: str = "auto",
+    stress: bool = False,
+    accuracy: float | None = 1e-2,
+) -> StaticResponse:
+    """Compute deflection and reactions under loads that stand still.
+
+    Bearings need no static load here: their forces and the places of their journals are what is
+    found, of films, magnets and rolling elements as of springs. A film carries at a speed only.
+
+    Parameters
+    ----------
+    target : ReducedRotor, SolidRotor, RotorTrain or LinearModel
+        See :func:`linear_model`. A SolidRotor is solved as it is at rest, without the error of
+        a basis. Of a scene, :func:`steady_state` finds the equilibrium.
+    loads : mapping, optional
+        Interface, node number or position [m] → force (3,) [N], or force and moment (6,) [N], [N m]
+        at an interface, in mesh axes.
+    gravity : array_like, shape (3,), optional
+        In mesh axes, as the rotor is mounted at θ = 0 [m/s²].
+    supports : sequence of Support or bearings, optional
+        Any number, of a rotor; a train and a model have their own.
+    speed : float, optional
+        Spin speed [rad/s].
+    frame : {'inertial', 'rotor'}
+        Axes in which the loads stand still. Those of a rotor take supports that are alike in all
+        directions, and the unbalance of the rotor is among the loads.
+    at : sequence of interfaces, node numbers or positions, optional
+        Places to look at; all interfaces by default.
+    stiffening
+        See :func:`linear_model`.
+    stress : bool, optional
+        Whether to find the stress of the rotor, which needs one reduced with ``stress=True``.
+    accuracy : float or None, optional
+        Largest error by the basis of a reduced rotor without a warning; None for no estimate.
+
+    Returns
+    -------
+    StaticResponse
+
+    Raises
+    ------
+    TypeError, ValueError
+        For a target, load or support of another kind, an unknown place, a load on a motion that
+        nothing holds, a film that does not carry, and a moment at a node.
+    UnconvergedError
+        Where bearings have no equilibrium.
+
+    Notes
+    -----
+    A drive holds a spin that no support holds. The elements of a rolling bearing stand as at
+    θ = 0. An uneven rotor has at a speed the mean of its stiffness over a turn.
+
+    Examples
+    --------
+    Two masses of 2 kg on three springs of 2e4 N/m, one of them in the middle:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, static_response
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> rotor = rotor.with_interface("middle", [0, 1])
+    >>> supports = [Support(name, 2e4) for name in ("left", "middle", "right")]
+    >>> found = static_response(rotor, gravity=[0.0, -9.81, 0.0], supports=supports)
+    >>> print(found.reactions[:, 1].round(6))
+    [13.08 13.08 13.08]
+    >>> round(float(found.deflection("left")[1]), 9)
+    -0.000654
+    """
+    given = given_supports(supports)
+    speed = checks.number(speed, "speed", "rad/s")
+    checks.choice(frame, "frame", FRAMES)
+    checks.choice(stiffening, "stiffening", CHOICES)
+    checks.flag(stress, "stress")
+    options.check_basis_accuracy(accuracy)
+    named = _checked_loads(loads)
+    g = np.zeros(3) if gravity is None else checks.vector(gravity, "gravity", "m/s²")
+    at = checked_places(at)
+    if isinstance(target, SolidRotor):
+        check_interfaces(given, target.interfaces)
+        named = _at_nodes(target, named)
+        nodes = [key for key in named if isinstance(key, int)]
+        target = reduced_for_loads(target, nodes, spins=speed != 0.0, stress=stress)
+        accuracy = None  # nothing is left out at rest
+    problem = Problem.of(with_supports(target, given, stiffening), speed, frame)
+    warn_of_left_out_stiffening(problem.model, speed)
+    load = problem.load(named, g)
+    y, forces = problem.solved(load)
+    fields = problem.seen(y, forces, at)
+    if is_known(problem.model, accuracy) and not problem.model.is_full:
+        richer = replace(problem, model=problem.model.richer)
+        better = richer.seen(*richer.solved(richer.load(named, g)), at)
+        fields["basis_errors"] = motion_error({0: fields["motion"]}, {0: better["motion"]})
+        worst = max((abs(fields["reactions"] - better["reactions"])).max(initial=0.0), 0.0)
+        worst = worst / max(np.abs(better["reactions"]).max(initial=0.0), 1e-300)
+        errors = np.append(fields["basis_errors"], worst)
+        warn(errors, "a static deflection or reaction", problem.model, accuracy)
+    return StaticResponse(**fields, **problem.mesh(y, stress), speed=speed, frame=frame)
+
+
+def _checked_loads(loads: Loads | None) -> dict[At, np.ndarray]:
+    """Return loads as force and moment (6,) by places."""
+    if loads is None:
+        return {}
+    if not isinstance(loads, Mapping):
+        raise TypeError(
+            "loads: needs a dictionary of interface or node to a force (3,) [N] or force and "
+            f"moment (6,), got {checks.shown(loads)}"
+        )
+    found = {}
+    for key, value in loads.items():
+        name = f"loads[{key!r}]"
+        vector = checks.vector(value, name, "N", size=None)
+        if len(vector) not in (3, 6):
+            raise ValueError(f"{name}: needs 3 or 6 numbers [N], [N m], got {checks.shown(value)}")
+        found[options.place(key, "loads")] = np.r_[vector, np.zeros(6 - len(vector))]
+    return found
+
+
+def _at_nodes(rotor: SolidRotor, loads: Mapping[At, np.ndarray]) -> dict[str | int, np.ndarray]:
+    """Return loads by interfaces and numbers of nodes."""
+    found: dict[str | int, np.ndarray] = {}
+    for key, value in loads.items():
+        if isinstance(key, tuple):
+            key = rotor.nearest_node(key)
+        if isinstance(key, int) and key >= rotor.node_count:
+            raise ValueError(
+                f"loads: {key}: no such node; the mesh has 0 to {rotor.node_count - 1}"
+            )
+        found[key] = found.get(key, 0.0) + value
+    return found

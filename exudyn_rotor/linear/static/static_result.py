@@ -1,0 +1,219 @@
+"""Deflection, reactions and stress under loads that stand still."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from exudyn_rotor import checks
+from exudyn_rotor.plotting import axes_or_new, draw_surface, legend_above
+from exudyn_rotor.results import Result, numbers, storable, words
+from exudyn_rotor.solid.tensor import von_mises
+from exudyn_rotor.theory.rotating_axes import FRAMES
+from exudyn_rotor.units import Units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from mpl_toolkits.mplot3d import Axes3D
+
+_SLICES = 40  # of a rotor along its axis, whose mean displacements are drawn
+_SEEN = 0.1  # share of the rotor's length as which the largest displacement is drawn
+
+
+@storable
+@dataclass(frozen=True, eq=False)
+class StaticResponse(Result):
+    """Equilibrium of a rotor under loads that stand still; made by :func:`static_response`.
+
+    Vectors are along (n1, n2, e) of :attr:`SpinAxis.plane`, in axes that stand still or turn with
+    the rotor; the rotor is seen at the spin angle 0.
+
+    Attributes
+    ----------
+    places : tuple of str, shape (p,)
+        Interfaces and 'node 12'.
+    motion : ndarray, shape (p, 6)
+        Displacement [m] and rotation [rad]; rotations of a node are NaN.
+    supports : tuple of str, shape (b,)
+        Interfaces of the supports in the order in which they were given, then couplings.
+    reactions : ndarray, shape (b, 6)
+        Force [N] and moment [N m] of each support on the rotor.
+    journals : ndarray, shape (b, 6)
+        Displacement [m] and rotation [rad] of the rotor in each support.
+    heights : ndarray, shape (p,)
+        Positions of the places along the axis, from :attr:`SpinAxis.point` [m].
+    support_heights : ndarray, shape (b,)
+    speed : float
+        Spin speed [rad/s].
+    frame : {'inertial', 'rotor'}
+        Axes in which the loads stand still.
+    basis_errors : ndarray, shape (p,), or None
+        Estimated relative errors by the basis of a reduced rotor; None where they are not known.
+    nodes, displacement : ndarray, shape (n, 3), or None
+        Mesh nodes and their displacement, mesh axes [m]; None of several rotors, and of a rotor
+        that was reduced without its shapes.
+    along : ndarray, shape (n,), or None
+        Positions of the nodes along the axis [m].
+    triangles : ndarray of int, shape (t, c), or None
+        Surface of the rotor.
+    axes : ndarray, shape (3, 3)
+        (n1, n2, e) as columns, mesh coordinates.
+    stress : ndarray, shape (n, 6), or None
+        xx, yy, zz, yz, xz, xy at the nodes in mesh axes [Pa], where it was asked for.
+    """
+
+    places: tuple[str, ...] = words("places")
+    motion: np.ndarray = numbers("places", 6, finite=False)
+    supports: tuple[str, ...] = words("supports")
+    reactions: np.ndarray = numbers("supports", 6)
+    journals: np.ndarray = numbers("supports", 6)
+    heights: np.ndarray = numbers("places")
+    support_heights: np.ndarray = numbers("supports")
+    axes: np.ndarray = numbers(3, 3)
+    speed: float
+    frame: str = "inertial"
+    basis_errors: np.ndarray | None = numbers("places", optional=True)
+    nodes: np.ndarray | None = numbers("nodes", 3, optional=True)
+    displacement: np.ndarray | None = numbers("nodes", 3, optional=True)
+    along: np.ndarray | None = numbers("nodes", optional=True)
+    triangles: np.ndarray | None = numbers("triangles", "corners", dtype=int, optional=True)
+    stress: np.ndarray | None = numbers("nodes", 6, optional=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        checks.choice(self.frame, "frame", FRAMES)
+
+    def deflection(self, place: str | None = None) -> np.ndarray:
+        """Return the displacement along (n1, n2, e) of a place, the first by default, (3,) [m]."""
+        return self.motion[self._index(place, self.places, "place"), :3].copy()
+
+    def rotation(self, place: str | None = None) -> np.ndarray:
+        """Return the rotation about (n1, n2, e) of a place, the first by default, (3,) [rad]."""
+        return self.motion[self._index(place, self.places, "place"), 3:].copy()
+
+    def reaction(self, support: str | None = None) -> np.ndarray:
+        """Return force [N] and moment [N m] of a support on the rotor, the first by default, (6,).
+
+        Along and about (n1, n2, e). The load on the support, as a bearing's `load`, is less that.
+        """
+        return self.reactions[self._index(support, self.supports, "support")].copy()
+
+    def journal(self, support: str | None = None) -> np.ndarray:
+        """Return where the rotor rests in a support, the first by default, (2,) [m]."""
+        return self.journals[self._index(support, self.supports, "support"), :2].copy()
+
+    @property
+    def von_mises(self) -> np.ndarray:
+        """Von Mises stress at the nodes (n,) [Pa].
+
+        Raises
+        ------
+        ValueError
+            Without stress: ``static_response(…, stress=True)`` finds it.
+        """
+        if self.stress is None:
+            raise ValueError("stress: was not asked for; use static_response(…, stress=True)")
+        return von_mises(self.stress)
+
+    def _index(self, name: str | None, known: tuple[str, ...], what: str) -> int:
+        if name is None and known:
+            return 0
+        if name not in known:
+            raise ValueError(f"{what}: {name!r} is unknown; there are: {', '.join(known) or None}")
+        return known.index(name)
+
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+        """Return a row for every place and every support; `units` change nothing."""
+        Units.of(units)
+        names = ["n1", "n2", "e", "about n1", "about n2", "about e"]
+        kinds = ["displacement"] * len(self.places) + ["reaction"] * len(self.supports)
+        values = np.vstack([self.motion, self.reactions])
+        return {
+            "what": np.array(kinds),
+            "at": np.array([*self.places, *self.supports]),
+            **{
+                f"{name} [{'m or N' if i < 3 else 'rad or N m'}]": values[:, i]
+                for i, name in enumerate(names)
+            },
+        }
+
+    def table(self, units: str = "rpm") -> str:
+        """Return deflections and reactions as text, the speed in `units`: 'rpm', 'Hz' or 'SI'."""
+        unit = Units.of(units)
+        at = f"{unit.speeds(self.speed):.6g} {unit.speed}" if self.speed else "rest"
+        frame = "" if self.frame == "inertial" else ", in axes that turn with the rotor"
+        lines = [f"static response at {at}{frame}"]
+        heads = (
+            (("place", self.places, self.motion), ("[m]", "[rad]"), ""),
+            (("support", self.supports, self.reactions), ("[N]", "[N m]"), "reaction "),
+        )
+        for (head, names, values), (first, second), what in heads:
+            if names:
+                labels = [f"{what}{axis} {first}" for axis in ("n1", "n2", "e")]
+                labels += [f"about {axis} {second}" for axis in ("n1", "n2", "e")]
+                lines.append(f"{head:>16}  " + "  ".join(f"{label:>15}" for label in labels))
+            for name, row in zip(names, values, strict=True):
+                shown = (f"{'-' if np.isnan(x) else f'{x + 0.0:.6g}':>15}" for x in row)
+                lines.append(f"{name:>16}  " + "  ".join(shown))
+        return "\n".join(lines)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the deflection across the axis over the position along it, and the supports.
+
+        The line is the mean displacement of the mesh's sections where it is known.
+        """
+        ax = axes_or_new(ax)
+        z, lateral = self._centre_line()
+        for i, name in enumerate(("n1", "n2")):
+            [line] = ax.plot(z, 1e6 * lateral[:, i], label=f"along {name}")
+            ax.plot(self.heights, 1e6 * self.motion[:, i], "o", ms=4, color=line.get_color())
+        if self.supports:
+            base = np.zeros(len(self.supports))
+            ax.plot(self.support_heights, base, "k^", ms=8, label="supports", zorder=0)
+        ax.axhline(0.0, color="0.7", lw=0.8, zorder=0)
+        ax.set(xlabel="position along the axis [m]", ylabel="deflection [µm]")
+        legend_above(ax, 3)
+        return ax
+
+    def _centre_line(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return positions along the axis and the displacement across it there, (s, 2)."""
+        if self.nodes is None:
+            order = np.argsort(self.heights, kind="stable")
+            return self.heights[order], self.motion[order, :2]
+        edges = np.linspace(self.along.min(), self.along.max(), _SLICES + 1)
+        index = np.clip(np.searchsorted(edges, self.along) - 1, 0, _SLICES - 1)
+        count = np.bincount(index, minlength=_SLICES)
+        across = self.displacement @ self.axes[:, :2]
+        z, a, b = (
+            np.bincount(index, weights, _SLICES)[count > 0] / count[count > 0]
+            for weights in (self.along, *across.T)
+        )
+        return z, np.column_stack([a, b])
+
+    def plot_surface(self, scale: float | None = None, ax: Axes3D | None = None) -> Axes3D:
+        """Draw the deflected surface and the size of the displacement on it.
+
+        Parameters
+        ----------
+        scale : float, optional
+            Of the displacement; by default the largest is drawn as a tenth of the rotor's size.
+        ax : Axes3D, optional
+            Axes to draw in; those of a new figure by default.
+
+        Raises
+        ------
+        ValueError
+            Without a mesh surface.
+        """
+        if self.nodes is None or self.triangles is None or not self.triangles.size:
+            raise ValueError("plot_surface: there is no mesh surface; plot() draws the centre line")
+        sizes = np.linalg.norm(self.displacement, axis=1)
+        if scale is None:
+            most = sizes.max() or 1.0
+            scale = _SEEN * np.linalg.norm(np.ptp(self.nodes, axis=0)) / most
+        scale = checks.number(scale, "scale")
+        moved = self.nodes + scale * self.displacement
+        label = f"displacement [µm], drawn {scale:.3g} times"
+        return draw_surface(moved, self.triangles, 1e6 * sizes, label, ax, undeformed=self.nodes)

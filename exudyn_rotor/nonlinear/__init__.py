@@ -1,0 +1,1 @@
+"""Nonlinear steady motion: harmonic balance on a linear rest, branches, their stability."""

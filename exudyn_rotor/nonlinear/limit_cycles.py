@@ -1,0 +1,192 @@
+"""Limit cycles of rotors on films: whirl and whip, which no drive frequency gives.
+
+Where an equilibrium turns unstable (Hopf), a motion ``Re φ exp(iωt)`` neither grows nor decays,
+
+    [I − H(iω) (G + iω G')] φ = 0,                                                          (1)
+
+with the derivatives G, G' of :mod:`.balance` at the equilibrium: two real equations for ω and Ω.
+There begins a branch of periodic motions of small size. It is followed with ω as an unknown, and a
+phase condition, which keeps φ in phase.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import root
+
+from exudyn_rotor import checks
+from exudyn_rotor.bearings.given import Given, given_supports
+from exudyn_rotor.foundations.foundation import Foundation
+from exudyn_rotor.linear import options
+from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
+from exudyn_rotor.linear.response.places import At, checked_places
+from exudyn_rotor.linear.stability.threshold_result import StabilityThresholds
+from exudyn_rotor.nonlinear.balance import Balance, orders_of
+from exudyn_rotor.nonlinear.beside import Beside
+from exudyn_rotor.nonlinear.collect import collected
+from exudyn_rotor.nonlinear.continuation import Family, Point
+from exudyn_rotor.nonlinear.periodic_response import size_of, warn_of
+from exudyn_rotor.nonlinear.periodic_result import PeriodicResponse
+from exudyn_rotor.nonlinear.problem import Problem
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.sweep import ascending_from_zero
+from exudyn_rotor.threads import one_thread
+
+_FIRST = 0.02  # of a clearance: size of the first motion
+_BELOW = 0.3  # of the onset, down to which a branch is followed that turns back
+_BEGIN, _MOST = (3, 0), (48, 0)  # harmonics
+
+
+def limit_cycles(
+    target: ReducedRotor | SolidRotor,
+    speeds: ArrayLike,
+    onset: StabilityThresholds,
+    *,
+    supports: Sequence[Given] | Given,
+    gravity: ArrayLike = (0.0, 0.0, 0.0),
+    loads: Sequence[HarmonicForce] | HarmonicForce = (),
+    foundation: Foundation | None = None,
+    at: Sequence[At] | At | None = None,
+    stiffening: str = "auto",
+    tolerance: float = 1e-3,
+) -> PeriodicResponse:
+    """Compute the whirl of a rotor on films without unbalance, from where it begins.
+
+    The branch of whirling motions is followed from the first onset of instability, at which the
+    whirl is small, up to the last speed, whether it leads to higher or to lower speeds first.
+
+    Parameters
+    ----------
+    target : ReducedRotor or SolidRotor
+        Round.
+    speeds : array_like, shape (v,)
+        Ascending spin speeds [rad/s] at which all solutions that are met are wanted.
+    onset : StabilityThresholds
+        Of :func:`stability_threshold`, with the same supports.
+    supports, gravity, loads, foundation, at, stiffening, tolerance
+        See :func:`periodic_response`.
+
+    Returns
+    -------
+    PeriodicResponse
+        Its second phase is that of the whirl: ``found.rates[:, 0]`` is the frequency.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As :func:`periodic_response`; where the rotor is stable in the whole range of `onset`, and
+        for an uneven rotor or rolling bearings, whose spin is a second frequency.
+
+    Examples
+    --------
+    A mass of 20 kg on a film that carries it whirls at about half of its spin speed:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import (
+    ...     ShortJournalBearing, SolidRotor, limit_cycles, stability_threshold
+    ... )
+    >>> mass = SolidRotor.from_matrices(20.0 * np.eye(3), np.zeros((3, 3)), [[0.0, 0, 0]], "z")
+    >>> rotor, weight = mass.with_interface("seat", [0]).reduce(0), [0.0, -9.81, 0.0]
+    >>> film = ShortJournalBearing(
+    ...     interface="seat", radius=0.03, length=0.02, clearance=6e-5, viscosity=0.02,
+    ...     load=[0.0, -196.2],
+    ... )
+    >>> onset = stability_threshold(rotor, 100.0, 2000.0, supports=film)
+    >>> whirl = limit_cycles(rotor, [1200.0], onset, supports=film, gravity=weight)
+    >>> point = whirl.at(1200.0)[-1]
+    >>> print(round(whirl.rates[point, 0] / 1200.0, 2))
+    0.5
+    """
+    speeds = ascending_from_zero(speeds, "speeds")
+    checks.instance(onset, "onset", StabilityThresholds, "stability_threshold(…) makes one")
+    checks.instance(target, "target", (ReducedRotor, SolidRotor))
+    loads = checks.instances(loads, "loads", HarmonicForce)
+    gravity = checks.vector(gravity, "gravity", "m/s²")
+    tolerance = options.accuracy(tolerance, "tolerance")
+    asked = checked_places(at)
+    begins = np.flatnonzero(onset.onset)
+    if not begins.size:
+        raise ValueError("onset: the rotor does not turn unstable in its range; give a wider one")
+    speed = float(onset.values[begins[0]])
+    frequency = float(onset.frequencies_inertial[begins[0]])
+    problem = Problem.of(
+        target, given_supports(supports), (), gravity=gravity, loads=loads, own=False,
+        foundation=foundation, stiffening=stiffening, speed=speed, highest=speed,
+    )  # fmt: skip
+    if problem.standing is None or problem.laws.passes or not problem.laws.bearings:
+        raise ValueError(
+            "supports: need one film or more, and a round rotor without rolling bearings, whose "
+            "spin would be a second frequency"
+        )
+
+    def balance(p: np.ndarray, reach: tuple[int, int]) -> Balance:
+        return problem.balance(float(p[1]), reach, whirl=float(p[0]))
+
+    with one_thread():
+        mean, phi, p = _hopf(problem, frequency, speed)
+        spans = np.array([p[0], max(np.ptp(speeds), 0.1 * p[1])])
+        orders = orders_of(_BEGIN)
+        first = (orders == (1, 0)).all(axis=1), (orders == (-1, 0)).all(axis=1)
+        wave = np.zeros((len(orders), phi.size), dtype=complex)
+        wave[first[0]], wave[first[1]] = phi, phi.conj()
+        turned = np.sign(orders[:, :1]) * 1j * wave
+        family = Family(
+            balance, spans, size_of(problem), _measured, tolerance, _MOST, (turned, _BEGIN)
+        )
+        c = _FIRST * family.size / np.linalg.norm(phi) * wave
+        c[~np.any(orders, axis=1)] += mean
+        row = wave / np.linalg.norm(wave), np.zeros(2)
+        try:
+            start = family.corrected(Point(c, p, balance(p, _BEGIN)), row)[0]
+        except UnconvergedError as error:
+            raise ValueError("onset: no whirl of small size was found at it") from error
+        start = family.with_tangent(start, row)
+        limits = min(speeds[0], _BELOW * p[1]), speeds[-1]
+        found = list(family.followed(start, speeds, limits=limits))
+        warn_of(family, found)
+        return collected(found, np.zeros(len(found), int), "spin speed [rad/s]", asked)
+
+
+def _measured(point: Point) -> Point:
+    growth, multiplier = Beside(point.balance, point.c).growth(is_free=True)
+    return replace(point, growth=growth, multiplier=multiplier)
+
+
+def _hopf(
+    problem: Problem, frequency: float, speed: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the mean place (d,), φ (d,), and ω and Ω of (1), beginning near them.
+
+    Raises
+    ------
+    ValueError
+    """
+
+    def at(p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        mean = problem.at_rest(float(p[1]))[1]
+        balance = problem.balance(float(p[1]), (1, 0), whirl=float(p[0]))
+        J = balance.linearised(balance.padded(mean, (0, 0)))[1]
+        d = mean.size
+        return mean[0], J[2 * d :, 2 * d :]  # of the harmonic 1
+
+    def left(scaled: np.ndarray) -> np.ndarray:
+        values = np.linalg.eigvals(at(scaled * size)[1])
+        nearest = values[np.argmin(np.abs(values))]
+        return np.array([nearest.real, nearest.imag])
+
+    size = np.array([frequency, speed])
+    try:
+        solved = root(left, np.ones(2), method="hybr", options={"xtol": 1e-10})
+    except UnconvergedError as error:
+        raise ValueError(f"onset: no equilibrium at {speed:g} rad/s ({error})") from error
+    if np.linalg.norm(solved.fun) > 1e-6:
+        raise ValueError(f"onset: at {speed:g} rad/s no whirl begins; are the supports the same?")
+    p = solved.x * size
+    mean, J = at(p)
+    return mean, np.linalg.svd(J)[2][-1].conj(), p

@@ -1,0 +1,319 @@
+"""Nonlinear steady motion of a rotor over a parameter, all branches that hang together."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks
+from exudyn_rotor.bearings.given import Given, given_supports
+from exudyn_rotor.bearings.support import NoCoefficientsError
+from exudyn_rotor.callers import user_level
+from exudyn_rotor.foundations.foundation import Foundation
+from exudyn_rotor.linear import options
+from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.linear.model.build import warn_of_left_out_stiffening
+from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
+from exudyn_rotor.linear.response.places import At, checked_places
+from exudyn_rotor.linear.response.unbalance import Unbalance
+from exudyn_rotor.nonlinear.balance import Balance
+from exudyn_rotor.nonlinear.beside import Beside
+from exudyn_rotor.nonlinear.collect import collected
+from exudyn_rotor.nonlinear.continuation import Family, Point, same
+from exudyn_rotor.nonlinear.periodic_result import PeriodicResponse
+from exudyn_rotor.nonlinear.problem import Problem
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.sweep import ascending_from_zero
+from exudyn_rotor.threads import one_thread
+
+_LABELS = {"speed": "spin speed [rad/s]", "unbalance": "unbalance"}
+_MOST = (24, 48)  # harmonics of the second phase, and of the spin in a revolution
+_MOST_WITH_PASSES = 24  # harmonics of the spin beside the ball pass
+_NOT_HELD = (
+    "in its clearance nothing holds the rotor, which may stand anywhere there; give a load across "
+    "the axis, or an unbalance"
+)
+_FAILS = (UnconvergedError, NoCoefficientsError, ArithmeticError, np.linalg.LinAlgError)
+Over = str | Callable[[float], Sequence[Given] | Given]
+
+
+def periodic_response(
+    target: ReducedRotor | SolidRotor,
+    values: ArrayLike,
+    unbalances: Sequence[Unbalance] | Unbalance = (),
+    *,
+    supports: Sequence[Given] | Given = (),
+    over: Over = "speed",
+    speed: float | None = None,
+    gravity: ArrayLike = (0.0, 0.0, 0.0),
+    loads: Sequence[HarmonicForce] | HarmonicForce = (),
+    own: bool = True,
+    foundation: Foundation | None = None,
+    revolutions: int = 1,
+    at: Sequence[At] | At | None = None,
+    stiffening: str = "auto",
+    tolerance: float = 1e-3,
+    follow: bool = True,
+) -> PeriodicResponse:
+    """Compute the steady motion of a rotor on nonlinear bearings, with its branches.
+
+    Films, stops and rolling bearings act by their own laws, all other supports by their linear
+    coefficients. The branch of the lowest value is followed upwards, through folds, and the one of
+    the highest value downwards, unless it is the same. Every point tells whether its motion is
+    stable; folds, period doublings, and changes to a motion with a second frequency (torus) are
+    found and marked. With rolling bearings the motion has two frequencies, of the ball pass and the
+    spin, that need no common period.
+
+    Parameters
+    ----------
+    target : ReducedRotor or SolidRotor
+        A SolidRotor is reduced first, see :func:`linear_model`.
+    values : array_like, shape (v,)
+        Ascending values of the parameter; all solutions that are met there are among the points.
+        From the first to the last one the branches are followed.
+    unbalances : sequence of Unbalance, optional
+        In addition to the rotor's own.
+    supports : sequence of Support and bearings
+        Bearings under weight need no `load` of their own: it follows from `gravity` and `loads`.
+    over : 'speed', 'unbalance' or callable, optional
+        The parameter: the spin speed [rad/s]; a factor of all unbalances; or a function that takes
+        a value and gives the supports.
+    speed : float, optional
+        Spin speed [rad/s] where the parameter is another one.
+    gravity : array_like, shape (3,), optional
+        In axes of the mesh, as the rotor is mounted at θ = 0 [m/s²]. What is along the axis does
+        not count.
+    loads : sequence of HarmonicForce, optional
+        Constant forces: the real parts of their amplitudes.
+    own : bool, optional
+        Whether the rotor's own eccentricity counts, by added point masses and by its mesh.
+    foundation : Foundation, optional
+        What carries all supports, see :func:`linear_model`.
+    revolutions : int, optional
+        After which the motion repeats: 2 for motions at half of the spin frequency.
+    at : sequence of str, int or position, optional
+        Interfaces and mesh nodes to look at; all interfaces by default.
+    stiffening : {'auto', 'none', 'tilt', 'full'}
+    tolerance : float, optional
+        Largest size of the harmonics left out, relative to the motion of the journals; harmonics
+        are added until it is met, or there are 48 in a revolution.
+    follow : bool, optional
+        Whether branches are followed. Without, each value has one solution, beginning with the one
+        before: less work, and no folds.
+
+    Returns
+    -------
+    PeriodicResponse
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, a bearing without a force by place and velocity, two ball pass frequencies, a
+        rotor that nothing holds, and where no motion is found at all.
+
+    Warns
+    -----
+    UserWarning
+        Where a branch is lost, a value has no solution, or harmonics are lacking.
+
+    Examples
+    --------
+    A mass of 20 kg on a centred squeeze-film damper, at 500 rad/s: between unbalances of 0.95 and
+    1.27 kg mm there are two stable orbits, and an unstable one between them.
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, SqueezeFilmDamper, Unbalance, periodic_response
+    >>> mass = SolidRotor.from_matrices(20.0 * np.eye(3), np.zeros((3, 3)), [[0.0, 0, 0]], "z")
+    >>> damper = SqueezeFilmDamper(
+    ...     interface="seat", radius=0.06, length=0.02, clearance=1.5e-4, viscosity=0.003,
+    ...     centring_stiffness=1e6,
+    ... )
+    >>> found = periodic_response(
+    ...     mass.with_interface("seat", [0]).reduce(0), [0.0, 1.1, 2.0], Unbalance("seat", 1e-3),
+    ...     supports=damper, over="unbalance", speed=500.0,
+    ... )
+    >>> found.amplitudes("seat")[found.at(1.1)].round(7)
+    array([7.520e-05, 1.158e-04, 1.265e-04])
+    >>> found.stable[found.at(1.1)].tolist()
+    [True, False, True]
+    """
+    unbalances = checks.instances(unbalances, "unbalances", Unbalance)
+    loads = checks.instances(loads, "loads", HarmonicForce)
+    gravity = checks.vector(gravity, "gravity", "m/s²")
+    checks.instance(target, "target", (ReducedRotor, SolidRotor))
+    tolerance = options.accuracy(tolerance, "tolerance")
+    revolutions = checks.count(revolutions, "revolutions", least=1)
+    checks.flag(own, "own")
+    checks.flag(follow, "follow")
+    asked = checked_places(at)
+    values, speed = _checked_parameter(values, over, speed)
+    make = partial(
+        Problem.of, target, unbalances=unbalances, gravity=gravity, loads=loads, own=own,
+        foundation=foundation, stiffening=stiffening, revolutions=revolutions,
+    )  # fmt: skip
+    if callable(over):
+        known: dict[float, Problem] = {}
+
+        def problem_at(value: float) -> Problem:
+            if value not in known:
+                if len(known) > 3:
+                    known.pop(next(iter(known)))
+                known[value] = make(given_supports(over(value)), speed=speed, highest=speed)
+            return known[value]
+    else:
+        highest = values[-1] if over == "speed" else speed
+        lowest = next(iter(values[values > 0.0]), 0.0) if over == "speed" else speed
+        one = make(given_supports(supports), speed=lowest, highest=highest)
+        if not one.laws.bearings:
+            raise ValueError(
+                "supports: none has a nonlinear law; unbalance_response takes linear ones"
+            )
+        warn_of_left_out_stiffening(one.model, highest)
+
+        def problem_at(value: float) -> Problem:
+            return one
+
+    def balance(p: np.ndarray, reach: tuple[int, int], **changes) -> Balance:
+        value = float(p[-1])
+        if over == "speed":
+            return problem_at(value).balance(value, reach, **changes)
+        if over == "unbalance":
+            return problem_at(value).balance(speed, reach, unbalance=value, **changes)
+        return problem_at(value).balance(speed, reach, **changes)
+
+    first = problem_at(float(values[0]))
+    span = np.array([np.ptp(values) or abs(values[0]) or 1.0])
+    family = Family(
+        balance, span, size_of(first), _measured, tolerance,
+        (_MOST[0], _MOST_WITH_PASSES if first.laws.passes else _MOST[1] * revolutions),
+    )  # fmt: skip
+    with one_thread():
+        branches = _branches(family, problem_at, values) if follow and len(values) > 1 else None
+        if branches is None:
+            branches = [_one_by_one(family, problem_at, values)]
+        found = [point for branch in branches for point in branch]
+        warn_of(family, found, follow)
+        numbers = np.repeat(np.arange(len(branches)), [len(each) for each in branches])
+        label = _LABELS.get(over, "parameter") if isinstance(over, str) else "parameter"
+        return collected(found, numbers, label, asked)
+
+
+def _checked_parameter(
+    values: ArrayLike, over: Over, speed: float | None
+) -> tuple[np.ndarray, float | None]:
+    if not callable(over):
+        checks.choice(over, "over", tuple(_LABELS))
+    if over == "speed":
+        if speed is not None:
+            raise ValueError("speed: is for another parameter than over='speed'; leave it out")
+        return ascending_from_zero(values, "values"), None
+    if speed is None:
+        raise ValueError("speed: needs the spin speed [rad/s] where the parameter is another one")
+    return checks.ascending(values, "values"), checks.number(speed, "speed", "rad/s", least=0.0)
+
+
+def size_of(problem: Problem) -> float:
+    """Return the size of a motion that matters [m]: a clearance, or that of the loads."""
+    gaps = [one.clearance_along() for one in problem.laws.bearings]
+    gaps = [gap for gap in gaps if np.isfinite(gap)]
+    return float(min(gaps)) if gaps else 1e-12
+
+
+def _measured(point: Point) -> Point:
+    """Return a point with what motions beside it do."""
+    growth, multiplier = Beside(point.balance, point.c).growth()
+    return replace(point, growth=growth, multiplier=multiplier)
+
+
+def _first(family: Family, problem: Problem, value: float) -> Point:
+    """Return the solution at a value, from where a search begins without another solution.
+
+    Raises
+    ------
+    UnconvergedError, ValueError
+    """
+    p = np.array([value])
+    lost: Exception = UnconvergedError("no steady motion was found")
+    for balance, c in problem.starts(lambda reach, **more: family.balance(p, reach, **more)):
+        try:
+            start = Point(balance.solved(c), p, family.balance(p, balance.reach), kind="value")
+            start = family.refined(start)
+            if start.balance.holds(start.c):
+                return start
+            lost = UnconvergedError(_NOT_HELD)
+        except _FAILS as failed:
+            lost = failed
+    raise lost
+
+
+def _branches(
+    family: Family, problem_at: Callable[[float], Problem], values: np.ndarray
+) -> list[list[Point]]:
+    """Return the branch of the lowest value, and of the highest one if it is another."""
+    found: list[list[Point]] = []
+    lost = None
+    for value, sense in ((float(values[0]), 1.0), (float(values[-1]), -1.0)):
+        try:
+            start = _first(family, problem_at(value), value)
+        except _FAILS as failed:
+            lost = failed
+            continue
+        met = [point for branch in found for point in branch]
+        if not same(start, met, family.size):
+            found.append(list(family.followed(start, values, sense)))
+    if not found:
+        raise ValueError(
+            f"values: no steady motion was found at {values[0]:g} and {values[-1]:g}, from which a "
+            f"branch could be followed ({lost}); give other values, or a damped run of a scene "
+            "shows what the rotor does"
+        ) from lost
+    return found
+
+
+def _one_by_one(
+    family: Family, problem_at: Callable[[float], Problem], values: np.ndarray
+) -> list[Point]:
+    """Return a solution at each value that has one, beginning with the one before."""
+    found: list[Point] = []
+    lost = None
+    for value in map(float, values):
+        try:
+            try:
+                near = found[-1:] and family.refined(family.at_value(found[-1], value))
+            except _FAILS:
+                near = None
+            found.append(_measured(near or _first(family, problem_at(value), value)))
+        except _FAILS as failed:
+            lost = failed
+            family.lost.append(f"{value:g}")
+    if not found:
+        raise ValueError(f"values: no steady motion was found at any ({lost})") from lost
+    return found
+
+
+def warn_of(family: Family, found: Sequence[Point], follow: bool = True) -> None:
+    """Tell what is lost, lacking, or, unless branches are followed, unstable."""
+    told = []
+    unstable = [f"{one.value:g}" for one in found if one.growth > 0.0]
+    if unstable and not follow:
+        shown = ", ".join(unstable[:5]) + ", …" * (len(unstable) > 5)
+        told.append(
+            f"at {len(unstable)} of {len(found)} values ({shown}) the motion is unstable; the "
+            "rotor moves otherwise, which a run shows"
+        )
+    if family.lost:
+        shown = ", ".join(family.lost[:5]) + ", …" * (len(family.lost) > 5)
+        told.append(f"no steady motion was found at, or a branch is lost beyond, {shown}")
+    worst = max(found, key=lambda one: np.nan_to_num(one.error))
+    if worst.error > 1.5 * family.tolerance:
+        told.append(
+            f"at {worst.value:g} harmonics that are left out have {worst.error:.0e} of the motion"
+        )
+    if told:
+        warnings.warn("; ".join(told), UserWarning, stacklevel=user_level())

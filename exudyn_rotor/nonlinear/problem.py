@@ -1,0 +1,348 @@
+"""A rotor with nonlinear laws as the equations of :mod:`.balance`, and where a search begins."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from exudyn_rotor.bearings.annular_seal import AnnularSeal
+from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.given import Given
+from exudyn_rotor.bearings.journal_bearing import JournalBearing
+from exudyn_rotor.bearings.rolling import RollingBearing, depth_under
+from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
+from exudyn_rotor.foundations.foundation import Foundation
+from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.linear.model.build import linear_model
+from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.response.harmonic_loads import (
+    BaseAcceleration,
+    HarmonicForce,
+    total,
+    unbalance_load,
+)
+from exudyn_rotor.linear.response.unbalance import Unbalance
+from exudyn_rotor.nonlinear.balance import Balance, Laws, real_part_of
+from exudyn_rotor.nonlinear.rest import Rest, Unloaded, of_both_signs
+from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.theory.rotating_axes import axes_of, parts_across
+
+_DEPTH = 1e-3  # of the radius of the elements, at which a contact has the stiffness of k₀
+_INSIDE = 0.5  # of a clearance, where a film has that of k₀
+_SAME_PASS = 1e-9  # relative distance of ball pass frequencies that is rounding
+_DAMPING = (1.0, 0.1)  # of k₀ over the frequency, with which a search begins
+_SHARES = np.linspace(0.1, 1.0, 10)  # of the loads, by which they grow
+_MORE_UNBALANCE = 2.0 ** np.arange(6.0, -0.5, -0.5)
+_ROUGH = 1e-3
+_RESTS = 4  # speeds
+_SMALL = 1e-9  # share of the largest load that counts as none along the axis
+_NOT_ACROSS = (ModeKind.AXIAL.value, ModeKind.SPIN.value)
+
+
+def parted(given: Sequence[Given]) -> tuple[list[Bearing], list[Given]]:
+    """Return the supports whose laws are nonlinear, and all others.
+
+    Raises
+    ------
+    ValueError
+        For a bearing without a force by place and velocity alone.
+    """
+    laws, linear = [], []
+    for one in given:
+        if not isinstance(one, Bearing) or isinstance(one, AnnularSeal):
+            linear.append(one)
+            continue
+        remembers = isinstance(one, JournalBearing) and one.remembers
+        if remembers or isinstance(one, TiltingPadBearing):
+            raise ValueError(
+                f"supports: the bearing at {one.interface!r} has no force by place and velocity "
+                "alone: its voids or its pads have motions of their own; give a film with "
+                "cavitation='reynolds', or the linear coefficients, bearing.linearised()"
+            )
+        laws.append(one)
+    return laws, linear
+
+
+def passes_of(laws: Sequence[Bearing]) -> float:
+    """Return how many elements pass the load in a revolution, the same for all; 0 without any."""
+    found = [one.count * one.cage_ratio for one in laws if isinstance(one, RollingBearing)]
+    if found and np.ptp(found) > _SAME_PASS * max(found):
+        raise ValueError(
+            f"supports: {min(found):.6g} and {max(found):.6g} elements pass in a revolution, and "
+            "one frequency of ball passes is balanced: give one kind as it is, with the other "
+            "kinds linearised(), and then the other way round"
+        )
+    return found[0] if found else 0.0
+
+
+def springs_of(laws: Sequence[Bearing], speed: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return k₀ [N/m] and d₀ [N s/m] in place of laws, of the size of theirs, (d,) each."""
+    found = []
+    for one in laws:
+        gap = one.clearance_along()
+        where = _INSIDE * gap if np.isfinite(gap) else 0.0
+        if isinstance(one, RollingBearing):
+            where = one.clearance + _DEPTH * one.element_radius
+        elif not one.carries and hasattr(one, "stiffness"):
+            found.append((one.stiffness, 0.0))
+            continue
+        slopes = one.law_along(np.array([[where, 0.0, 0.0, 0.0]]), np.zeros(1), speed)[1][0]
+        k, d = np.linalg.norm(slopes[:, :2], 2), abs(np.trace(slopes[:, 2:])) / 2.0
+        found.append((max(k, 0.1 * d * abs(speed)), d))
+    return tuple(np.repeat(np.array(found).reshape(-1, 2), 2, axis=0).T)
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A rotor on linear supports and laws, under loads.
+
+    Attributes
+    ----------
+    model : LinearModel
+        With springs and dampers in place of the laws.
+    standing : LinearModel or None
+        The same in axes that stand still.
+    laws : Laws
+    static : mapping of int to ndarray (k,)
+        Harmonics of θ, both signs, of gravity and constant forces.
+    unbalance : mapping of int to ndarray (k,)
+        Per Ω².
+    revolutions : int
+    """
+
+    model: LinearModel
+    standing: LinearModel | None
+    laws: Laws
+    static: Mapping[int, np.ndarray]
+    unbalance: Mapping[int, np.ndarray]
+    revolutions: int = 1
+    _rests: dict = field(default_factory=dict, repr=False)
+
+    @classmethod
+    def of(
+        cls,
+        target: object,
+        given: Sequence[Given],
+        unbalances: Sequence[Unbalance],
+        *,
+        gravity: np.ndarray,
+        loads: Sequence[HarmonicForce],
+        own: bool,
+        foundation: Foundation | None,
+        stiffening: str,
+        speed: float,
+        highest: float,
+        revolutions: int = 1,
+    ) -> Problem:
+        """Return the equations of a rotor at speeds from a lowest one on that is not 0, if any.
+
+        In axes in which the rest is constant: those of the rotor, in which nothing is averaged, if
+        it can be.
+
+        Raises
+        ------
+        ValueError
+        """
+        bearings, linear = parted(given)
+        springs, dampers = springs_of(bearings, highest)
+        stand_ins = [
+            Support(one.interface, k, d)
+            for one, k, d in zip(bearings, springs[::2], dampers[::2], strict=True)
+        ]
+        options = {"foundation": foundation, "stiffening": stiffening}
+        model = linear_model(target, supports=[*stand_ins, *linear], **options)
+        model, standing = _constant(model, speed or 1.0)
+        _check_held(model, given)
+        weight = parts_across(axes_of(next(iter(model.rotors.values())).axis), gravity)
+        steady = [*([BaseAcceleration(-weight)] if np.any(weight) else []), *loads]
+        static = of_both_signs(total(steady, model, speed)) if steady else {}
+        _check_along(model, static, given)
+        try:
+            unbalance = unbalance_load(model, unbalances, own)
+        except ValueError:
+            if unbalances:
+                raise
+            unbalance = {}
+        unbalance = {n: F for n, F in of_both_signs(unbalance).items() if np.any(F)}
+        if passes_of(bearings) and not unbalance and not any(map(np.any, static.values())):
+            raise ValueError(
+                "gravity, loads, unbalances: need one across the axis that is not zero: without a "
+                "load no element carries, and preloaded ones do not move"
+            )
+        laws = Laws(bearings, springs, dampers, passes_of(bearings))
+        return cls(model, standing, laws, static, unbalance, revolutions)
+
+    @property
+    def reach(self) -> tuple[int, int]:
+        """K and N with which a search begins."""
+        whirls = 4 * self.revolutions if self.unbalance else 0
+        return (4, min(whirls, 1)) if self.laws.passes else (0, whirls)
+
+    def balance(
+        self,
+        speed: float,
+        reach: tuple[int, int],
+        *,
+        unbalance: float = 1.0,
+        share: float = 1.0,
+        more: float = 1.0,
+        whirl: float | None = None,
+        damper: float = 0.0,
+    ) -> Balance:
+        """Return the equations at a speed.
+
+        With a factor of the unbalance, times `more`, with a share of all loads, and with a
+        frequency of the second phase other than that of the ball pass [rad/s].
+        """
+        loads = {n: share * F for n, F in self.static.items()}
+        for n, F in self.unbalance.items():
+            loads[n] = loads.get(n, 0.0) + share * more * unbalance * speed**2 * F
+        first = self.laws.passes * speed if whirl is None else whirl
+        rates = first, speed / self.revolutions
+        rest = Rest(self._unloaded(speed), rates, self.revolutions, loads)
+        return Balance(self.laws, rest, reach, damper)
+
+    def _unloaded(self, speed: float) -> Unloaded:
+        """Return the rest at a speed, the last few of which are kept."""
+        if speed not in self._rests:
+            while len(self._rests) >= _RESTS:
+                self._rests.pop(next(iter(self._rests)))
+            names = [one.interface for one in self.laws.bearings]
+            self._rests[speed] = Unloaded(self.model, names, speed, self.standing)
+        return self._rests[speed]
+
+    # ------------------------------------------------------------ where a search begins
+
+    def at_rest(self, speed: float, share: float = 1.0) -> tuple[Balance, np.ndarray]:
+        """Return the mean place of the journals under static loads, c (1, d).
+
+        Raises
+        ------
+        UnconvergedError
+        """
+        balance = self.balance(speed, (0, 0), unbalance=0.0, share=share)
+        load = (self.laws.springs * balance.given[0].real).reshape(-1, 2)
+        guess = [_resting(one, speed, f) for one, f in zip(self.laws.bearings, load, strict=True)]
+        tried = [np.ravel(guess)[None] + 0j, np.zeros_like(balance.given), balance.given]
+        return balance, _first_of(balance, tried)
+
+    def starts(self, of: Callable[..., Balance]) -> Iterator[tuple[Balance, np.ndarray]]:
+        """Yield equations and harmonics, each nearer by more work, from which a search may lead.
+
+        `of` makes the equations at the wanted speed; it takes K and N, and options.
+        """
+        balance = of(self.reach)
+        try:
+            _, mean = self.at_rest(balance.rest.speed)
+            c = balance.padded(mean, (0, 0))
+            left, J = balance.linearised(c, mean=True)
+            yield balance, c - real_part_of(np.linalg.solve(J, left.ravel()).reshape(c.shape))
+            yield balance, c
+        except (UnconvergedError, np.linalg.LinAlgError):
+            pass
+        for way in (self._by_more_loads, self._by_less_damping, self._by_less_unbalance):
+            try:
+                c = way(of)
+            except UnconvergedError:
+                continue
+            yield of(self.reach), c
+
+    def _by_more_loads(self, of: Callable[..., Balance]) -> np.ndarray:
+        c = 0.0 * of(self.reach).given
+        for share in _SHARES:
+            c = of(self.reach, share=share).solved(c, _ROUGH)
+        return c
+
+    def _by_less_damping(self, of: Callable[..., Balance]) -> np.ndarray:
+        balance = of(self.reach)
+        c, fastest = self._pressed(balance), max(np.abs(balance.nu).max(), 1.0)
+        for part in _DAMPING:
+            more = part * self.laws.springs.max() / fastest
+            c = of(self.reach, damper=more).solved(c, _ROUGH)
+        return c
+
+    def _by_less_unbalance(self, of: Callable[..., Balance]) -> np.ndarray:
+        """Return the whirl that a larger one becomes: of rotors that unbalance alone presses."""
+        if not self.unbalance:
+            raise UnconvergedError("no unbalance")
+        c = None
+        for more in _MORE_UNBALANCE:
+            balance = of(self.reach, more=more)
+            c = balance.solved(self._pressed(balance) if c is None else c, _ROUGH)
+        return c
+
+    def _pressed(self, balance: Balance) -> np.ndarray:
+        """Return harmonics of a motion in which each load is on one element, wherever it is."""
+        loads = (self.laws.springs * balance.values(balance.given)).reshape(
+            -1, len(self.laws.bearings), 2
+        )
+        places = np.zeros_like(loads)
+        for b, one in enumerate(self.laws.bearings):
+            for place, load in zip(places[:, b], loads[:, b], strict=True):
+                place[:] = _resting(one, balance.rest.speed, load)
+        k, n = balance.orders.T
+        A, B = balance.points
+        return balance.spectrum(places.reshape(len(places), -1))[k % A, n % B]
+
+
+def _first_of(balance: Balance, tried: Sequence[np.ndarray]) -> np.ndarray:
+    for c in tried:
+        try:
+            return balance.solved(c)
+        except UnconvergedError as failed:
+            lost = failed
+    raise lost
+
+
+def _resting(one: Bearing, speed: float, load: np.ndarray) -> np.ndarray:
+    """Return about where a journal rests under a load (2,)."""
+    size = float(np.hypot(*load))
+    if isinstance(one, RollingBearing):
+        return max(one.clearance + float(depth_under(one, size)), 0.0) * load / max(size, 1e-300)
+    try:
+        return one.equilibrium(speed, load)
+    except (ValueError, ArithmeticError):
+        return np.zeros(2)
+
+
+def _constant(model: LinearModel, speed: float) -> tuple[LinearModel, LinearModel | None]:
+    """Return a model whose equations are constant, and one in axes that stand still."""
+    constant = model.at(speed).is_constant
+    standing = model if constant and not model.turns else None
+    turning = model.for_responses
+    if turning.at(speed).is_constant:
+        return turning, standing
+    if not constant:
+        raise ValueError(
+            "target, supports: an uneven rotor on uneven linear supports has equations that repeat "
+            "every revolution; give a finer mesh, or supports that are alike in all directions"
+        )
+    return model, standing
+
+
+def _check_held(model: LinearModel, given: Sequence[Given]) -> None:
+    """Refuse a rotor that supports leave free across its axis."""
+    across = [name for name in model.free_motions if name not in _NOT_ACROSS]
+    if across:
+        ends = ", ".join(dict.fromkeys(repr(one.interface) for one in given))
+        motion = "tilting" if any("tilt" in name for name in across) else "lateral motion"
+        raise ValueError(
+            f"supports: nothing holds the rotor against {motion}: all stand at {ends}; add one at "
+            "another interface"
+        )
+
+
+def _check_along(model: LinearModel, static: Mapping, given: Sequence[Given]) -> None:
+    """Refuse a load along the axis where nothing holds the rotor."""
+    spins = model.free_spins.shape[1]
+    shifts = model.neutral_motions[:, : model.neutral_motions.shape[1] - spins]
+    largest = max((np.abs(F).max() for F in static.values()), default=0.0)
+    if any(np.abs(F @ shifts).max(initial=0.0) > _SMALL * largest for F in static.values()):
+        ends = ", ".join(dict.fromkeys(repr(one.interface) for one in given))
+        raise ValueError(
+            f"supports: nothing holds the rotor along its axis, with supports at {ends}; add a "
+            "stiffness along the axis, or leave out loads along it"
+        )

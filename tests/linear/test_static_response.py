@@ -1,0 +1,295 @@
+"""Deflection and reactions under loads that stand still, against closed forms and other solvers."""
+
+from functools import cache
+
+import exudyn
+import numpy as np
+import pytest
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+from beam_models import BeamRotor
+from matplotlib import pyplot
+from models import STEEL, block_beam, centered_disc
+
+import exudyn_rotor as er
+
+G = 9.81
+DOWN = [0.0, -G, 0.0]
+LENGTH, DIAMETER = 2.0, 0.02
+
+
+def beam(spans: int = 4) -> er.ReducedRotor:
+    """Return a slender shaft with stations, four to a span, of all of its modes."""
+    stations = tuple(np.linspace(0.0, LENGTH, 4 * spans + 1))
+    return BeamRotor(stations, 0.0, DIAMETER, STEEL, ()).reduced()
+
+
+def weight(rotor: er.ReducedRotor) -> float:
+    return rotor.invariants.mass * G
+
+
+# reactions of a continuous beam of equal spans under its own weight, over w l (clause of tables)
+SHARES = {
+    2: [1 / 2, 1 / 2],
+    3: [3 / 8, 10 / 8, 3 / 8],
+    5: [11 / 28, 32 / 28, 26 / 28, 32 / 28, 11 / 28],
+}
+
+
+@pytest.mark.parametrize("count", SHARES)
+def test_reactions_of_a_continuous_beam_on_rigid_bearings(count):
+    rotor, spans = beam(), count - 1
+    names = [str(16 * i // spans) for i in range(count)]
+    share = np.array(SHARES[count]) / spans * weight(rotor)
+    supports = [er.Support(name, 1e11) for name in names]
+    found = er.static_response(rotor, gravity=DOWN, supports=supports)
+    # shear changes reactions by about 3 (d / l)² of a span; rounding by 1e-8
+    assert found.reactions[:, 1] == pytest.approx(share, rel=5e-4)
+    loads = er.bearing_loads(rotor, names, DOWN)
+    assert loads[:, 1] == pytest.approx(-share, rel=5e-4)
+    assert np.abs(loads[:, 0]).max() < 1e-9 * share.max()
+    assert found.reactions[:, 1].sum() == pytest.approx(weight(rotor), rel=1e-7)
+
+
+def test_deflection_of_a_beam_between_two_bearings():
+    rotor = beam()
+    supports = [er.Support(name, 1e11) for name in ("0", "16")]
+    second = np.pi * DIAMETER**4 / 64.0
+    sag = 5.0 * weight(rotor) * LENGTH**3 / (384.0 * STEEL["youngsModulus"] * second)
+    found = er.static_response(rotor, gravity=DOWN, supports=supports, at="8")
+    assert found.deflection()[1] == pytest.approx(-sag, rel=3e-4)  # shear adds 2.4 (d / L)²
+    force = er.static_response(rotor, {"8": [0.0, 10.0, 0.0]}, supports=supports, at="8")
+    sag = 10.0 * LENGTH**3 / (48.0 * STEEL["youngsModulus"] * second)
+    assert force.deflection()[1] == pytest.approx(sag, rel=3e-4)
+
+
+def test_a_rigid_rotor_shares_its_weight_between_bearings_of_equal_stiffness():
+    solid = block()
+    for name, z in (("a", 0.05), ("b", 0.1), ("c", 0.25)):
+        solid = solid.interface_at(name, z, 0.06)
+    rotor, names = solid.reduce(0), ["a", "b", "c"]
+    supports = [er.Support(name, 1e8) for name in names]
+    given = er.bearing_loads(rotor, supports, DOWN)
+    rigid = er.bearing_loads(rotor, names, DOWN)
+    assert rigid == pytest.approx(given, abs=1e-6 * np.abs(given).max())
+    assert np.abs(rigid).sum() > 0.99 * weight(rotor)
+
+
+@cache
+def block() -> er.SolidRotor:
+    return er.SolidRotor.from_ngsolve(block_beam(maxh=0.1), STEEL, "z").center_interfaces()
+
+
+def test_a_solid_rotor_is_solved_as_its_matrices():
+    rotor = block()
+    node = rotor.nearest_node([0.0, 0.0, 0.15])
+    springs = {"left": np.diag([3e7, 2e7, 4e7]), "right": np.diag([1e7, 2e7, 2e7])}
+    axes = np.column_stack([rotor.axis.plane, rotor.axis.direction])
+    K, F = rotor.stiffness.copy(), np.zeros(rotor.nodes.size)
+    for name, spring in springs.items():
+        U = rotor.interfaces[name].mean_motion(rotor.node_count)
+        turn = 1e3 * np.eye(3)
+        k = np.block([[axes @ spring @ axes.T, 0 * turn], [0 * turn, axes @ turn @ axes.T]])
+        K = K + U.T @ sp.csr_array(k) @ U
+    F += rotor.mass @ np.tile([1.0, -G, 2.0], rotor.node_count)
+    F[3 * node : 3 * node + 3] += [100.0, 50.0, -20.0]
+    moment = rotor.interfaces["right"].mean_motion(rotor.node_count).T @ [0, 5, 0, 3, 2, 1.0]
+    expected = spla.spsolve(sp.csc_array(K), F + moment).reshape(-1, 3)
+    supports = [er.Support(n, k, tilt_stiffness=1e3 * np.eye(3)) for n, k in springs.items()]
+    loads = {node: [100.0, 50.0, -20.0], "right": [0.0, 5.0, 0.0, 3.0, 2.0, 1.0]}
+    found = er.static_response(
+        rotor, loads, gravity=[1.0, -G, 2.0], supports=supports, at=["left", node], stress=True
+    )
+    assert found.displacement == pytest.approx(expected, abs=1e-7 * np.abs(expected).max())
+    assert axes @ found.deflection(f"node {node}") == pytest.approx(expected[node], rel=1e-6)
+    stress = rotor.stress_recovery(expected.reshape(-1, 1))[:, :, 0]
+    assert found.stress == pytest.approx(stress, abs=1e-6 * np.abs(stress).max())
+    assert found.von_mises.shape == (rotor.node_count,)
+    total = axes @ found.reactions[:, :3].sum(axis=0)
+    applied = rotor.total_mass * np.array([1.0, -G, 2.0]) + [100.0, 55.0, -20.0]
+    assert total == pytest.approx(-applied, rel=1e-7)
+    pyplot.close(found.plot_surface().figure)
+
+
+@cache
+def disc() -> er.ReducedRotor:
+    rotor = centered_disc()
+    return rotor.reduce(er.craig_bampton_modes(rotor, 5, coupling="RBE3"))
+
+
+def test_harmonic_response_at_frequency_zero_is_the_same():
+    rotor, ends = disc(), ("left", "right")
+    supports = [er.Support(name, [[1e7, 0.0], [0.0, 2e7]], 1e3) for name in ends]
+    force, moment = [50.0, 20.0, 0.0], [1.0, 2.0, 0.0]
+    loads = [er.HarmonicForce("left", force, moment), er.BaseAcceleration([0.0, G])]
+    for speed, within in ((0.0, 1e-9), (200.0, 1e-4)):  # at a speed the mesh is taken for round
+        found = er.static_response(
+            rotor, {"left": force + moment}, gravity=DOWN, supports=supports, speed=speed
+        )
+        given = {"speed": speed, "supports": supports, "accuracy": None}
+        harmonic = er.harmonic_response(rotor, [0.0], loads, **given)
+        for name in ends:
+            phasors = [harmonic.phasor(name, d, 0)[0].real for d in ("n1", "n2", "tilt n1")]
+            motion = [*found.deflection(name)[:2], found.rotation(name)[0]]
+            assert motion == pytest.approx(phasors, abs=within * np.abs(motion).max())
+        assert found.deflection("left")[1] < 0.0 < found.reaction("right")[1]
+
+
+def test_loads_that_turn_with_the_rotor():
+    rotor = disc()
+    supports = [er.Support(name, 1e7, 2e4) for name in ("left", "right")]
+    load, speed = [50.0, 20.0, 0.0], 150.0
+    given = {"supports": supports, "speed": speed}
+    found, unloaded = (
+        er.static_response(rotor, {"left": f}, frame="rotor", **given) for f in (load, [0.0] * 3)
+    )
+    force = er.HarmonicForce("left", load, frame="rotor")
+    harmonic = er.harmonic_response(rotor, [0.0], force, frame="rotor", **given, accuracy=None)
+    phasors = [harmonic.phasor("right", d, 0)[0].real for d in ("n1", "n2")]
+    moved = (found.motion - unloaded.motion)[found.places.index("right")]
+    assert moved[:2] == pytest.approx(phasors, rel=1e-6)
+    # a damper that stands still resists the turning motion: −K u − Ω D (e × u)
+    u = found.deflection("left")[:2]
+    pull = -1e7 * u - speed * 2e4 * np.array([-u[1], u[0]])
+    assert found.reaction("left")[:2] == pytest.approx(pull, rel=1e-9)
+    with pytest.raises(ValueError, match="gravity: stands still"):
+        er.static_response(rotor, gravity=DOWN, frame="rotor", **given)
+    uneven = [er.Support("left", np.diag([1e7, 2e7])), supports[1]]
+    with pytest.raises(ValueError, match="frame: the supports are not alike"):
+        er.static_response(rotor, supports=uneven, speed=speed, frame="rotor")
+
+
+SHORT = {"radius": 0.01, "length": 0.01, "clearance": 5e-5, "viscosity": 0.05}
+ROLLING = {"count": 8, "pitch_radius": 0.0326, "element_radius": 0.006, "stiffness": 7e9}
+PID = {"proportional": 2e4, "derivative": 20.0, "filter_frequency": 2e4, "amplifier_frequency": 1e4}
+MAGNETS = er.SaturatingActuator(constant=1e-5, bias_current=2.0, gap=4e-4, current_limit=6.0)
+
+
+def magnetic(name: str, **changes) -> er.MagneticBearing:
+    pid = er.PIDController(**PID, integral=changes.pop("integral", 0.0))
+    return er.MagneticBearing(interface=name, actuator=MAGNETS, controller=pid, **changes)
+
+
+def films(*names: str) -> list[er.ShortJournalBearing]:
+    return [er.ShortJournalBearing(interface=name, **SHORT) for name in names]
+
+
+KINDS = {
+    "three films": (films("0", "2", "4"), 300.0),
+    "five films": (films("0", "1", "2", "3", "4"), 300.0),
+    "rolling": (
+        [er.RollingBearing(interface=n, clearance=c, **ROLLING)
+         for n, c in (("0", 5e-6), ("2", 2e-6), ("4", -1e-6))], 0.0,
+    ),
+    "a stop that rubs": (
+        [*(er.Support(n, 1e5) for n in ("0", "4")),
+         er.ClearanceStop(interface="2", radius=0.02, clearance=1e-5, stiffness=1e7, friction=0.1)],
+        100.0,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_bearings_rest_where_a_scene_has_them(kind):
+    rotor, (supports, speed) = beam(1), KINDS[kind]
+    found = er.static_response(rotor, gravity=DOWN, supports=supports, speed=speed)
+    mbs = exudyn.SystemContainer().AddSystem()
+    body = er.add_rotor(mbs, rotor, spin=speed, translation="none", gravity=DOWN)
+    er.add_supports(body, supports)
+    mbs.Assemble()
+    steady = er.steady_state(body)
+    places = np.array([steady.interface_motion(one.interface)[:2] for one in supports])
+    assert found.journals[:, :2] == pytest.approx(places, abs=1e-6 * np.abs(places).max())
+    assert found.reactions[:, 1].sum() == pytest.approx(weight(rotor), rel=1e-8)
+
+
+def test_magnets_rest_where_their_sensors_show_it():
+    """By the gain alone as the law says; with an integral the sensors show zero."""
+    rotor, half = beam(), 0.5 * weight(beam())
+    ends = [magnetic("0"), magnetic("16")]
+    found = er.static_response(rotor, gravity=DOWN, supports=ends)
+    place = ends[0].equilibrium(0.0, [0.0, -half])
+    assert found.journal("0") == pytest.approx(place, abs=1e-9 * np.abs(place).max())
+    offset = [1e-5, -2e-5]
+    ends = [magnetic(n, sensor=s, sensor_offset=offset, integral=1e5)
+            for n, s in (("0", "2"), ("16", "14"))]  # fmt: skip
+    found = er.static_response(rotor, gravity=DOWN, supports=ends)
+    for sensor in ("2", "14"):
+        assert found.deflection(sensor)[:2] == pytest.approx(-np.array(offset), abs=1e-12)
+    assert found.reactions[:, 1] == pytest.approx([half, half], rel=1e-6)
+    ends = [magnetic(n, sensor=s) for n, s in (("0", "2"), ("16", "14"))]
+    found = er.static_response(rotor, gravity=DOWN, supports=ends)
+    current = -PID["proportional"] * found.deflection("2")[1]
+    force = MAGNETS.force(current, found.journal("0")[1])
+    assert found.reaction("0")[1] == pytest.approx(force, rel=1e-8)
+
+
+def test_films_carry_what_their_equilibrium_says():
+    rotor = beam()
+    loads = er.bearing_loads(rotor, films("0", "8", "16"), DOWN, speed=300.0)
+    found = er.static_response(rotor, gravity=DOWN, supports=films("0", "8", "16"), speed=300.0)
+    for bearing, load in zip(films("0", "8", "16"), loads, strict=True):
+        place = bearing.equilibrium(300.0, load)
+        assert found.journal(bearing.interface) == pytest.approx(place, abs=1e-9 * 5e-5)
+    with pytest.raises(ValueError, match="without rotation"):
+        er.static_response(rotor, gravity=DOWN, supports=films("0", "16"))
+
+
+def test_poissons_contraction_pulls_on_bearings_at_both_ends():
+    """Of a long cylinder the strain is ``−ν ρ Ω² R²/(2E)``, which two springs and E A resist."""
+    rotor = block()
+    supports = [er.Support(name, 1e9 * np.eye(3)) for name in ("left", "right")]
+    found = er.static_response(rotor, supports=supports, speed=500.0)
+    free = er.static_response(rotor, supports=[supports[0], er.Support("right", 1e9)], speed=500.0)
+    strain = free.deflection("right")[2] - free.deflection("left")[2]
+    sides = np.ptp(rotor.nodes, axis=0)
+    area, length = sides[0] * sides[1], sides[2]
+    polar = (sides[0] ** 2 + sides[1] ** 2) / 12.0  # mean of r² over the section
+    free_strain = -STEEL["poissonsRatio"] * STEEL["density"] * 500.0**2 * polar
+    assert strain / length == pytest.approx(free_strain / STEEL["youngsModulus"], rel=0.02)
+    force = -strain / (length / (STEEL["youngsModulus"] * area) + 2e-9)
+    assert found.reaction("right")[2] == pytest.approx(force, rel=0.02)
+    assert found.reaction("left")[2] == pytest.approx(-found.reaction("right")[2], rel=1e-6)
+
+
+def test_what_is_refused_is_named():
+    rotor = beam()
+    springs = [er.Support(name, 1e7) for name in ("0", "16")]
+    for loads, supports, message in (
+        ({"8": [0.0, 0.0, 5.0]}, springs, "translation along axis.*no support holds"),
+        ({"8": [0.0, 5.0, 0.0]}, springs[:1], "no support holds"),
+        ({"8": [1.0, 2.0]}, springs, "needs 3 or 6 numbers"),
+        ({"no": [1.0, 2.0, 3.0]}, springs, "no such interface"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            er.static_response(rotor, loads, supports=supports)
+    with pytest.raises(TypeError, match="loads: needs a dictionary"):
+        er.static_response(rotor, [1.0, 2.0, 3.0], supports=springs)
+
+
+def test_a_basis_without_static_flexibility_is_told():
+    rotor = block()
+    supports = [er.Support(n, 1e10 * np.eye(3)) for n in ("left", "right")]
+    exact = er.static_response(rotor, gravity=DOWN, supports=supports)
+    with pytest.warns(UserWarning, match="a static deflection or reaction errs by about"):
+        found = er.static_response(rotor.reduce(2), gravity=DOWN, supports=supports, accuracy=1e-4)
+    assert found.basis_errors.shape == (len(found.places),)
+    assert found.reactions.sum() == pytest.approx(exact.reactions.sum(), rel=1e-6)
+
+
+def test_tables_and_pictures_show_it():
+    found = er.static_response(
+        beam(), gravity=DOWN, supports=films("0", "8", "16"), speed=100.0 * np.pi, at=["0", "8"]
+    )
+    text = found.table()
+    for shown in ("3000 rpm", "reaction n2 [N]"):
+        assert shown in text
+    assert "50 Hz" in found.table("Hz")
+    columns = found.columns()
+    assert list(columns["what"]) == ["displacement"] * 2 + ["reaction"] * 3
+    ax = found.plot()
+    assert "deflection" in ax.get_ylabel()
+    assert len(ax.lines) > 4
+    pyplot.close(ax.figure)
+    with pytest.raises(ValueError, match="no mesh surface"):
+        found.plot_surface()
