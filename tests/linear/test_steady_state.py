@@ -178,7 +178,7 @@ def test_a_static_solution_under_gravity_holds_at_one_angle(reduced, translation
         mbs.Assemble()
         assert static(mbs)
         row = check_run(body, warn=False)["any angle"]
-        assert row.ok == ok
+        assert row.ok == (ok and translation == "none")  # else the unbalance turns in space
         assert "steady_state(body) finds the motion" in row.advice
 
 
