@@ -154,7 +154,7 @@ if TYPE_CHECKING:
     from exudyn_rotor.theory.motion import Motion as Motion
     from exudyn_rotor.theory.stiffening import Stiffening as Stiffening
 
-__version__ = "0.2.0.dev0"
+__version__ = "0.2.0"
 
 # public names by their module, which is imported where one of them is first used
 _NAMES = {

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.prestress.carrying import with_prestress
+from exudyn_rotor.prestress.given_loads import Loads, Spring
 from exudyn_rotor.prestress.static_solution import static_prestress
 from exudyn_rotor.reduction.reduce import ModeSource, reduce_rotor
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -233,11 +234,15 @@ class SolidRotor(FiniteElementRotor):
         stress: ArrayLike | None = None,
         yield_stress: float | None = None,
         speed: float | None = None,
+        loads: Loads | None = None,
+        supports: Sequence[Spring] | Spring = (),
     ) -> Prestress:
-        """Return the static prestress by the rotation, for ``stiffening='full'``.
+        """Return the static prestress by the rotation and by loads, for ``stiffening='full'``.
 
         Solves ``K u⁰ = M x_⊥`` for ω = 1 rad/s, with inertia relief on the motions that the
-        stiffness leaves free, and assembles the geometric stiffness of its stress.
+        stiffness leaves free, and assembles the geometric stiffness of its stress; likewise, once
+        for all speeds, of the stress by given loads: a thrust softens bending, a preload or a
+        tension stiffens it.
 
         Parameters
         ----------
@@ -262,13 +267,25 @@ class SolidRotor(FiniteElementRotor):
             Yield stress [Pa].
         speed : float, optional
             Highest speed [rad/s]; warns if the von Mises stress is above `yield_stress` there.
+        loads : mapping or array_like, shape (n, 3), optional
+            Loads that turn with the rotor and do not depend on the speed: interface or node number
+            → force (3,) [N], or at an interface force and moment (6,), in mesh axes; or a force at
+            every node, as of pressure. Where the rotor tilts they keep their direction. A moment
+            must be a torque about the axis; it counts as semi-tangential, see
+            :mod:`exudyn_rotor.prestress.given_loads`. This is their stiffness alone: a scene or
+            an analysis has the loads themselves only where they are given there.
+        supports : sequence of Support, optional
+            What holds the rotor in the static solutions, along the axis above all: the loads must
+            balance each other or be taken up, and the centrifugal load pulls on supports that
+            resist the contraction of the shaft.
 
         Raises
         ------
         TypeError, ValueError
             For values of the wrong kind, if the rotor has no elements (not made by
             :meth:`from_ngsolve`) or carries a prestress already, an interface is unknown, or
-            `stress` belongs to another mesh or makes the rotor buckle.
+            `stress` belongs to another mesh or makes the rotor buckle, nothing takes up a load, or
+            a moment is none about the axis.
 
         Warns
         -----
@@ -283,6 +300,8 @@ class SolidRotor(FiniteElementRotor):
             stress=stress,
             yield_stress=yield_stress,
             speed=speed,
+            loads=loads,
+            supports=supports,
         )
 
     def with_prestress(self, prestress: Prestress) -> SolidRotor:

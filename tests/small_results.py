@@ -45,7 +45,11 @@ def rotor(attached: bool) -> ReducedRotor:
     return replace(
         made,
         invariants=replace(
-            made.invariants, K2=square + square.T, B=square @ square.T, H=0.1 * made.invariants.K
+            made.invariants,
+            K2=square + square.T,
+            B=square @ square.T,
+            H=0.1 * made.invariants.K,
+            K0=square + square.T,
         ),
         shapes=replace(made.shapes, stress=RNG.normal(size=(count, 6, size))),
         centrifugal=Centrifugal(
@@ -66,8 +70,8 @@ def results() -> list:
                  np.array([[0, 1], [1, 0], [0, 1]]), codes < 2,
                  ("spin",), "full"),
         CriticalSpeeds(1.0, speeds, speeds, ("forward", "backward", "mixed"), np.array([1, 1, -1]),
-                       RNG.normal(size=(4, 3)) + 0j, "tilt"),
-        CriticalSpeedMap(speeds, table, codes, 1.0, "none"),
+                       RNG.normal(size=(4, 3)) + 0j, stiffening="tilt"),
+        CriticalSpeedMap(speeds, table, codes, 1.0, stiffening="none"),
         UnbalanceResponse(("left", "node 2"), np.array([1]), motion, "inertial", speeds),
         HarmonicResponse(("left", "node 2"), np.array([0]), motion, "rotor", speeds, 90.0),
         PeriodicResponse(

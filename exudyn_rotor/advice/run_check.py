@@ -48,6 +48,7 @@ def default_limits(accuracy: float) -> dict[str, float]:
         "strain": accuracy,
         "stiffening": accuracy,
         "divergence": 0.5,
+        "axial force": 2.0 * accuracy,
         "step": accuracy,
         "spin step": float(np.sqrt(accuracy / PERIOD_ERROR)),
         "explicit": 1.0,
@@ -107,7 +108,8 @@ def check_run(
     -----
     Checks, with a for the accuracy; "size" is the rotor's radius of gyration. A full body has no
     modes and no record of loads, hence none of the rows ``unresisted load``, ``top modes``,
-    ``residual``, ``displacement``, ``stress``, ``divergence`` and ``explicit``.
+    ``residual``, ``displacement``, ``stress``, ``divergence``, ``axial force``
+    and ``explicit``.
 
     ``displacement`` and ``stress`` are the first correction of the modes' motion. They do not see
     the error of the mesh, loads elsewhere than at interfaces and markers of ``body.add_marker``,
@@ -157,6 +159,9 @@ def check_run(
     ``stiffening``       a        stiffening that the level leaves out, as relative change of
                                   frequency of the recorded motion; estimated without a prestress
     ``divergence``       0.5      Ω²/Ω_d²; Ω_d is the speed at which flexible modes begin to grow
+    ``axial force``      2a       axial force between interfaces over the load at which the shaft
+                                  buckles, hinged where the force acts, less what the prestress
+                                  holds; frequencies err by half of it
     ``step``             a        relative period error 0.0844 (ωh)² of the recorded motion, larger
                                   for slow motion in space that is integrated in the rotor frame;
                                   next to a resonance amplitudes err by more, by the amplification

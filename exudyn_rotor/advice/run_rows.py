@@ -7,6 +7,7 @@ from operator import methodcaller
 
 import numpy as np
 
+from exudyn_rotor.advice.axial_force import axial_share
 from exudyn_rotor.advice.full_measures import FullMeasures
 from exudyn_rotor.advice.left_out_fields import left_out_at_nodes
 from exudyn_rotor.advice.proposal import Proposal
@@ -178,6 +179,15 @@ def _rows_of_modes(measures: Measures, reduced: ReducedRotor | None) -> Iterator
             "deflection at interfaces that the modes leave out",
             missing,
             "reduce with more modes, or with craig_bampton_modes",
+        )
+    axial = axial_share(measures.body, measures.record, measures.size)
+    if axial is not None:
+        yield (
+            "axial force",
+            "axial force over the buckling load, its stiffness in bending left out",
+            axial,
+            "frequencies are off by about half of it; give it to rotor.prestress(loads=…, "
+            "supports=…), and the prestress to reduce",
         )
     explicit = measures.explicit_step()
     if explicit:

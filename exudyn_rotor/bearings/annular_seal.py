@@ -28,7 +28,7 @@ inlet swirl of half of the speed.
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi
 from typing import ClassVar
@@ -39,6 +39,7 @@ from scipy.optimize import brentq
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.callers import user_level
 
 _TURBULENT = 2000.0  # Reynolds number Ra, below which a leakage without spin may be laminar
@@ -49,9 +50,8 @@ _LEAST = 1e-3  # of the axial velocity without friction, above which it is looke
 class AnnularSeal(Bearing):
     """Plain annular seal with turbulent leakage (2), for small motions about the centre.
 
-    Scenes and linear analyses take stiffness and damping; the inertia of the leakage, which
-    :meth:`added_mass` gives, is left out of both. That is right where ``ω² M`` is far below the
-    stiffness of rotor and bearings; a pump's rotor in water may need it.
+    Scenes and linear analyses take stiffness and damping, and the inertia of the leakage, that of
+    :meth:`added_mass`.
 
     Parameters
     ----------
@@ -185,6 +185,10 @@ class AnnularSeal(Bearing):
         TypeError, ValueError
         """
         return self.terms(speed)[2]
+
+    def linearised(self) -> Support:
+        """Return the support for linear analyses, with the inertia of the leakage."""
+        return replace(super().linearised(), mass=self.added_mass)
 
     def coefficients(
         self, speed: float, load: ArrayLike | None = None

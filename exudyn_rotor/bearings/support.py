@@ -12,6 +12,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.theory.rotating_axes import FRAMES, axial_skew, turned_harmonics
 
 COEFFICIENTS = ("stiffness", "damping", "tilt_stiffness", "tilt_damping")
+_GIVEN = (*COEFFICIENTS, "mass")
 _SHAPES = ((), (2, 2), (3, 3))
 _ROUNDING = 1e-6  # of the largest speed of a table: differences by the speed leave its end
 Harmonics = dict[int, np.ndarray]
@@ -48,6 +49,9 @@ class Support:
     extrapolate : bool, optional
         Whether analyses may use tables beyond their ends, with the value there; an error by
         default.
+    mass : float, (speeds, values), or callable, optional
+        Of a fluid that goes with the interface across the axis, alike in all directions [kg]; of
+        supports that stand still.
 
     Raises
     ------
@@ -77,14 +81,16 @@ class Support:
     tilt_damping: Coefficient = 0.0
     frame: str = "inertial"
     extrapolate: bool = False
+    mass: float | SpeedTable | Callable[[float], float] = 0.0
 
     def __post_init__(self) -> None:
         checks.label(self.interface, "interface")
         checks.flag(self.extrapolate, "extrapolate")
         checks.choice(self.frame, "frame", FRAMES)
-        for name in COEFFICIENTS:
+        for name in _GIVEN:
             value = _kept(getattr(self, name), f"support at {self.interface!r}: {name}")
             object.__setattr__(self, name, value)
+        _check_mass(self)
 
     def matrices(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Return stiffness and damping at a spin speed [rad/s], each (6, 6).
@@ -107,6 +113,10 @@ class Support:
         damping[:3, :3] = self._matrix("damping", speed)
         damping[3:, 3:] = self._matrix("tilt_damping", speed)
         return stiffness, damping
+
+    def mass_at(self, speed: float) -> float:
+        """Return the mass that goes with the interface at a spin speed [rad/s], in kg."""
+        return float(self._matrix("mass", speed)[0, 0])
 
     def terms(self, speed: float) -> tuple[Harmonics, Harmonics]:
         """Return Fourier terms in θ of damping and stiffness seen from the rotor, each (6, 6).
@@ -148,12 +158,12 @@ class Support:
     @property
     def varies(self) -> bool:
         """True when any coefficient depends on the spin speed."""
-        return any(varies(getattr(self, name)) for name in COEFFICIENTS)
+        return any(varies(getattr(self, name)) for name in _GIVEN)
 
     @property
     def table_speeds(self) -> np.ndarray:
         """Spin speeds of its tables [rad/s], at which its coefficients have kinks."""
-        given = [getattr(self, name) for name in COEFFICIENTS]
+        given = [getattr(self, name) for name in _GIVEN]
         return np.concatenate(
             [np.zeros(0), *(each[0] for each in given if isinstance(each, tuple))]
         )
@@ -166,7 +176,7 @@ class Support:
         TypeError, NoCoefficientsError
         """
         checks.number(speed, "speed", "rad/s")
-        for name in () if self.extrapolate else COEFFICIENTS:
+        for name in () if self.extrapolate else _GIVEN:
             value = getattr(self, name)
             if hasattr(value, "check_range"):  # a bearing's
                 value.check_range(speed)
@@ -190,6 +200,15 @@ class Support:
         elif isinstance(value, tuple):
             value = _interpolate(*value, speed)
         return _in_three_axes(value)
+
+
+def _check_mass(support: Support) -> None:
+    where = f"support at {support.interface!r}: mass"
+    given = support.mass[1] if isinstance(support.mass, tuple) else support.mass
+    if not callable(given) and np.ndim(given) != isinstance(support.mass, tuple):
+        raise ValueError(f"{where} needs a number, alike in all directions, got a matrix")
+    if acts(support.mass) and support.frame == "rotor":
+        raise ValueError(f"{where} is of supports that stand still; give frame='inertial'")
 
 
 def _symmetric(value: Coefficient) -> Coefficient:

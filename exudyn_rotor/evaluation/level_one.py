@@ -292,7 +292,7 @@ def stability_level_one(
     ------
     TypeError, ValueError
         If an argument is of another kind or out of range, an interface is unknown or given twice,
-        or the rotor has no lateral mode.
+        there are no supports, or the rotor has no lateral mode.
 
     Warns
     -----
@@ -322,6 +322,8 @@ def stability_level_one(
             + checks.shown(cross_coupling)
         )
     supports = given_supports(supports)
+    if not supports:
+        raise ValueError("supports: needs the bearings of the rotor, got none")
     check_interfaces(supports, target.interfaces)
     checks.choice(machine, "machine", MACHINES)
     checks.choice(stiffening, "stiffening", CHOICES)

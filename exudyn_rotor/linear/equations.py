@@ -147,8 +147,10 @@ def congruent(U: Terms, X: np.ndarray, V: Terms | None = None) -> dict[int, np.n
     """Return the Fourier terms of ``Uᵀ(θ) X V(θ)``, V = U by default.
 
     With V = U the symmetric and the skew part of X stay exactly that: the rounding of a stiff
-    support would else be a circulatory force.
+    support would else be a circulatory force. Of a stack X (s, p, p), with s matrices each.
     """
+    if X.ndim == 3:
+        return _by_entries(U, X, V)
     result: dict[int, np.ndarray] = {}
     if V is not None:
         for a, left in U.items():
@@ -161,6 +163,29 @@ def congruent(U: Terms, X: np.ndarray, V: Terms | None = None) -> dict[int, np.n
             for n, Y in congruent(U, part, U).items():
                 add(result, {n: 0.5 * (Y + sign * np.swapaxes(Y, -1, -2))})
     return result
+
+
+def _by_entries(U: Terms, X: np.ndarray, V: Terms | None) -> dict[int, np.ndarray]:
+    """Return what :func:`congruent` does of a stack, entry by entry: a support has few."""
+    result: dict[int, np.ndarray] = {}
+    right = U if V is None else V
+    orders = {a + b for a in U for b in right if a + b >= 0}
+    for i, j in zip(*np.nonzero(np.any(X, axis=0)), strict=True):
+        here, mirrored = X[:, i, j], X[:, j, i]
+        if V is None and i > j and np.any(mirrored):
+            continue  # comes with its mirror image
+        parts = [(here, 0.0)]
+        if V is None:
+            both = 1.0 if i != j else 0.5
+            parts = [(0.5 * both * (here + sign * mirrored), sign) for sign in (1.0, -1.0)]
+        for n in orders:
+            E = sum(np.outer(U[a][i], right[n - a][j]) for a in U if n - a in right)
+            E = E if n else E.real
+            for values, sign in parts:
+                if np.any(values):
+                    part = values[:, None, None] * (E + sign * E.T if sign else E)
+                    result[n] = result[n] + part if n in result else part
+    return result | {-n: Y.conj() for n, Y in result.items() if n}
 
 
 def joined(systems: Sequence[PeriodicSystem]) -> PeriodicSystem:

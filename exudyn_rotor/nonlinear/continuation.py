@@ -278,14 +278,18 @@ class Family:
 
     # ------------------------------------------------------------ between two points
 
-    def _between(self, first: Point, second: Point, share: float) -> Point:
-        """Return the solution at a share of the way between two."""
+    def _chord(self, first: Point, second: Point, share: float) -> tuple[Point, tuple]:
+        """Return the point at a share of the way between two, no solution yet, and that way."""
         reach = tuple(map(max, zip(first.balance.reach, second.balance.reach, strict=True)))
         a, b = self.widened(first, reach), self.widened(second, reach)
         chord = b.c - a.c, b.p - a.p
         p = a.p + share * chord[1]
         start = replace(b, c=a.c + share * chord[0], p=p, balance=self.balance(p, reach))
-        row = self._row(chord, a.c)
+        return start, self._row(chord, a.c)
+
+    def _between(self, first: Point, second: Point, share: float) -> Point:
+        """Return the solution at a share of the way between two."""
+        start, row = self._chord(first, second, share)
         return self.with_tangent(self.corrected(start, row)[0], row)
 
     def _changes(self, first: Point, second: Point) -> list[Point]:
@@ -318,8 +322,7 @@ class Family:
         up = values[(values > a) & (values <= b)]
         for value in up if a < b else values[(values < a) & (values >= b)][::-1]:
             try:
-                share = (value - a) / (b - a)
-                near = self._between(first, second, share) if share < 1.0 else second
+                near = self._chord(first, second, (value - a) / (b - a))[0]
                 found = self.refined(self.at_value(near, value))
                 found = self.measure(replace(found, kind="value"))
             except (UnconvergedError, ValueError, ArithmeticError, np.linalg.LinAlgError):

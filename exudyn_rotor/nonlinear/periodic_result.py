@@ -321,6 +321,7 @@ class PeriodicResponse(RunStart):
 
     def table(self, place: str | None = None, *, units: str = "rpm", every: bool = False) -> str:
         """Return motions at one place as text: wanted values and changes, or every point."""
+        checks.flag(every, "every")
         values, label = self._shown(units)
         name = self.places[self._at(place)]
         gaps = np.full(len(values), np.nan)

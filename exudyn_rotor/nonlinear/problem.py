@@ -325,8 +325,10 @@ def _constant(model: LinearModel, speed: float) -> tuple[LinearModel, LinearMode
 
 def _check_held(model: LinearModel, given: Sequence[Given]) -> None:
     """Refuse a rotor that supports leave free across its axis."""
-    across = [name for name in model.free_motions if name not in _NOT_ACROSS]
-    if across:
+    free = model.free_motions
+    across = [name for name in free if name not in _NOT_ACROSS]
+    # an eccentric rotor spins about its bearings, which is a combination of motions
+    if across and len(free) > model.neutral_motions.shape[1]:
         ends = ", ".join(dict.fromkeys(repr(one.interface) for one in given))
         motion = "tilting" if any("tilt" in name for name in across) else "lateral motion"
         raise ValueError(

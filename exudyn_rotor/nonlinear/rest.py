@@ -20,6 +20,7 @@ from functools import cached_property
 
 import numpy as np
 
+from exudyn_rotor.cached import kept
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, difference, stacked
 from exudyn_rotor.linear.model.linear_model import ON_FOUNDATION, LinearModel
 
@@ -44,6 +45,16 @@ def journal_motions(model: LinearModel, names: Sequence[str], speed: float) -> T
 def resisted(model: LinearModel) -> np.ndarray:
     """Return all motions but shifts along the axis and spins that nothing holds, (k, r)."""
     return np.eye(model.size) if model.moving_basis is None else model.moving_basis
+
+
+@kept
+def _journals(model: LinearModel, names: tuple[str, ...], moves: bool) -> Terms:
+    """Return the motion (d, r) of journals across the axis, by motions that something resists."""
+    moved = journal_motions(model, names, float(moves))
+    across, basis = np.arange(3 * len(names)) % 3 < 2, resisted(model)
+    moved = {n: U[across] @ basis for n, U in moved.items()}
+    largest = max(np.abs(U).max() for U in moved.values())
+    return {n: U for n, U in moved.items() if np.abs(U).max() > _SMALL * largest}
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,11 +97,7 @@ class Unloaded:
     @cached_property
     def journals(self) -> Terms:
         """C (d, r)."""
-        moved = journal_motions(self.model, self.names, self.speed)
-        across = np.arange(3 * len(self.names)) % 3 < 2
-        moved = {n: U[across] @ self.basis for n, U in moved.items()}
-        largest = max(np.abs(U).max() for U in moved.values())
-        return {n: U for n, U in moved.items() if np.abs(U).max() > _SMALL * largest}
+        return _journals(self.model, tuple(self.names), bool(self.speed))
 
 
 @dataclass(frozen=True, eq=False)

@@ -148,15 +148,14 @@ def response_shapes(
     tolerance = options.accuracy(tolerance, "tolerance")
     model = _with_mesh(target, supports, stiffening, axes).for_responses
     load, held = unbalance_load(model, unbalances, own), model.held_basis
-    systems = [model.at(float(speed)) for speed in values]
-    loads = [{n: speed**2 * F for n, F in load.items()} for speed in values]
-    found = forced_motions(systems, loads, [0.0] * len(values), held=held, tolerance=tolerance)
-    seen = [_of_nodes(model, motion, 1.0) for motion in found]
-    if any(np.any(np.isnan(x)) for each in seen for x in each.values()):
+    loads = {n: values[:, None] ** 2 * F for n, F in load.items()}
+    none = np.zeros(len(values))
+    found = forced_motions(model.at_all(values), loads, none, held=held, tolerance=tolerance)
+    seen = _of_nodes(model, {n: X.T for n, X in found.items()}, 1.0)
+    if any(np.any(np.isnan(x)) for x in seen.values()):
         raise UnconvergedError("response_shapes: there is no steady motion at one of the speeds")
-    orders = np.array(sorted({n for motion in seen for n in motion}))
-    zero = np.zeros_like(next(iter(seen[0].values())))
-    motion = np.array([[each.get(n, zero) for n in orders] for each in seen], dtype=complex)
+    orders = np.array(sorted(seen))
+    motion = np.stack([seen[n].T for n in orders.tolist()], axis=1)
     return MotionShapes(
         **_surface(model),
         speeds=values,

@@ -35,6 +35,14 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.prestress.given_loads import (
+    Loads,
+    Spring,
+    check_balanced,
+    checked_supports,
+    nodal_loads,
+    support_forces,
+)
 from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.interface import Interface
@@ -59,6 +67,8 @@ def static_prestress(
     stress: ArrayLike | None = None,
     yield_stress: float | None = None,
     speed: float | None = None,
+    loads: Loads | None = None,
+    supports: Sequence[Spring] | Spring = (),
 ) -> Prestress:
     """Return the prestress; parameters as :meth:`exudyn_rotor.SolidRotor.prestress`."""
     check_unstressed(rotor)
@@ -66,6 +76,8 @@ def static_prestress(
     checks.flag(initial_displacement, "initial_displacement")
     checks.flag(euler, "euler")
     _check_yield(yield_stress, speed)
+    supports = checked_supports(supports)
+    _check_alone(clamped, initial_displacement, loads is not None or bool(supports))
     shape = (rotor.node_count, 6)
     rest_stress = None if stress is None else checks.array(stress, "stress", "Pa", shape=shape)
     if rotor.elements is None:
@@ -97,9 +109,20 @@ def static_prestress(
             elements.initial_displacement_stiffness(displacement),
             elements.squared_displacement_stiffness(displacement),
         )
+    held = None
+    if supports:
+        held = support_forces(rotor, supports, state.relief, load)
+        matrix = state.stiffening(load + held)[1]
+    by_loads, loaded = None, 0.0
+    if loads is not None:
+        given = nodal_loads(rotor, loads)
+        taken_up = support_forces(rotor, supports, state.relief, given)
+        check_balanced(rotor, state.relief, given, taken_up)
+        moved, by_loads = state.stiffening(given + taken_up)
+        loaded = rotor.stress_recovery(moved[:, None])[:, :, 0]
     by_spin = rotor.stress_recovery(displacement[:, None])[:, :, 0]
     if speed is not None:
-        total = speed**2 * by_spin + (0.0 if rest_stress is None else rest_stress)
+        total = speed**2 * by_spin + (0.0 if rest_stress is None else rest_stress) + loaded
         _warn_of_yield(rotor.nodes, total, yield_stress, speed)
     return Prestress(
         matrix=matrix,
@@ -114,7 +137,17 @@ def static_prestress(
         constant_stress=rest_stress,
         load=load,
         hub=state.rigid,
+        by_loads=by_loads,
+        reactions=held,
     )
+
+
+def _check_alone(clamped: Sequence[str], initial_displacement: bool, given: bool) -> None:
+    if given and (clamped or initial_displacement):
+        raise ValueError(
+            "loads, supports: have no solution with clamped interfaces or an initial displacement; "
+            "hold a rotor by stiff supports, and leave initial_displacement out"
+        )
 
 
 def centrifugal_load(rotor: FiniteElementRotor) -> np.ndarray:
@@ -137,7 +170,10 @@ def relief_rotations(rotor: FiniteElementRotor) -> np.ndarray:
     if not carried.balanced:
         return np.zeros((2, 3))
     free = free_motions_of(rotor)
-    loads = np.stack([centrifugal_load(rotor), euler_load(rotor)])
+    by_spin = centrifugal_load(rotor)
+    if carried.reactions is not None:
+        by_spin = by_spin + carried.reactions
+    loads = np.stack([by_spin, euler_load(rotor)])
     turns = rotations(rotor.nodes, rotor.center_of_mass)
     inertia = turns.T @ (rotor.mass @ turns)
     momentum = turns.T @ (rotor.mass @ (free @ (free.T @ loads.T)))

@@ -119,7 +119,7 @@ def _known_loads(
     """
     resists, displacement = prestress.constant, prestress.displacement
     if rotor.grounded:
-        load = centrifugal_load(rotor)
+        load = _acting(rotor, prestress)
         if resists is None:
             yield "matrix", prestress.matrix, load, 0.0
         elif displacement is not None:
@@ -135,7 +135,7 @@ def _check_strains(rotor: FiniteElementRotor, prestress: Prestress) -> None:
     for all A and B; rotations are the part of this that the elastic stiffness does not resist.
     """
     positions = rotor.nodes - rotor.center_of_mass
-    virial = positions.T @ _balanced(rotor, centrifugal_load(rotor)).reshape(-1, 3)
+    virial = positions.T @ _balanced(rotor, _acting(rotor, prestress)).reshape(-1, 3)
     fields = np.kron(positions, np.eye(3))
     resistance, expected = fields.T @ (prestress.matrix @ fields), np.kron(virial, np.eye(3))
     e = rotor.axis.direction
@@ -155,7 +155,7 @@ def _check_rotations(rotor: FiniteElementRotor, prestress: Prestress) -> None:
     By equilibrium ``(a×x)ᵀ K_G (b×x) = (a×x) · (b×f)`` with f the balanced load.
     """
     turns = rotations(rotor.nodes, rotor.center_of_mass)
-    load = centrifugal_load(rotor)
+    load = _acting(rotor, prestress)
     load = (_balanced(rotor, load) if prestress.balanced else load).reshape(-1, 3)
     turned = np.stack([np.cross(axis, load).ravel() for axis in np.eye(3)], axis=1)
     expected, resistance = turns.T @ turned, turns.T @ (prestress.matrix @ turns)
@@ -170,6 +170,12 @@ def _check_rotations(rotor: FiniteElementRotor, prestress: Prestress) -> None:
             f"rotor with {expected[i, j]:.6g}; {_ALONE}, and with this rotor's axis, density and "
             "point masses"
         )
+
+
+def _acting(rotor: FiniteElementRotor, prestress: Prestress) -> np.ndarray:
+    """Return the centrifugal load (3n,) per ω² with the reactions of supports."""
+    load = centrifugal_load(rotor)
+    return load if prestress.reactions is None else load + prestress.reactions
 
 
 def _balanced(rotor: FiniteElementRotor, load: np.ndarray) -> np.ndarray:

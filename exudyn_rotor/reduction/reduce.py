@@ -31,6 +31,7 @@ from exudyn_rotor.theory.nodal import rotations, translations
 from exudyn_rotor.theory.stiffening import with_prestress
 from exudyn_rotor.threads import one_thread
 
+_UNRESISTED = (ModeKind.TRANSLATION_1, ModeKind.TRANSLATION_2, ModeKind.AXIAL)
 _NO_TURN = 1e-9  # of the largest: what rounding leaves of the rotation of a translation
 
 ModeSource = int | ModeBasis | FEMinterface | np.ndarray
@@ -251,7 +252,26 @@ def _stiffened(rotor: FiniteElementRotor, invariants: Invariants, basis: np.ndar
         None if matrix is None else basis.T @ (matrix @ basis)
         for matrix in (carried.euler, carried.per_fourth_power)
     )
+    if carried.by_loads is not None:
+        invariants = replace(invariants, K0=_of_loads(rotor, invariants, basis))
     return with_prestress(invariants, K2, B, relief_rotations(rotor), K4)
+
+
+def _of_loads(rotor: FiniteElementRotor, invariants: Invariants, basis: np.ndarray) -> np.ndarray:
+    """Return the stiffness of given loads, which resist neither translations nor the spin.
+
+    They turn with the rotor.
+    """
+    matrix = basis.T @ (rotor.carried_prestress.by_loads @ basis)
+    if rotor.grounded:
+        return 0.5 * (matrix + matrix.T)
+    free = np.eye(len(matrix))[:, [RIGID_KINDS.index(kind) for kind in _UNRESISTED]]
+    others = np.eye(len(matrix)) - free @ free.T
+    turns = others @ (rotor.axis.direction @ invariants.mean_rotation)
+    turns[len(RIGID_KINDS) :] = 0.0
+    turns /= np.linalg.norm(turns) or 1.0
+    others -= np.outer(turns, turns)
+    return others @ (0.5 * (matrix + matrix.T)) @ others
 
 
 def _centrifugal(rotor: FiniteElementRotor) -> Centrifugal | None:

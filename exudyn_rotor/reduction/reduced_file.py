@@ -20,7 +20,7 @@ Rotor = TypeVar("Rotor")  # ReducedRotor, which has the methods that call this m
 
 _KIND = "reduced rotor"
 _INVARIANTS = ("direction", "center", "J", "S", "P", "M", "K", "D", "G", "C")
-_OPTIONAL_INVARIANTS = ("K2", "B", "K4", "K2_estimated", "H")
+_OPTIONAL_INVARIANTS = ("K2", "B", "K4", "K2_estimated", "H", "K0")
 _INTERFACE = ("reference", "center", "motion")
 _SHAPES = ("nodes", "matrix")
 _CENTRIFUGAL = ("displacement", "stress", "constant_stress")

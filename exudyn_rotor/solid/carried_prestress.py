@@ -48,6 +48,11 @@ class Prestress:
         Centrifugal load per ω² that it was computed for [N s²]; None for an imported matrix.
     hub : ndarray of int or None
         Nodes that a rigid hub held in the static solution.
+    by_loads : scipy.sparse.csr_array or None
+        K_G of the stress by given loads [N/m]. It resists tilts of the whole rotor, too, as loads
+        keep their direction, so that it is no part of the rotor's own stiffness.
+    reactions : ndarray or None, shape (3n,)
+        Nodal forces per ω² of the supports that hold the rotor under the centrifugal load [N s²].
 
     Raises
     ------
@@ -78,6 +83,8 @@ class Prestress:
     constant_stress: np.ndarray | None = None
     load: np.ndarray | None = None
     hub: np.ndarray | None = None
+    by_loads: sp.csr_array | None = None
+    reactions: np.ndarray | None = None
 
     def __post_init__(self) -> None:
         nodes = matrices.as_nodes(self.nodes)
@@ -87,7 +94,7 @@ class Prestress:
             "matrix": matrices.as_matrix("prestress matrix", self.matrix, count),
             "balanced": checks.flag(self.balanced, "balanced"),
         }
-        for name in ("euler", "constant"):
+        for name in ("euler", "constant", "by_loads"):
             if getattr(self, name) is not None:
                 checked[name] = matrices.as_matrix(f"{name} matrix", getattr(self, name), count)
         if self.initial_displacement is not None:
@@ -95,6 +102,7 @@ class Prestress:
         shapes = {
             "displacement": (3 * count,),
             "load": (3 * count,),
+            "reactions": (3 * count,),
             "stress": (count, 6),
             "constant_stress": (count, 6),
         }
@@ -163,7 +171,9 @@ class Prestress:
 
     def __repr__(self) -> str:
         parts = [f"{len(self.nodes)} nodes"]
-        parts += [name for name in ("euler", "constant") if getattr(self, name) is not None]
+        parts += [
+            name for name in ("euler", "constant", "by_loads") if getattr(self, name) is not None
+        ]
         parts += [] if self.initial_displacement is None else ["initial displacement"]
         parts += [] if self.balanced else ["clamped"]
         return f"Prestress({', '.join(parts)})"

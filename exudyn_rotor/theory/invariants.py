@@ -20,7 +20,7 @@ from exudyn_rotor.theory.nodal import skew, turned
 
 Matrix = np.ndarray | sp.csr_array
 
-_OPTIONAL = ("K2", "B", "K4", "K2_estimated", "H")
+_OPTIONAL = ("K2", "B", "K4", "K2_estimated", "H", "K0")
 _UNIT = 1e-9  # a direction may differ from unit length by this much
 _EPSILON = np.array([skew(unit) for unit in np.eye(3)])  # ε_aik of (a × b)_i = ε_aik a_a b_k
 
@@ -63,15 +63,17 @@ class Invariants:
     H : shape (k, k), optional
         Structural damping: a motion ``e^{iνt}`` in the rotor frame has the stiffness
         ``K + i sign(ν) H``. Only analyses in the frequency domain can use it.
+    K0 : shape (k, k), optional
+        Geometric stiffness of given static loads, which adds to K: see :attr:`loaded`.
 
     Raises
     ------
     TypeError, ValueError
         If shapes do not fit, an entry is not finite, the mass is not positive or M not positive
         definite, the direction is no unit vector, M, K, C, J or a matrix that is given of K2, B,
-        K4, K2_estimated and H is not symmetric, or G not skew-symmetric. Sparse matrices are taken
-        as they come from a solid rotor, which has
-        checked them: of them only shape and entries are looked at.
+        K4, K2_estimated, H and K0 is not symmetric, or G not skew-symmetric. Sparse matrices are
+        taken as they come from a solid rotor, which has checked them: of them only shape and
+        entries are looked at.
 
     Examples
     --------
@@ -103,6 +105,7 @@ class Invariants:
     K4: Matrix | None = None
     K2_estimated: Matrix | None = None
     H: Matrix | None = None
+    K0: Matrix | None = None
 
     def __post_init__(self) -> None:
         direction = checks.vector(self.direction, "direction")
@@ -233,6 +236,11 @@ class Invariants:
     def undamped(self) -> Invariants:
         """The invariants without viscous and structural damping."""
         return replace(self, D=0.0 * self.D, H=None)
+
+    @property
+    def loaded(self) -> Invariants:
+        """The invariants whose stiffness K holds that of given static loads."""
+        return self if self.K0 is None else replace(self, K=self.K + self.K0, K0=None)
 
     def in_basis(self, T: np.ndarray) -> Invariants:
         """Return the invariants for the basis ``Ψ T``, T of shape (k, l)."""

@@ -34,7 +34,7 @@ SCENES = {
         "stiffening": "full",
     },
 }
-OF_MODES = {"unresisted load", "top modes", "residual", "divergence"}
+OF_MODES = {"unresisted load", "top modes", "residual", "divergence", "axial force"}
 
 
 @pytest.fixture(scope="module")

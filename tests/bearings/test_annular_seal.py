@@ -1,12 +1,22 @@
 """Annular seal: coefficients against the perturbed bulk flow, and in a scene."""
 
+from dataclasses import replace
+
 import exudyn as exu
 import numpy as np
 import pytest
 from apart import distance
 from test_supports_in_scenes import HELD, SPEED, rings
 
-from exudyn_rotor import AnnularSeal, add_rotor, add_supports, linear_model
+from exudyn_rotor import (
+    AnnularSeal,
+    Support,
+    add_rotor,
+    add_supports,
+    campbell,
+    linear_model,
+    recommended_settings,
+)
 
 WATER = {"pressure_drop": 1.2e6, "density": 1000.0, "viscosity": 1e-3}
 SIZE = {"radius": 0.1, "length": 0.05, "clearance": 3e-4}
@@ -92,3 +102,43 @@ def test_scene_and_list_have_the_same_exponents():
 def test_refused_input(changes, match):
     with pytest.raises(ValueError, match=match):
         seal(**changes)
+
+
+def test_inertia_of_a_fluid_is_that_of_a_mass_in_scenes_and_lists():
+    """A rigid rotor between two springs k, with m at both: ω² = 2 k/(M + 2 m)."""
+    reduced, k, m = rings(heavy=0.0, modes=0), 1e6, 3.0
+    supports = [Support(name, k, mass=m) for name in ("left", "right")]
+    expected = np.sqrt(2.0 * k / (reduced.invariants.mass + 2.0 * m))
+    found = campbell(reduced, [0.0], supports=supports, accuracy=None).frequencies_rotor
+    assert np.abs(found - expected).min() < 1e-9 * expected
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, reduced, spin=0.0, initial_velocity=[0.1, 0.0, 0.0])
+    add_supports(body, supports)
+    mbs.Assemble()
+    settings = recommended_settings(end_time=0.5 * np.pi / expected, step=0.005 / expected)
+    settings.solution.file.write = False
+    mbs.SolveDynamic(settings)
+    amplitude = 0.1 / expected
+    assert body.coordinates()[0][0] == pytest.approx(amplitude, rel=1e-4)
+
+
+@pytest.mark.parametrize("spin", [{"spin": SPEED}, {}], ids=["prescribed", "free"])
+def test_whirl_in_a_seal_is_that_of_the_theory(spin):
+    """Of a rigid rotor in two seals: M λ² + 2 [k + d (λ − iΩ/2) + m (λ − iΩ/2)²] = 0."""
+    reduced = rings(heavy=0.0, modes=0)
+    seals = [seal(), replace(seal(), interface="right")]
+    k, d, m = seals[0].terms(SPEED)
+    half, mass = 0.5j * SPEED, reduced.invariants.mass
+    polynomial = [mass + 2 * m, 2 * (d - 2 * m * half), 2 * (k - d * half + m * half**2)]
+    expected = np.roots(polynomial)
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, reduced, **spin)
+    add_supports(body, seals)
+    mbs.Assemble()
+    for model in (linear_model(reduced, supports=seals), linear_model(mbs, body=body)):
+        system = model.at(SPEED)
+        M, D, K = system.matrices()
+        A = np.block([[0 * M, np.eye(len(M))], [-np.linalg.solve(M, K), -np.linalg.solve(M, D)]])
+        exponents = np.linalg.eigvals(A) + 1j * SPEED * model.turns
+        for each in expected:
+            assert np.abs(exponents - each).min() < 1e-8 * abs(each)

@@ -328,9 +328,8 @@ PLACES = {
 # part of the text of warnings that the tests of their analyses make fire
 ELSEWHERE = {
     "bearings/tilting_pad.py:_of_pads": "carry nothing at",
-    "linear/modal/critical_speed_map.py:critical_speed_map": "no values at .* which are NaN",
     "linear/over.py:_warn_of_lost": "do not converge for all motions",
-    "linear/stability/stability.py:warn_of_refused": "no values at .* which are NaN",
+    "linear/over.py:warn_of_refused": "no values at .* which are NaN",
 }
 TEXTS = {place: text for place, (_, _, text) in PLACES.items()} | ELSEWHERE
 # places that several kinds of bodies reach

@@ -69,3 +69,22 @@ def test_what_the_rotor_loses_of_its_momentum_the_block_gains(kind):
     gained = (y_t @ block.mass)[-1, 5] + np.trapezoid(moments, time)
     assert lost < 0.0
     assert abs(lost + gained) < 1e-6 * abs(lost)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_drive_of_a_prescribed_spin_gives_the_friction(kind):
+    """N. Petroff (1883), with the journal in the middle of two bearings."""
+    _, _, reduced = rotor_in_a_scene()
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, reduced, spin=SPEED, translation="none")
+    add_supports(body, [KINDS[kind](name) for name in ENDS])
+    drive = body.add_drive_torque_sensor()
+    run(mbs, 1e-4, 2, accuracy=1e-8)
+    torque = mbs.GetSensorStoredData(drive)[0, 1]  # before pads tilt
+    bearing = KINDS[kind]("left")
+    parts = bearing.pad_bearings if kind == "pads" else [bearing]
+    laws = [part.law_with_torque(0.0, 0.0, 0.0, 0.0, 0.0, SPEED)[2] for part in parts]
+    assert torque == pytest.approx(-2.0 * sum(laws), rel=1e-9)
+    if kind == "short":
+        petroff = 2.0 * np.pi * VISCOSITY * RADIUS**3 * LENGTH * SPEED / CLEARANCE
+        assert torque == pytest.approx(2.0 * petroff, rel=1e-9)

@@ -171,6 +171,25 @@ def test_map_over_support_stiffness(tmp_path):
         critical_speed_map(rotor, "at", [0.0])
 
 
+def test_a_stiffness_without_values_costs_no_other():
+    """On −5 kN/m of a magnet a mass of 1 kg needs more than that to be held."""
+    with pytest.warns(UserWarning, match=r"no values at 1000 N/m, which are NaN: .* negative"):
+        result = critical_speed_map(
+            point_mass().reduce(0), "at", [1e3, 1.5e4], supports=[Support("at", -5e3)]
+        )
+    np.testing.assert_allclose(result.speeds, [[np.nan] * 2, [100.0] * 2], rtol=1e-9)
+    with pytest.raises(ValueError, match="negative stiffness"):
+        critical_speed_map(point_mass().reduce(0), "at", [1e3], supports=[Support("at", -5e3)])
+
+
+def test_a_stiffness_that_jumps_makes_no_critical_speed():
+    """``Ω = √(k/m)`` is 110 rad/s below 100 rad/s, and 90 rad/s above."""
+    support = Support("at", lambda speed: 1.2e4 if speed < 100.0 else 8e3)
+    with pytest.warns(UserWarning, match=r"near 1?[90][90.0-9]* rad/s the stiffness .* jumps"):
+        result = critical_speeds(point_mass().reduce(0), supports=[support], max_speed=300.0)
+    assert result.speeds.size == 0
+
+
 def test_wrong_input_is_refused(masses):
     for wrong in (-1.0, np.nan):
         with pytest.raises(ValueError, match="order: needs"):

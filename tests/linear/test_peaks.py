@@ -9,6 +9,7 @@ from forced_models import rings
 
 from exudyn_rotor import (
     HarmonicForce,
+    HarmonicResponse,
     SolidRotor,
     Support,
     Unbalance,
@@ -200,3 +201,31 @@ def test_a_larger_motion_along_the_axis_is_not_the_main_one():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         along.plot()  # n1 and n2 do not move: no logarithms
+
+
+@pytest.mark.parametrize(
+    ("kind", "units", "unit", "value"),
+    [
+        ("unbalance", "rpm", "rpm", 600.0),
+        ("unbalance", "Hz", "Hz", 10.0),
+        ("unbalance", "SI", "rad/s", 20.0 * np.pi),
+        ("harmonic", "rpm", "Hz", 10.0),
+        ("harmonic", "SI", "rad/s", 20.0 * np.pi),
+    ],
+)
+def test_tables_and_pictures_are_in_the_units_asked_for(kind, units, unit, value):
+    motion = np.array([1e-6, -1e-6j, 0, 0, 0, 0]) * np.ones((2, 1, 1, 6))
+    at = [20.0 * np.pi, 40.0 * np.pi]
+    if kind == "unbalance":
+        response = UnbalanceResponse(("disc",), [1], motion, "inertial", at)
+    else:
+        response = HarmonicResponse(("disc",), [0], motion, "inertial", at, 0.0)
+    assert f"[{unit}]" in response.table(units=units)
+    name = next(iter(response.columns(units)))
+    assert name.endswith(f"[{unit}]")
+    assert response.columns(units)[name][0] == pytest.approx(value)
+    size, phase = response.plot(units=units)
+    assert size.lines[0].get_xdata()[0] == pytest.approx(value)
+    assert phase.get_xlabel().endswith(f"[{unit}]")
+    assert f"{value:.5g} {unit}" in response.plot_polar(units=units).texts[0].get_text()
+    assert f"{value:.4g} {unit}" in response.plot_orbit(at[0], units=units).get_title("right")

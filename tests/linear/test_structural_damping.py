@@ -18,6 +18,7 @@ from exudyn_rotor import (
     harmonic_response,
     linear_model,
     stability,
+    stability_map,
     stability_threshold,
     unstable_ranges,
 )
@@ -132,6 +133,9 @@ def test_analyses_in_time_say_that_they_leave_it_out():
     with pytest.warns(UserWarning, match="stability finds exponents without it"):
         unstable = unstable_ranges(rotor, [10.0, 20.0])
     assert unstable.shape == (0, 2)
+    with pytest.warns(UserWarning, match="stability finds exponents without it") as told:
+        stability_map(lambda x, y: (rotor, y), [0.0, 1.0], [10.0, 20.0])
+    assert len(told) == 1
     with pytest.warns(UserWarning, match="A scene runs without it"):
         add_rotor(exudyn.SystemContainer().AddSystem(), rotor, spin=40.0, translation="none")
     with warnings.catch_warnings():

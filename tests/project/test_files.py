@@ -13,7 +13,7 @@ from exudyn_rotor.storage import write_arrays
 MAY_BE_LONGER = ("triangles", "dropped", "field.free_motions", "field.vectors")
 MAY_BE_EMPTY = ("triangles", "field.vectors")
 MAY_BE_MISSING = (
-    ".K2", ".B", ".K4", ".K2_estimated", ".H", "shapes.stress", ".threshold", ".stiffening",
+    ".K2", ".B", ".K4", ".K2_estimated", ".H", ".K0", "shapes.stress", ".threshold", ".stiffening",
     ".critical_speed_ratio", ".gas_density", ".basis_errors",
 )  # fmt: skip
 OF_A_MESH = {f"field.{name}" for name in ("nodes", "displacement", "along", "triangles", "stress")}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -16,25 +15,25 @@ from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.callers import user_level
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.modal.basis_error import NOT_KNOWN, in_table, is_known, points
+from exudyn_rotor.linear.modal.basis_error import in_table, is_known, points
 from exudyn_rotor.linear.modal.critical_speeds import (
-    SHOWN,
     CriticalSpeeds,
     checked,
     collected,
     warn_of_critical,
 )
+from exudyn_rotor.linear.modal.model_result import ModelResult
 from exudyn_rotor.linear.modal.resonance import NO_EQUATIONS, Search, Stiffness
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, Content
 from exudyn_rotor.linear.model.build import linear_model, warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
+from exudyn_rotor.linear.over import warn_of_refused
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.results import Result, numbers, storable
+from exudyn_rotor.results import numbers, storable
 from exudyn_rotor.solid_rotor import SolidRotor
-from exudyn_rotor.theory.stiffening import CHOICES, LEVELS
+from exudyn_rotor.theory.stiffening import CHOICES
 from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:
@@ -47,7 +46,7 @@ _UNIT = 1e15  # N/m, beside which all others are rounding
 
 @storable
 @dataclass(frozen=True, eq=False)
-class CriticalSpeedMap(Result):
+class CriticalSpeedMap(ModelResult):
     """Critical speeds over the stiffness of supports.
 
     Attributes
@@ -59,8 +58,6 @@ class CriticalSpeedMap(Result):
     whirl_codes : ndarray of int, shape (s, c)
         Index into :attr:`CriticalSpeeds.whirl` words; −1 where the speed is NaN.
     order : float
-    stiffening : str or None
-        Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
     basis_errors : ndarray, shape (s, c), or None
         Estimated relative errors by the basis of a reduced rotor, at the first, the middle and the
         last stiffness, NaN as in :class:`CriticalSpeeds`; None where they are not known.
@@ -68,8 +65,8 @@ class CriticalSpeedMap(Result):
         Speeds at which the stiffness of a given bearing is known [rad/s].
     bearing_stiffnesses : ndarray, shape (b, 2), or None
         Its direct stiffnesses k11 and k22 there [N/m].
-    axes, unevenness
-        See :class:`CriticalSpeeds`.
+    stiffening, axes, unevenness
+        See :class:`Stability`.
 
     Examples
     --------
@@ -88,18 +85,9 @@ class CriticalSpeedMap(Result):
         "stiffnesses", "speeds", dtype=int, least=-1, most=len(WHIRLS) - 1
     )
     order: float
-    stiffening: str | None = None
     basis_errors: np.ndarray | None = numbers("stiffnesses", "speeds", finite=False, optional=True)
     bearing_speeds: np.ndarray | None = numbers("points", optional=True)
     bearing_stiffnesses: np.ndarray | None = numbers("points", 2, optional=True)
-    axes: str = "inertial"
-    unevenness: float = 0.0
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.stiffening is not None:
-            checks.choice(self.stiffening, "stiffening", LEVELS)
-        checks.choice(self.axes, "axes", AXES[1:])
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns, one row for each critical speed; see :meth:`table`."""
@@ -139,11 +127,7 @@ class CriticalSpeedMap(Result):
             lines.append(f"  {stiffness:<15.6g}  " + (", ".join(entries) or "none"))
             if reduced and not np.all(np.isnan(errors[i])):
                 lines[-1] += f" (basis error up to {in_table(np.nanmax(errors[i]))})"
-        if self.stiffening:
-            lines.append(f"stiffening: {self.stiffening}")
-        if self.unevenness > SHOWN:
-            lines.append(f"unevenness of the mesh, averaged: {self.unevenness:.2g}")
-        return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
+        return "\n".join([*lines, *self._closing(errors)])
 
     def plot(
         self,
@@ -285,7 +269,7 @@ def critical_speed_map(
     search = Search(Stiffness(first, unit), Content.of(first), *given, tolerance, error)
     judged = set() if accuracy is None else set(points(len(values)).tolist())
     solved: list[CriticalSpeeds | None] = []
-    failed: dict[float, Exception] = {}
+    failed: list[tuple[str, Exception]] = []
     for row, stiffness in enumerate(tqdm(values, "critical speed map", disable=not progress)):
         model = first
         if row in judged:
@@ -293,18 +277,10 @@ def critical_speed_map(
         try:
             found = search.resonances(stiffness - values[0])
             solved.append(collected(found, search, model, row in judged))
-        except (*NO_EQUATIONS, np.linalg.LinAlgError) as error:
+        except ValueError as error:  # as of a support whose stiffness is negative
             solved.append(None)
-            failed[float(stiffness)] = error
-    if len(failed) == len(values):
-        raise next(iter(failed.values()))
-    if failed:
-        shown = ", ".join(f"{stiffness:.4g}" for stiffness in failed)
-        warnings.warn(
-            f"no values at {shown} N/m, which are NaN: {next(iter(failed.values()))}",
-            UserWarning,
-            stacklevel=user_level(),
-        )
+            failed.append((f"{stiffness:.4g} N/m", error))
+    warn_of_refused(failed, len(values))
     search.warn()
     result = _collected(values, solved, curve, max_speed, is_known(first, accuracy))
     if np.any(result.speeds > 0.0):
@@ -357,7 +333,7 @@ def _collected(
     if curve is not None:
         own = _curve(curve, max_speed or float(np.nanmax(speeds, initial=1.0)))
     return CriticalSpeedMap(
-        values, speeds, codes.astype(np.int64), first.order, first.stiffening,
+        values, speeds, codes.astype(np.int64), first.order, stiffening=first.stiffening,
         basis_errors=errors if has_errors else None, bearing_speeds=own[0],
         bearing_stiffnesses=own[1], axes=first.axes, unevenness=first.unevenness,
     )  # fmt: skip

@@ -12,7 +12,8 @@ from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal import basis_error
-from exudyn_rotor.linear.modal.basis_error import NOT_KNOWN, in_table
+from exudyn_rotor.linear.modal.basis_error import in_table
+from exudyn_rotor.linear.modal.model_result import ModelResult
 from exudyn_rotor.linear.modal.resonance import (
     NO_EQUATIONS,
     Resonance,
@@ -22,10 +23,9 @@ from exudyn_rotor.linear.modal.resonance import (
 )
 from exudyn_rotor.linear.modal.whirl import WHIRLS, Content
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
-from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
+from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.results import Result, numbers, storable, words
-from exudyn_rotor.theory.stiffening import LEVELS
+from exudyn_rotor.results import numbers, storable, words
 from exudyn_rotor.threads import one_thread
 from exudyn_rotor.units import Units
 
@@ -33,13 +33,12 @@ JUDGED = 6  # critical speeds that count where no largest speed is given
 _ALIKE = 0.5  # likeness of two shapes below which they are not the same motion
 _NEAR = 0.5  # share of a critical speed by which the same motion may differ
 _BESIDE, _ERROR = 0.97, 1e-6  # of a critical speed: where its change is told, and its error
-SHOWN = 1e-6  # unevenness that is told
 
 
 @storable
 @dataclass(frozen=True, eq=False)
-class CriticalSpeeds(Result):
-    """Critical speeds, ascending.
+class CriticalSpeeds(ModelResult):
+    """Critical speeds, ascending; an uneven rotor has both of a pair.
 
     Attributes
     ----------
@@ -57,13 +56,8 @@ class CriticalSpeeds(Result):
     basis_errors : ndarray, shape (c,), or None
         Estimated relative errors by the basis of a reduced rotor; NaN above the lowest six where
         no largest speed was given, None where they are not known.
-    stiffening : str or None
-        Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
-    axes : {'inertial', 'rotor'}
-        In which the equations were solved, and :attr:`vectors` are.
-    unevenness : float
-        Largest share of a rotor that differs around its axis, as that of a mesh, and was averaged
-        over a turn; an uneven rotor has both critical speeds of a pair.
+    stiffening, axes, unevenness
+        See :class:`Stability`; :attr:`vectors` are in these axes.
 
     Examples
     --------
@@ -82,17 +76,11 @@ class CriticalSpeeds(Result):
     whirl: tuple[str, ...] = words("speeds")
     nodal_diameters: np.ndarray = numbers("speeds", dtype=int, least=-1)
     vectors: np.ndarray = numbers("coordinates", "speeds", dtype=complex)
-    stiffening: str | None = None
     basis_errors: np.ndarray | None = numbers("speeds", finite=False, optional=True)
-    axes: str = "inertial"
-    unevenness: float = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.stiffening is not None:
-            checks.choice(self.stiffening, "stiffening", LEVELS)
         checks.labels(self.whirl, "whirl", WHIRLS)
-        checks.choice(self.axes, "axes", AXES[1:])
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns; `units` are those of :meth:`table`."""
@@ -138,11 +126,7 @@ class CriticalSpeeds(Result):
             )
         if not self.speeds.size:
             lines.append("  none")
-        if self.stiffening:
-            lines.append(f"stiffening: {self.stiffening}")
-        if self.unevenness > SHOWN:
-            lines.append(f"unevenness of the mesh, averaged: {self.unevenness:.2g}")
-        return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
+        return "\n".join([*lines, *self._closing(errors)])
 
 
 def critical_speeds(

@@ -15,6 +15,8 @@ from exudyn_rotor.linear.equations import (
     Terms,
     UnconvergedError,
     add,
+    congruent,
+    rate_of,
     without_rounding,
 )
 from exudyn_rotor.linear.model.body import Body, RotorBody
@@ -141,7 +143,34 @@ class Assembly:
                 damping, stiffness = element.terms(next(rest), factor, U, self.turns)
                 add(D, damping)
                 add(K, stiffness)
-        return PeriodicSystem(speed, self.M, without_rounding(D), without_rounding(K), self._H)
+        M = self.M
+        for (element, _), parts in zip(self._massive, self._inertia, strict=True):
+            m = factor * 0.0 + np.vectorize(element.mass, otypes=[float])(factor)
+            M = M + m * parts[0]
+            add(D, {n: 2.0 * factor * m * X for n, X in parts[1].items()})
+            add(K, {n: factor**2 * m * X for n, X in parts[2].items()})
+        return PeriodicSystem(speed, M, without_rounding(D), without_rounding(K), self._H)
+
+    @property
+    def _massive(self) -> list[tuple[Element, Terms]]:
+        """Elements with a mass, and their motions."""
+        pairs = zip(self.elements, self.motions, strict=True)
+        return [(element, U) for element, U in pairs if element.mass is not None]
+
+    @cached_property
+    def _inertia(self) -> list[tuple[np.ndarray, Terms, Terms]]:
+        """M, D over 2 Ω and K over Ω² of a kilogram of each, as the axes turn: ü = d²(U y)/dt².
+
+        Of M the mean: a mass is alike in all directions.
+        """
+        found = []
+        for _, U in self._massive:
+            size = len(next(iter(U.values())))
+            across = np.diag((np.arange(size) < 2).astype(float))
+            first = rate_of(U)
+            parts = [congruent(U, across, each) for each in (U, first, rate_of(first))]
+            found.append((parts[0][0].real, parts[1], parts[2]))
+        return found
 
     @cached_property
     def _H(self) -> list[tuple[float, np.ndarray]]:

@@ -107,6 +107,8 @@ def rotor_alone(rotor: ReducedRotor, stiffening: str, whole: bool) -> RotorAlone
     origin = rotor.axis.project(rotor.center_of_mass)
     invariants = rotor.invariants.moved(origin - rotor.center_of_mass)
     level = chosen_level(stiffening, invariants.K2 is not None)
+    if level != "none":
+        invariants = invariants.loaded
     turning, Q = turning_of(rotor), np.eye(rotor.size)
     left_out, lowest = {}, np.inf
     if turning.halves.shape[1]:

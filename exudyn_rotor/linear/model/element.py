@@ -19,7 +19,7 @@ from exudyn_rotor.bearings.controlled_support import (
     PadSupport,
 )
 from exudyn_rotor.bearings.given import linear_supports
-from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.bearings.support import OutsideTableError, Support, acts
 from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.linear.equations import (
     Terms,
@@ -63,6 +63,8 @@ class Element:
         Gives a stiffness that tells which motions it holds, where it may have none at rest.
     law : ControlledSupport or another with coordinates of its own, optional
         What it was made from.
+    mass : callable, optional
+        Takes the speed, gives a mass [kg] that goes with u across the axis, in axes that stand.
     """
 
     ends: tuple[End, ...]
@@ -74,6 +76,7 @@ class Element:
     table_speeds: np.ndarray = field(default_factory=lambda: np.zeros(0))
     holding: Callable[[], np.ndarray] | None = None
     law: Controlled | None = None
+    mass: Callable[[float], float] | None = None
 
     @property
     def what(self) -> str:
@@ -180,7 +183,14 @@ def support_element(
     """
 
     def matrices(speed: float) -> tuple[np.ndarray, np.ndarray]:
-        support.check_range(rate * speed)
+        try:
+            support.check_range(rate * speed)
+        except OutsideTableError as error:
+            if rate == 1.0:
+                raise
+            raise OutsideTableError(
+                f"{error}; it turns with {rate:g} times the speed of the analysis, {speed:g} rad/s"
+            ) from None
         return support.matrices(rate * speed)
 
     speeds = support.table_speeds / rate if rate else np.zeros(0)
@@ -193,6 +203,7 @@ def support_element(
         support.stiffness_varies,
         speeds,
         lambda: support.matrices(0.0)[0],
+        mass=(lambda speed: support.mass_at(rate * speed)) if acts(support.mass) else None,
     )
 
 

@@ -578,7 +578,7 @@ class LinearModel:
         """Motions without :attr:`neutral_motions` as orthonormal columns; None for all."""
         return beside(self._neutral[1])
 
-    @property
+    @cached_property
     def for_responses(self) -> LinearModel:
         """The model in which forced motions are found: nothing of the rotor is averaged.
 

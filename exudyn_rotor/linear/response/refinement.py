@@ -13,7 +13,7 @@ import numpy as np
 
 from exudyn_rotor.callers import user_level
 
-Solved = list[Mapping[int, np.ndarray]]
+Solved = Mapping[int, np.ndarray]  # harmonics (s, k)
 _MOST_TURN = 0.3  # phase [rad] between neighbours: 1 − cos(0.15) = 1 % of a peak lies between
 _SMALL = 1e-3  # share of the largest motion below which a motion does not count
 _NARROWEST = 1e-7  # of the range: without damping a resonance has no width
@@ -42,12 +42,12 @@ def refined(
         Gives the complex amplitudes (s, c) of solutions.
     values : ndarray, shape (s,)
         Ascending speeds or frequencies [rad/s].
-    solved : list of s solutions
-        There.
+    solved : mapping of int to ndarray, shape (s, k)
+        The solutions there, by their harmonics.
 
     Returns
     -------
-    ndarray, list
+    ndarray, mapping
         All speeds or frequencies, and their solutions.
     """
     narrowest, most = _NARROWEST * np.ptp(values), len(values) + _MOST_ADDED
@@ -59,10 +59,19 @@ def refined(
             break
         added = 0.5 * (values[between] + values[between + 1])
         order = np.argsort(np.r_[values, added], kind="stable")
-        solved = solved + solve(added)
-        values, solved = np.r_[values, added][order], [solved[i] for i in order]
+        solved = _merged(solved, solve(added), order)
+        values = np.r_[values, added][order]
     known = np.all(np.isfinite(phasors(solved)), axis=1) | np.isin(values, given)
-    return values[known], [one for one, is_known in zip(solved, known, strict=True) if is_known]
+    return values[known], {n: X[known] for n, X in solved.items()}
+
+
+def _merged(first: Solved, second: Solved, order: np.ndarray) -> Solved:
+    """Return solutions of some values and of others, in order; a harmonic may be in one of them."""
+    parts = [(each, np.zeros_like(next(iter(each.values())))) for each in (first, second)]
+    return {
+        n: np.concatenate([each.get(n, none) for each, none in parts])[order]
+        for n in sorted({*first, *second})
+    }
 
 
 def _turns(phasors: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ as in a journal at rest.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -264,35 +264,30 @@ def _with_beside(body: RotorBody, state: StartState, x: np.ndarray, x_t: np.ndar
 
 
 def kept_coordinates(
-    model: LinearModel, found: Sequence[Mapping[int, np.ndarray]], speed: float
+    model: LinearModel, found: Mapping[int, np.ndarray], speed: float
 ) -> dict[str, object]:
-    """Return what a response keeps for runs, given harmonics (k,) of coordinates at each value.
+    """Return what a response keeps for runs, given harmonics (s, k) of coordinates.
 
     Of one rotor in its own axes, all of its columns are coordinates, and of a scene its unknowns;
     else nothing is kept.
     """
     if isinstance(model, SceneModel):
-        found = [model.unknowns(one, speed) for one in found]
-        return {"coordinates": _in_array(found, model.scene.size), "basis": "scene"}
+        return {"coordinates": _in_array(model.unknowns(found, speed)), "basis": "scene"}
     assembly = model.assembly(speed)
     rotor = assembly.bodies[0]
     if len(model.rotors) > 1 or model.turns != 1 or model.ratios[rotor.name] != 1.0:
         return {}
-    kept = _in_array(found, model.size)
+    kept = _in_array(found)
     if rotor.is_apart:  # the spin is a rotation about the axis
         spin = np.pad(rotor.spin.turn - rotor.spin.momentum, (0, model.size - rotor.size))
         kept += (kept[..., : rotor.size] @ rotor.spin.momentum)[..., None] * spin
     return {"coordinates": kept, "basis": "rotor", "beside": model.coordinates[rotor.size :]}
 
 
-def _in_array(found: Sequence[Mapping[int, np.ndarray]], size: int) -> np.ndarray:
+def _in_array(found: Mapping[int, np.ndarray]) -> np.ndarray:
     """Return harmonics −N … N as an array (s, h, k)."""
-    top = max(abs(n) for one in found for n in one)
-    kept = np.zeros((len(found), 2 * top + 1, size), dtype=complex)
-    for row, one in zip(kept, found, strict=True):
-        for n, x in one.items():
-            row[top + n] = x
-    return kept
+    top, none = max(map(abs, found)), np.zeros_like(next(iter(found.values())))
+    return np.stack([found.get(n, none) for n in range(-top, top + 1)], axis=1)
 
 
 def _in_body(body: RotorBody, x: np.ndarray) -> tuple[np.ndarray, float]:

@@ -6,7 +6,7 @@ Both are steady motions: they are reached in time only where the rotor is stable
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,10 +14,8 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
-from exudyn_rotor.bearings.support import NoCoefficientsError
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.modal.basis_error import warn
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import LinearModel
@@ -41,8 +39,8 @@ from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.threads import one_thread
 from exudyn_rotor.units import Units
 
-Coordinates = Mapping[int, np.ndarray]  # harmonics (k,) at one speed or frequency
-Motions = dict[int, np.ndarray]  # harmonics (s, p, 6) over speeds or frequencies
+Coordinates = dict[int, np.ndarray]  # harmonics (s, k) over speeds or frequencies
+Motions = dict[int, np.ndarray]  # harmonics (s, p, 6) of places
 _AT_ONCE = 2_000_000  # entries of the matrices that are solved in one call
 _PER_BAR = 16  # of speeds in a step of a progress bar
 _WHOLE = 1e-9  # of 2ω/Ω: harmonics meet but for rounding
@@ -139,30 +137,34 @@ def unbalance_response(
     at = checked_places(at)
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening, axes=axes)
     warn_of_left_out_stiffening(model, np.abs(values).max())
-    refused: list[ValueError] = []
+    told: list[float] = []
 
-    def solve(model: LinearModel, speeds: np.ndarray) -> list[Coordinates]:
-        load = unbalance_load(model, unbalances, own)
-        found = [{0: np.zeros(model.size, dtype=complex)} for _ in speeds]  # no load at rest
-        systems = {}
-        for place in np.flatnonzero(speeds):
-            try:
-                systems[place] = model.at(float(speeds[place]))
-            except (NoCoefficientsError, UnconvergedError) as error:
-                refused.append(error)
-                found[place] = {0: np.full(model.size, np.nan, dtype=complex)}
-        loads = [{n: one.speed**2 * F for n, F in load.items()} for one in systems.values()]
-        given = list(systems.values()), loads, np.zeros(len(systems))
-        solved = forced_motions(*given, held=model.held_basis, tolerance=tolerance)
-        for place, motion in zip(systems, solved, strict=True):
-            found[place] = motion
+    def solve(model: LinearModel, speeds: np.ndarray) -> Coordinates:
+        load, held = unbalance_load(model, unbalances, own), model.held_basis
+        moving = np.flatnonzero(speeds)  # at rest there is no load
+        if not moving.size:
+            return {0: np.zeros((len(speeds), model.size), dtype=complex)}
+        stack = model.at_all(speeds[moving])
+        known = moving[stack.known]
+        if len(known) < len(moving):
+            stack = stack[np.flatnonzero(stack.known)]
+            told.extend(speeds[np.setdiff1d(moving, known)].tolist())
+
+        def part(rows: slice) -> Coordinates:
+            squares = speeds[known[rows], None] ** 2
+            acting = {n: squares * F for n, F in load.items()}
+            none = np.zeros(len(squares))
+            return forced_motions(stack[rows], acting, none, held=held, tolerance=tolerance)
+
+        found = _in_parts(part, model.size, known, len(speeds), progress, "unbalance response")
+        for X in found.values():
+            X[np.setdiff1d(moving, known)] = np.nan
         return found
 
     def folded(motions: Motions, _: np.ndarray) -> Motions:
         return _folded(motions)
 
-    parts = _in_parts(solve, progress, "unbalance response")
-    steady = _Steady(model.for_responses, parts, at, frame, 1.0, folded, tolerance, refused)
+    steady = _Steady(model.for_responses, solve, at, frame, 1.0, folded, tolerance, told)
     values, found = steady.over(values, refine, accuracy)
     loads = in_words(model, unbalances, own)
     response = UnbalanceResponse(frame=frame, speeds=values, loads=loads, **found)
@@ -235,16 +237,21 @@ def harmonic_response(
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening, axes=axes)
     warn_of_left_out_stiffening(model, speed)
 
-    def solve(model: LinearModel, frequencies: np.ndarray) -> list[Coordinates]:
-        system, load, count = model.at(speed), total(loads, model, speed), len(frequencies)
-        given = [system] * count, [load] * count, frequencies
-        return forced_motions(*given, driven=model.free_spins, tolerance=tolerance)
+    def solve(model: LinearModel, frequencies: np.ndarray) -> Coordinates:
+        system, load = model.at(speed), total(loads, model, speed)
+        given = {"driven": model.free_spins, "tolerance": tolerance}
+
+        def part(rows: slice) -> Coordinates:
+            return forced_motions(system, load, frequencies[rows], **given)
+
+        count = len(frequencies)
+        every = np.arange(count)
+        return _in_parts(part, model.size, every, count, progress, "harmonic response")
 
     def joined(motions: Motions, frequencies: np.ndarray) -> Motions:
         return _joined(motions, frequencies, speed)
 
-    parts = _in_parts(solve, progress, "harmonic response")
-    steady = _Steady(model.for_responses, parts, at, frame, speed, joined, tolerance)
+    steady = _Steady(model.for_responses, solve, at, frame, speed, joined, tolerance)
     values, found = steady.over(values, refine, accuracy)
     response = HarmonicResponse(frame=frame, frequencies=values, speed=speed, **found)
     return _with_warning(steady.model, response, accuracy, "Hz")
@@ -269,18 +276,18 @@ class _Steady:
         Takes motions and values; gives motions in which no two harmonics have one frequency.
     tolerance : float
         Share of the largest motion below which a harmonic does not matter.
-    refused : list of ValueError
-        Why there were no equations where there were none.
+    told : sequence of float
+        Speeds without equations, as a warning tells.
     """
 
     model: LinearModel
-    solve: Callable[[LinearModel, np.ndarray], list[Coordinates]]
+    solve: Callable[[LinearModel, np.ndarray], Coordinates]
     at: Sequence[At] | None
     frame: str
     speed: float
     joined: Callable[[Motions, np.ndarray], Motions]
     tolerance: float
-    refused: Sequence[ValueError] = ()
+    told: Sequence[float] = ()
 
     def over(
         self, values: np.ndarray, refine: bool, accuracy: float | None
@@ -290,15 +297,12 @@ class _Steady:
         found = self.solve(model, values)
         if refine:
 
-            def phasors(found: list[Coordinates]) -> np.ndarray:
-                motions = self.seen(observed, found)
-                return np.concatenate(
-                    [each[..., :3].reshape(len(found), -1) for each in motions.values()], axis=1
-                )
+            def phasors(found: Coordinates) -> np.ndarray:
+                motions = self.seen(observed, found).values()
+                return np.hstack([each[..., :3].reshape(len(each), -1) for each in motions])
 
             values, found = refined(lambda more: self.solve(model, more), phasors, values, found)
-        missing = [not all(map(np.all, map(np.isfinite, each.values()))) for each in found]
-        _warn_of_missing(values, np.array(missing), self.refused)
+        _warn_of_missing(values, found, self.told)
         motions = self.joined(self.seen(observed, found), values)
         errors = basis_errors(model, accuracy, values, motions, self._at_places)
         orders, motion = _collected(motions, observed, self.tolerance, model.radius)
@@ -314,12 +318,9 @@ class _Steady:
 
     def seen(self, observed: Sequence[Place], found: Sequence[Coordinates]) -> Motions:
         """Return the motions of places."""
-        orders = sorted({n for each in found for n in each})
-        still = np.zeros_like(next(iter(found[0].values())))
-        coordinates = {n: np.array([each.get(n, still) for each in found]) for n in orders}
         frame = self.frame if self.speed else "inertial"  # at θ = 0 the axes are the same
-        parts = [one.motion(coordinates, frame) for one in observed]
-        none = np.zeros((len(found), 6), dtype=complex)
+        parts = [one.motion(found, frame) for one in observed]
+        none = np.zeros((len(next(iter(found.values()))), 6), dtype=complex)
         return {
             n: np.stack([part.get(n, none) for part in parts], axis=1)
             for n in sorted({n for part in parts for n in part})
@@ -331,22 +332,30 @@ class _Steady:
         return self.joined(self.seen(observed, self.solve(model, values)), values)
 
 
-def _in_parts(solve: Callable, progress: bool, label: str) -> Callable:
-    """Return what solves a few speeds or frequencies at a time, for memory and a progress bar."""
+def _in_parts(
+    solve: Callable[[slice], Coordinates],
+    size: int,
+    rows: np.ndarray,
+    count: int,
+    progress: bool,
+    label: str,
+) -> Coordinates:
+    """Return harmonics (count, k), solved for some of the rows at a time: for memory, and a bar."""
+    most = max(1, _AT_ONCE // size**2)
+    if progress:
+        most = min(most, _PER_BAR)
+    parts = range(0, len(rows), most)
+    if progress:
+        from tqdm import tqdm
 
-    @one_thread()
-    def solved(model: LinearModel, values: np.ndarray) -> list[Coordinates]:
-        count = max(1, _AT_ONCE // model.size**2)
-        if progress:
-            count = min(count, _PER_BAR)
-        parts = range(0, len(values), count)
-        if progress:
-            from tqdm import tqdm
-
-            parts = tqdm(parts, desc=label)
-        return [one for first in parts for one in solve(model, values[first : first + count])]
-
-    return solved
+        parts = tqdm(parts, desc=label)
+    found: Coordinates = {}
+    with one_thread():
+        for first in parts:
+            part = slice(first, first + most)
+            for n, X in solve(part).items():
+                found.setdefault(n, np.zeros((count, size), dtype=complex))[rows[part]] = X
+    return found
 
 
 def _folded(motions: Motions) -> Motions:
@@ -398,23 +407,21 @@ def _collected(
     return orders[keep], full[:, :, keep]
 
 
-def _warn_of_missing(
-    values: np.ndarray, missing: np.ndarray, refused: Sequence[ValueError]
-) -> None:
-    """Tell where there is no steady motion.
+def _warn_of_missing(values: np.ndarray, found: Coordinates, told: Sequence[float]) -> None:
+    """Warn where there is no steady motion, but for what was told already.
 
     Raises
     ------
     ValueError
-        Where there is none at all.
+        Where there is no motion at all.
     """
-    if not np.any(missing):
+    missing = ~np.all([np.all(np.isfinite(X), axis=1) for X in found.values()], axis=0)
+    untold = missing & ~np.isin(values, told)
+    if not np.any(untold):
         return
     why = "a constant load acts on a motion that nothing holds, or nothing damps a resonance"
-    if refused:
-        why = str(refused[0])
-    shown = ", ".join(f"{value:.5g}" for value in values[missing][:5])
-    shown += " …" if missing.sum() > 5 else ""
+    shown = ", ".join(f"{value:.5g}" for value in values[untold][:5])
+    shown += " …" if untold.sum() > 5 else ""
     if np.all(missing):
         raise ValueError(f"no steady motion at {shown} rad/s: {why}")
     warnings.warn(

@@ -2,18 +2,21 @@
 
 Loads ``f(t) = Re Σ F_n exp(i(ω + nΩ)t)`` give ``x(t) = Re Σ X_m exp(i(ω + mΩ)t)`` with
 
-    (K_0 + iν_m D_0 − ν_m² M) X_m + Σ_j (K_j + iν_{m−j} D_j) X_{m−j} = F_m,    ν_m = ω + mΩ.
+    Z_m X_m + Σ_{j≠0} (K_j + iν_{m−j} D_j) X_{m−j} = F_m,    Z_m = K_0 + iν_m D_0 − ν_m² M,
+
+ν_m = ω + mΩ. Harmonics of constant equations stand alone. Else the coefficients that repeat are
+forces of few supports, ``K_j = B k_j Bᵀ``, so that after one solution with each Z_m the harmonics
+of Bᵀx alone are coupled.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import product
 
 import numpy as np
-import scipy.linalg as la
 
 from exudyn_rotor.linear.equations import PeriodicSystem
-from exudyn_rotor.linear.solve.chain import chained, reach
 from exudyn_rotor.linear.solve.state import others
 
 Harmonics = Mapping[int, np.ndarray]
@@ -23,28 +26,30 @@ _NONE = 1e-14  # of matrices with diagonals of one: a motion that nothing resist
 _FAR = 1e6  # of matrices with diagonals of one: size of a solution without free motions
 _LOADED = 1e-6  # share of a load on a free motion that is the rounding of a mesh
 _SINGULAR = 1e-14  # reciprocal condition of equations without a solution
+_ROUNDING = 1e-14  # share of a coefficient's singular values
 _MOST = 12  # harmonics that are added on either side, in steps of the coefficients
 
 
 def forced_motions(
-    systems: Sequence[PeriodicSystem],
-    loads: Sequence[Harmonics],
-    rates: Sequence[float],
+    system: PeriodicSystem,
+    loads: Harmonics,
+    rates: np.ndarray,
     *,
     held: np.ndarray | None = None,
     driven: np.ndarray | None = None,
     tolerance: float = 1e-6,
-) -> list[dict[int, np.ndarray]]:
-    """Return the harmonics (k,) of the steady motion of systems of the same coordinates.
+) -> dict[int, np.ndarray]:
+    """Return the harmonics (s, k) of the steady motions of a system, or of a stack of s.
 
-    One system, load and frequency for each motion. A motion that does not exist is NaN: a constant
-    load on what nothing holds, a resonance without damping, harmonics that do not converge.
+    A motion that does not exist is NaN: a constant load on what nothing holds, a resonance without
+    damping, harmonics that do not converge.
 
     Parameters
     ----------
-    systems : sequence of PeriodicSystem
-    loads : sequence of mapping of int to ndarray
-    rates : sequence of float
+    system : PeriodicSystem
+        At one speed for all motions, or a stack.
+    loads : mapping of int to ndarray, shape (k,) or (s, k)
+    rates : ndarray, shape (s,)
         ω [rad/s].
     held : ndarray, shape (k, r), optional
         Motions that are possible, orthonormal; all by default.
@@ -53,155 +58,103 @@ def forced_motions(
     tolerance : float, optional
         Largest relative change of a motion by further harmonics.
     """
+    if held is not None:
+        loads = {n: F @ held for n, F in loads.items()}
+        found = forced_motions(system.projected(held), loads, rates, tolerance=tolerance)
+        return {n: X @ held.T for n, X in found.items()}
     if driven is not None and not driven.shape[1]:
         driven = None
-    if held is not None:
-        momenta, driven = la.null_space(held.T), None
-        systems = _each(systems, lambda system: _without(system, momenta))
-        loads = [{n: F - momenta @ (momenta.T @ F) for n, F in each.items()} for each in loads]
-    found: list[dict] = [{} for _ in systems]
-    constant = [i for i, system in enumerate(systems) if system.is_constant]
-    if constant:
-        given = [[each[i] for i in constant] for each in (systems, loads, rates)]
-        for i, motion in zip(constant, _constant(*given, driven), strict=True):
-            found[i] = motion
-    groups: dict[tuple, list[int]] = {}
-    for i, system in enumerate(systems):
-        if not system.is_constant:
-            acting = tuple(sorted(n for n, F in loads[i].items() if np.any(F)))
-            groups.setdefault((system.step, acting, reach(system)), []).append(i)
-    for (step, acting, _), members in groups.items():
-        for n in {n % step: n for n in acting}:  # harmonics that are coupled
-            together = [m for m in acting if m % step == n]
-            given = [[each[i] for i in members] for each in (systems, loads, rates)]
-            motions = _periodic(*given, together, driven, tolerance)
-            for i, motion in zip(members, motions, strict=True):
-                found[i] |= motion
-        for i in members:
-            found[i] = found[i] or {n: 0j * F for n, F in loads[i].items()}
+    rates = np.asarray(rates, dtype=float)
+    shape = len(rates), system.size
+    acting = {n: np.broadcast_to(F, shape) for n, F in loads.items() if np.any(F)}
+    if not acting:
+        return {n: np.zeros(shape, dtype=complex) for n in loads}
+    if system.is_constant:
+        mean = system.matrices()
+        return {
+            n: _solved(*_stiffness(system, mean, rates, n), F[..., None], driven)[..., 0] + 0j
+            for n, F in acting.items()
+        }
+    found = {}
+    for first in {n % system.step for n in acting}:  # harmonics that are coupled
+        together = {n: F for n, F in acting.items() if n % system.step == first}
+        found |= _coupled(system, together, rates, driven, tolerance)
     return found
 
 
-def _without(system: PeriodicSystem, momenta: np.ndarray) -> PeriodicSystem:
-    """Return a system whose motions with momenta (k, r), orthonormal, are stiff by themselves."""
-
-    def apart(X: np.ndarray) -> np.ndarray:
-        X = X - momenta @ (momenta.T @ X)
-        return X - (X @ momenta) @ momenta.T
-
-    D, K = ({n: apart(X) for n, X in terms.items()} for terms in (system.D, system.K))
-    K[0] = K[0] + np.abs(K[0]).max() * momenta @ momenta.T
-    H = [(n, apart(X)) for n, X in system.H]
-    return PeriodicSystem(system.speed, apart(system.M), D, K, H)
+def _rate(rates: np.ndarray, order: int, speed: np.ndarray) -> np.ndarray:
+    """Return the frequencies ω + nΩ; zero where they are rounding."""
+    nu = rates + order * speed
+    return np.where(np.abs(nu) <= _STILL * np.maximum(np.abs(rates), np.abs(speed)), 0.0, nu)
 
 
-def _each(systems: Sequence[PeriodicSystem], change) -> list[PeriodicSystem]:
-    """Return what a function makes of systems, once for those that are one object."""
-    made: dict[int, PeriodicSystem] = {}
-    return [made.setdefault(id(s), None) or made.update({id(s): change(s)}) or made[id(s)]
-            for s in systems]  # fmt: skip
-
-
-def _constant(
-    systems: list[PeriodicSystem],
-    loads: list[Harmonics],
-    rates: list[float],
-    driven: np.ndarray | None,
-) -> list[dict[int, np.ndarray]]:
-    """Return the motions of constant equations: every harmonic by itself, all at once."""
-    places = [(i, n) for i, each in enumerate(loads) for n, F in each.items() if np.any(F)]
-    found: list[dict] = [{n: 0j * F for n, F in each.items()} for each in loads]
-    if not places:
-        return found
-    at_rest = {id(s): s.matrices() for s in systems}
-    nu = np.array([_rate(rates[i], n, systems[i].speed) for i, n in places])
-    F = np.array([loads[i][n] for i, n in places])
-    matrices = np.stack(
-        [
-            _dynamic(systems[i], at_rest[id(systems[i])], v)
-            for (i, _), v in zip(places, nu, strict=True)
-        ]
-    )
-    X = _solved(matrices, F, nu == 0.0, driven)
-    for (i, n), x in zip(places, X, strict=True):
-        found[i][n] = x
-    return found
-
-
-def _rate(rate: float, order: int, speed: float) -> float:
-    nu = rate + order * speed
-    return 0.0 if abs(nu) <= _STILL * max(abs(rate), abs(speed)) else nu
-
-
-def _dynamic(system: PeriodicSystem, matrices: tuple, nu: float) -> np.ndarray:
-    """Return ``K + iνD − ν²M`` with structural damping."""
-    M, D, K = matrices
-    Z = K if nu == 0.0 else K + 1j * nu * D - nu**2 * M
+def _stiffness(
+    system: PeriodicSystem, mean: tuple[np.ndarray, ...], rates: np.ndarray, order: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the dynamic stiffnesses (s, k, k) of one harmonic, and its frequencies (s,)."""
+    M, D, K = mean
+    nu = _rate(rates, order, system.speed)
+    w = nu[:, None, None]
+    Z = K - w**2 * M
+    if np.any(nu):
+        Z = Z + 1j * (w * D)
     for n, H in system.H:
-        Z = Z + 1j * np.sign(_rate(nu, -n, system.speed)) * H
-    return Z
+        Z = Z + 1j * np.sign(_rate(nu, -n, system.speed))[:, None, None] * H
+    return Z, nu
 
 
-def _solved(
-    matrices: np.ndarray, loads: np.ndarray, constant: np.ndarray, driven: np.ndarray | None
-) -> np.ndarray:
-    """Return solutions (s, k), NaN where there is none; those of `constant` loads one by one."""
-    X = np.full(loads.shape, np.nan, dtype=complex)
-    moving = np.flatnonzero(~constant)
-    if moving.size:
-        A = matrices[moving]
-        scale = 1.0 / np.sqrt(np.maximum(np.abs(A).max(axis=2), 1e-300))
-        A = scale[:, :, None] * A * scale[:, None, :]
-        try:
-            Y = np.linalg.solve(A, (scale * loads[moving])[..., None])[..., 0]
-        except np.linalg.LinAlgError:
-            Y = np.array([_one(a, b) for a, b in zip(A, scale * loads[moving], strict=True)])
-        off = np.linalg.norm(np.einsum("sij,sj->si", A, Y) - scale * loads[moving], axis=1)
-        large = (
-            np.linalg.norm(Y, axis=1) > np.linalg.norm(scale * loads[moving], axis=1) / _SINGULAR
-        )
-        Y[large | ~np.isfinite(off)] = np.nan
-        X[moving] = scale * Y
-    still = np.flatnonzero(constant)
-    if driven is None or not driven.shape[1]:
-        still = still[~_plainly(matrices, loads, still, X)]
-    for i in still:
-        X[i] = static_motion(matrices[i], loads[i], driven)
+def _solved(Z: np.ndarray, nu: np.ndarray, F: np.ndarray, driven: np.ndarray | None) -> np.ndarray:
+    """Return solutions (s, k, c) under loads (s, k, c), NaN where there is none.
+
+    Those of frequency zero are static: free motions that a load does not act on rest.
+    """
+    still = nu == 0.0
+    if np.all(still):
+        return _static(Z, F, driven)
+    X = np.full(F.shape, np.nan, dtype=complex)
+    if np.any(still):
+        X[still] = _static(Z[still], F[still], driven)
+        X[~still] = _solved(Z[~still], nu[~still], F[~still], None)
+        return X
+    X = _one_by_one(Z, F)
+    size = np.sqrt(np.maximum(np.abs(Z[len(Z) // 2]).max(axis=1), 1e-300))[:, None]
+    X[np.linalg.norm(size * X, axis=(1, 2)) > np.linalg.norm(F / size, axis=(1, 2)) / _SINGULAR] = (
+        np.nan
+    )
     return X
 
 
-def _plainly(A: np.ndarray, loads: np.ndarray, still: np.ndarray, X: np.ndarray) -> np.ndarray:
-    """Put solutions under constant loads into X where no motion is free; return where that is."""
-    done = np.zeros(len(still), dtype=bool)
-    if not still.size:
-        return done
-    A, b = A[still], loads[still]
-    diagonal = np.abs(A).max(axis=2)
-    alone = diagonal <= _FREE * diagonal.max(axis=1, keepdims=True)
-    scale = 1.0 / np.sqrt(np.where(alone, 1.0, diagonal))
-    b = scale * b
-    unloaded = np.abs(b * alone).max(axis=1) <= _LOADED * np.abs(b).max(axis=1)
-    held = np.flatnonzero(~np.any(alone, axis=0))
-    alike = unloaded & (alone.sum(axis=1) == alone.shape[1] - len(held))
-    chosen = np.flatnonzero(alike)
-    A = A[np.ix_(chosen, held, held)] * scale[chosen][:, held, None] * scale[chosen][:, None, held]
-    try:
-        Y = np.linalg.solve(A, b[np.ix_(chosen, held)][..., None])[..., 0]
-    except np.linalg.LinAlgError:
-        return done
-    done[chosen] = np.linalg.norm(Y, axis=1) <= _FAR * np.linalg.norm(b[chosen], axis=1)
-    small = chosen[done[chosen]]
-    X[np.ix_(still[small], held)] = (scale[chosen][:, held] * Y)[done[chosen]]
-    others = np.setdiff1d(np.arange(X.shape[1]), held)
-    X[np.ix_(still[small], others)] = 0.0
-    return done
-
-
-def _one(A: np.ndarray, b: np.ndarray) -> np.ndarray:
+def _one_by_one(A: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Return solutions (s, k, c), NaN of singular matrices."""
     try:
         return np.linalg.solve(A, b)
     except np.linalg.LinAlgError:
-        return np.full(len(b), np.nan, dtype=complex)
+        if len(A) == 1:
+            return np.full(b.shape, np.nan, dtype=complex)
+        half = len(A) // 2
+        return np.concatenate([_one_by_one(A[:half], b[:half]), _one_by_one(A[half:], b[half:])])
+
+
+def _static(A: np.ndarray, F: np.ndarray, driven: np.ndarray | None) -> np.ndarray:
+    """Return the motions (s, k, c) under constant loads (s, k, c)."""
+    if driven is not None:
+        basis = others(driven, np.eye(A.shape[1]))  # mixes no soft coordinates with stiff ones
+        return basis @ _static(basis.T @ A @ basis, basis.T @ F, None)
+    size = np.abs(A).max(axis=2)
+    alone = size <= _FREE * size.max(axis=1, initial=0.0, keepdims=True)
+    scale = 1.0 / np.sqrt(np.where(alone, 1.0, size))[..., None]
+    A, b = scale * A * scale[:, None, :, 0], scale * F
+    A[alone], A.swapaxes(1, 2)[alone] = 0.0, 0.0
+    row, place = np.nonzero(alone)
+    A[row, place, place] = 1.0
+    loads = np.linalg.norm(b, axis=1)
+    X = _one_by_one(A, np.where(alone[..., None], 0.0, b))
+    free = np.linalg.norm(b * alone[..., None], axis=1) > _LOADED * loads
+    plain = (np.linalg.norm(X, axis=1) <= _FAR * loads) & ~free
+    for i in np.flatnonzero(~np.all(plain, axis=1)):
+        A[i, alone[i], alone[i]] = 0.0
+        X[i] = _beside_free(A[i], b[i])
+    return scale * X
 
 
 def static_motion(A: np.ndarray, load: np.ndarray, driven: np.ndarray | None = None) -> np.ndarray:
@@ -217,114 +170,172 @@ def static_motion(A: np.ndarray, load: np.ndarray, driven: np.ndarray | None = N
     driven : ndarray, shape (k, d), optional
         Momenta of motions that a drive keeps at zero.
     """
-    if driven is not None and driven.shape[1]:
-        basis = others(driven, np.eye(len(A)))  # mixes no soft coordinates with stiff ones
-        return basis @ static_motion(basis.T @ A @ basis, basis.T @ load, None)
-    diagonal = np.abs(A).max(axis=1)
-    alone = diagonal <= _FREE * diagonal.max(initial=0.0)
-    scale = 1.0 / np.sqrt(np.where(alone, 1.0, diagonal))
-    scaled, b = scale[:, None] * A * scale, scale * load
-    scaled[alone] = scaled[:, alone] = 0.0
-    U, values, Vh = np.linalg.svd(scaled)
+    driven = None if driven is None or not driven.shape[1] else driven
+    return _static(A[None], load[None, :, None], driven)[0, :, 0]
+
+
+def _beside_free(A: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Return motions (k, c) without those that nothing resists; NaN of loads on these."""
+    U, values, Vh = np.linalg.svd(A)
     free = values <= _NONE * values.max(initial=0.0)
-    if np.linalg.norm(U[:, free].conj().T @ b) > _LOADED * np.linalg.norm(b):
-        return np.full(len(load), np.nan, dtype=complex)
-    kept = ~free
-    return scale * (Vh[kept].conj().T @ ((U[:, kept].conj().T @ b) / values[kept]))
-
-
-def _periodic(
-    systems: list[PeriodicSystem],
-    loads: list[Harmonics],
-    rates: list[float],
-    acting: list[int],
-    driven: np.ndarray | None,
-    tolerance: float,
-) -> list[dict[int, np.ndarray]]:
-    """Return the harmonics of periodic equations, as many as the tolerance needs.
-
-    Of systems with one step, under the coupled harmonics `acting` of the loads.
-    """
-    step, far, found = systems[0].step, reach(systems[0]), [{} for _ in systems]
-    loads = [{n: load[n] for n in acting} for load in loads]
-    left = np.arange(len(systems))
-    last = None
-    for more in range(2, _MOST):
-        most = more * far * step
-        orders = range(acting[0] - most, acting[-1] + most + 1, step)
-        given = [[each[i] for i in left] for each in (systems, loads, rates)]
-        X = _in_chain(*given, orders, driven)
-        size = np.abs(X).max(axis=(1, 2))
-        done = ~np.isfinite(size)
-        if last is not None:
-            change = np.abs(X - np.pad(last, ((0, 0), (far, far), (0, 0)))).max(axis=(1, 2))
-            done |= change <= tolerance * size
-        for row in np.flatnonzero(done):
-            found[left[row]] = dict(zip(orders, X[row], strict=True))
-        left, last = left[~done], X[~done]
-        if not left.size:
-            return found
-    for i in left:
-        found[i] = {n: np.full(systems[i].size, np.nan, dtype=complex) for n in acting}
-    return found
-
-
-def _in_chain(
-    systems: list[PeriodicSystem],
-    loads: list[Harmonics],
-    rates: list[float],
-    orders: Sequence[int],
-    driven: np.ndarray | None,
-) -> np.ndarray:
-    """Return the harmonics (s, h, k) of systems whose harmonics are coupled in a chain."""
-    nu = np.array([[_rate(float(rate), n, system.speed) for n in orders]
-                   for rate, system in zip(rates, systems, strict=True)])  # fmt: skip
-    at_mean = {id(s): (s.M, s.D[0].real, s.K[0].real) for s in systems}
-
-    def stiffness(i: int, a: int) -> np.ndarray:
-        return _dynamic(systems[i], at_mean[id(systems[i])], nu[i, a])
-
-    X = np.zeros((len(systems), len(orders), systems[0].size), dtype=complex)
-    places = [tuple(np.flatnonzero(row == 0.0)) for row in nu]
-    for place in set(places):  # where a constant harmonic stands
-        few = [i for i, one in enumerate(places) if one == place]
-        given = [[each[i] for i in few] for each in (systems, loads)]
-
-        def middle(
-            A: np.ndarray, b: np.ndarray, link: slice, place: tuple = place, few: list = few
-        ) -> np.ndarray:
-            momenta = driven
-            if place and driven is not None:
-                momenta = np.zeros((link.stop - link.start, *driven.shape))
-                momenta[place[0] - link.start] = driven
-                momenta = momenta.reshape(-1, driven.shape[1])
-            return _solved(A, b, np.full(len(few), bool(place)), momenta)
-
-        X[few] = chained(
-            *given, orders, nu[few], lambda i, a, few=few: stiffness(few[i], a), middle
-        )
-    for i in np.flatnonzero(np.isnan(X).any(axis=(1, 2))):  # a link by itself may be singular
-        X[i] = _whole(systems[i], loads[i], float(rates[i]), orders, driven)
+    X = Vh[~free].conj().T @ ((U[:, ~free].conj().T @ b) / values[~free, None])
+    loaded = np.linalg.norm(U[:, free].conj().T @ b, axis=0) > _LOADED * np.linalg.norm(b, axis=0)
+    X[:, loaded] = np.nan
     return X
 
 
-def _whole(
+# ------------------------------------------------------------------ periodic equations
+
+
+def reach(system: PeriodicSystem) -> int:
+    """Return to how many neighbours harmonics are coupled."""
+    return max(abs(n) for terms in (system.D, system.K) for n in terms) // system.step
+
+
+def _acting(system: PeriodicSystem) -> np.ndarray:
+    """Return a basis (k, r) of the forces that repeat, and of the motions that they depend on."""
+    rows, weights = [], np.random.default_rng(0).uniform(0.5, 1.5, np.size(system.speed))
+    for terms in (system.K, system.D):
+        for n, X in terms.items():
+            if n > 0 and np.any(X):
+                mean = np.tensordot(weights, X, axes=(0, 0)) if X.ndim == 3 else X
+                mean = mean / np.abs(mean).max()
+                rows += [part for Y in (mean, mean.T) for part in (Y.real, Y.imag)]
+    _, values, V = np.linalg.svd(np.vstack(rows), full_matrices=False)
+    return V[values > _ROUNDING * values[0]].T
+
+
+def _coupled(
     system: PeriodicSystem,
-    load: Harmonics,
-    rate: float,
-    orders: Sequence[int],
+    loads: Harmonics,
+    rates: np.ndarray,
     driven: np.ndarray | None,
-) -> np.ndarray:
-    """Return the harmonics (h, k) of one system from one matrix."""
-    A, nu = coupled_stiffness(system, rate, orders)
-    F = np.concatenate([np.zeros(system.size) + load.get(n, 0.0) for n in orders]) + 0j
-    momenta, still = None, np.flatnonzero(np.array(nu) == 0.0)
-    if still.size and driven is not None:
-        momenta = np.zeros((len(orders), *driven.shape))
-        momenta[still[0]] = driven
-        momenta = momenta.reshape(-1, driven.shape[1])
-    X = _solved(A[None], F[None], np.array([still.size > 0]), momenta)
-    return X.reshape(len(orders), system.size)
+    tolerance: float,
+) -> dict[int, np.ndarray]:
+    """Return the harmonics of periodic equations, as many as the tolerance needs.
+
+    The next ones follow from the last two by the ratio of these.
+    """
+    far, s = reach(system), len(rates)
+    chain = _Chain(system, loads, rates, driven)
+    found: dict[int, np.ndarray] = {}
+    for more in range(1, _MOST):
+        most = more * far * system.step
+        orders = range(min(loads) - most, max(loads) + most + 1, system.step)
+        X = chain.solved(orders)
+        sizes = np.abs(X).max(axis=2)
+        whole = sizes.max(axis=1)
+        last = np.maximum(sizes[:, :far].max(axis=1), sizes[:, -far:].max(axis=1))
+        inner = sizes[:, far : len(orders) - far]
+        before = np.maximum(inner[:, :far].max(axis=1), inner[:, -far:].max(axis=1))
+        done = ~(last * np.minimum(last, before) > tolerance * whole * before)
+        for n, motion in zip(orders, X.swapaxes(0, 1), strict=True):
+            found.setdefault(n, np.zeros((s, system.size), dtype=complex))
+            found[n][chain.rows[done]] = motion[done]
+        chain = chain.of(~done)
+        if not len(chain.rows):
+            return found
+    for X in found.values():
+        X[chain.rows] = np.nan
+    return found
+
+
+class _Chain:
+    """Coupled harmonics of some of the motions, and the solutions with each Z_m by itself.
+
+    Attributes
+    ----------
+    rows : ndarray of int
+        Which of the motions.
+    """
+
+    def __init__(
+        self,
+        system: PeriodicSystem,
+        loads: Harmonics,
+        rates: np.ndarray,
+        driven: np.ndarray | None,
+    ) -> None:
+        self.system, self.loads, self.rates, self.driven = system, loads, rates, driven
+        self.rows, self.mean = np.arange(len(rates)), (system.M, system.D[0].real, system.K[0].real)
+        self.B = _acting(system)
+        self.K, self.D = (
+            {n: self.B.T @ X @ self.B for n, X in terms.items() if n}
+            for terms in (system.K, system.D)
+        )
+        self.alone: dict[int, np.ndarray] = {}
+
+    def of(self, left: np.ndarray) -> _Chain:
+        """Return the chain of some of its motions."""
+        if np.all(left):
+            return self
+        other = object.__new__(_Chain)
+        other.__dict__.update(self.__dict__)
+        other.rows, other.rates = self.rows[left], self.rates[left]
+        other.loads = {n: F[left] for n, F in self.loads.items()}
+        other.alone = {n: X[left] for n, X in self.alone.items()}
+        if np.ndim(self.system.speed):
+            other.system = self.system[left]
+            other.mean = tuple(X[left] if X.ndim == 3 else X for X in self.mean)
+            other.K, other.D = ({n: X[left] for n, X in t.items()} for t in (self.K, self.D))
+        return other
+
+    def _solve(self, n: int) -> None:
+        """Solve the equations of a harmonic by itself under its load and the forces B.
+
+        At the frequencies ±nΩ solutions are conjugate.
+        """
+        none = np.zeros((len(self.rates), self.system.size))
+        own, mirror = (self.loads.get(m, none)[..., None] for m in (n, -n))
+        both = bool(n) and not np.any(self.rates)
+        columns = [own, mirror.conj()] if both else [own]
+        B = np.broadcast_to(self.B, (len(none), *self.B.shape))
+        F = np.concatenate([*columns, B], axis=2)
+        X = _solved(*_stiffness(self.system, self.mean, self.rates, n), F, self.driven)
+        if both:
+            self.alone[-n] = X[..., 1:].conj()
+            X = np.delete(X, 1, axis=2)
+        self.alone[n] = X
+
+    def solved(self, orders: Sequence[int]) -> np.ndarray:
+        """Return the harmonics (s, h, k) in a chain of them."""
+        for n in orders:
+            if n not in self.alone:
+                self._solve(n)
+        s, h, r = len(self.rates), len(orders), self.B.shape[1]
+        own = np.stack([self.alone[n][..., 0] for n in orders], axis=1)
+        each = np.stack([self.alone[n][..., 1:] for n in orders], axis=1)  # (s, h, k, r)
+        seen = self.B.T @ each
+        nu = np.stack([_rate(self.rates, n, self.system.speed) for n in orders], axis=1)
+        forces = np.zeros((s, h, r, h, r), dtype=complex)
+        for a, b in product(range(h), range(h)):
+            n = orders[a] - orders[b]
+            if n in self.K:
+                forces[:, a, :, b] += self.K[n]
+            if n in self.D:
+                forces[:, a, :, b] += 1j * nu[:, b, None, None] * self.D[n]
+        A = (seen @ forces.reshape(s, h, r, h * r)).reshape(s, h * r, h * r) + np.eye(h * r)
+        y = _one_by_one(A, (own @ self.B).reshape(s, h * r, 1))
+        pushed = (forces.reshape(s, h * r, h * r) @ y).reshape(s, h, r, 1)
+        X = own - (each @ pushed)[..., 0]
+        for i in np.flatnonzero(~np.all(np.isfinite(X), axis=(1, 2))):  # Z_m by itself is singular
+            X[i] = self._whole(i, orders)
+        return X
+
+    def _whole(self, i: int, orders: Sequence[int]) -> np.ndarray:
+        """Return the harmonics (h, k) of one motion from one matrix."""
+        system = self.system[i] if np.ndim(self.system.speed) else self.system
+        A, nu = coupled_stiffness(system, float(self.rates[i]), orders)
+        none, momenta = np.zeros(system.size), None
+        F = np.concatenate([self.loads[n][i] if n in self.loads else none for n in orders])
+        still = np.flatnonzero(np.array(nu) == 0.0)
+        if still.size and self.driven is not None:
+            momenta = np.zeros((len(orders), *self.driven.shape))
+            momenta[still[0]] = self.driven
+            momenta = momenta.reshape(len(F), -1)
+        kind = np.array([0.0 if still.size else 1.0])
+        X = _solved(A[None], kind, F[None, :, None] + 0j, momenta)
+        return X.reshape(len(orders), system.size)
 
 
 def coupled_stiffness(
@@ -333,7 +344,7 @@ def coupled_stiffness(
     """Return the dynamic stiffness between harmonics, (h k, h k), and their frequencies [rad/s]."""
     h, k = len(orders), system.size
     A = np.zeros((h, k, h, k), dtype=complex)
-    nu = [_rate(rate, int(n), system.speed) for n in orders]
+    nu = [float(_rate(rate, int(n), system.speed)) for n in orders]
     for a, m in enumerate(orders):
         for b, n in enumerate(orders):
             for terms, factor in ((system.K, 1.0), (system.D, 1j * nu[b])):

@@ -175,14 +175,8 @@ def _of_axis(
     A signal at the sensor loads the ports of the loop, of `motion`, by its stiffness and damping.
     """
     stiffness, damping = (X[:, _SENSOR] @ np.append(axis, 0.0) for X in matrices)
-    loads = [
-        {n: -U.T @ (stiffness + 1j * frequency * damping) for n, U in motion.items()}
-        for frequency in frequencies
-    ]
-    systems = [model.at(speed)] * len(frequencies)
-    found = forced_motions(systems, loads, frequencies, held=model.held_basis)
-    values = []
-    for harmonics in found:
-        place = sum(U[_SENSOR] @ harmonics[-n] for n, U in motion.items() if -n in harmonics)
-        values.append(1.0 + place[:2] @ axis)
-    return np.array(values)
+    rates = frequencies[:, None]
+    loads = {n: -(stiffness + 1j * rates * damping) @ U for n, U in motion.items()}
+    found = forced_motions(model.at(speed), loads, frequencies, held=model.held_basis)
+    place = sum(found[-n] @ U[_SENSOR].T for n, U in motion.items() if -n in found)
+    return 1.0 + place[:, :2] @ axis

@@ -7,7 +7,6 @@ on any supports, or of an uneven one on supports alike in all directions, else F
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 
 import numpy as np
@@ -15,7 +14,6 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
-from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal import basis_error
 from exudyn_rotor.linear.modal.tracking import track
@@ -130,19 +128,6 @@ def least_stable_of(motions: Motions) -> np.ndarray:
     growth = motions.values.real
     moves = np.abs(growth) > motions.bounds[:, None]
     return np.argmax(rounded(np.where(moves, growth, np.nan), nan=-2.0), axis=1)
-
-
-def warn_of_refused(refused: Sequence[tuple[str, Exception]], count: int) -> None:
-    """Warn of points without values; raise the first error where all of `count` have none."""
-    if len(refused) == count:
-        raise refused[0][1]
-    if refused:
-        shown = ", ".join(point for point, _ in refused[:5]) + (" …" if len(refused) > 5 else "")
-        warnings.warn(
-            f"no values at {shown}, which are NaN: {refused[0][1]}",
-            UserWarning,
-            stacklevel=user_level(),
-        )
 
 
 def _collected(

@@ -24,13 +24,14 @@ from exudyn_rotor.linear.modal.whirl import (
     damping_of,
     families,
 )
-from exudyn_rotor.linear.model.build import Target, linear_model
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_structural_damping
 from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.over import warn_of_refused
 from exudyn_rotor.linear.solve.motions import Motions, motions_of
 from exudyn_rotor.linear.stability.stability import (
+    WHAT,
     check_options,
     least_stable_of,
-    warn_of_refused,
 )
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.threads import one_thread
@@ -299,6 +300,10 @@ def stability_map(
         else:
             alike.setdefault(one.kind, []).append(one)
     warn_of_refused(refused, shape[0] * shape[1])
+    models = [one.model for points in alike.values() for one in points if one.model is not None]
+    lossy = next((model for model in models if model.has_structural_damping), None)
+    if lossy is not None:
+        warn_of_structural_damping(lossy, WHAT)
     made = {name: np.full(shape, np.nan) for name in ("growth", "least", "inertial", "errors")}
     stable, codes = np.zeros(shape, dtype=bool), np.full(shape, UNKNOWN, dtype=np.int64)
     diameters = np.full(shape, -1, dtype=np.int64)

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.linear.modal.basis_error import NOT_KNOWN, in_table, relative_errors
+from exudyn_rotor.linear.modal.basis_error import in_table, relative_errors
+from exudyn_rotor.linear.modal.model_result import ModelResult
 from exudyn_rotor.linear.modal.whirl import FAMILIES, WHIRLS, damping_of, families
-from exudyn_rotor.linear.model.linear_model import AXES
-from exudyn_rotor.results import Result, numbers, storable
-from exudyn_rotor.theory.stiffening import LEVELS
+from exudyn_rotor.results import numbers, storable
 from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:
@@ -24,7 +23,7 @@ _SHOWN = 4.0  # times the strongest decay of lateral motions: what is drawn reac
 
 @storable
 @dataclass(frozen=True, eq=False)
-class Stability(Result):
+class Stability(ModelResult):
     """Exponents over spin speed.
 
     A speed without values, as beyond a table, has a row of NaN and is not stable.
@@ -82,17 +81,10 @@ class Stability(Result):
     nodal_diameters: np.ndarray = numbers("speeds", "modes", dtype=int, least=-1)
     tolerance: float = 1e-6
     basis_shifts: np.ndarray | None = numbers("speeds", dtype=complex, finite=False, optional=True)
-    stiffening: str | None = None
-    axes: str = "inertial"
-    unevenness: float = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.stiffening is not None:
-            checks.choice(self.stiffening, "stiffening", LEVELS)
-        checks.choice(self.axes, "axes", AXES[1:])
         checks.number(self.tolerance, "tolerance", least=0.0)
-        checks.number(self.unevenness, "unevenness", least=0.0)
 
     def plot(self, ax: Axes | None = None, *, units: str = "rpm") -> Axes:
         """Draw the growth over the spin speed, of each family and of the least stable motion.
@@ -309,8 +301,4 @@ class Stability(Result):
                 lines[-1] += f"{in_table(errors[row]):>13}"
         lines = [line.rstrip() for line in lines]
         lines += filter(None, (self._least_stable_line(family, shown) for family in FAMILIES))
-        if self.stiffening:
-            lines.append(f"stiffening: {self.stiffening}")
-        if self.unevenness > 0.0:
-            lines.append(f"unevenness of the mesh, averaged: {100.0 * self.unevenness:.2g} %")
-        return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
+        return "\n".join([*lines, *self._closing(errors)])

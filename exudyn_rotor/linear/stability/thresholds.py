@@ -29,12 +29,11 @@ from exudyn_rotor.linear.model.build import (
     warn_of_structural_damping,
 )
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.over import margins_over, motions_over
+from exudyn_rotor.linear.over import margins_over, motions_over, warn_of_refused
 from exudyn_rotor.linear.stability.stability import (
     WHAT,
     check_options,
     least_stable_of,
-    warn_of_refused,
 )
 from exudyn_rotor.linear.stability.threshold_result import StabilityThresholds, limit_errors
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody

@@ -62,6 +62,21 @@ class StaticResponse(Result):
         (n1, n2, e) as columns, mesh coordinates.
     stress : ndarray, shape (n, 6), or None
         xx, yy, zz, yz, xz, xy at the nodes in mesh axes [Pa], where it was asked for.
+
+    Examples
+    --------
+    Two masses of 2 kg on a rod, each on a spring of 2e4 N/m:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, static_response
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> supports = [Support(name, 2e4) for name in ("left", "right")]
+    >>> found = static_response(rotor, gravity=[0.0, -9.81, 0.0], supports=supports)
+    >>> print(found.reactions[:, 1].round(6))
+    [19.62 19.62]
     """
 
     places: tuple[str, ...] = words("places")

@@ -70,6 +70,8 @@ def make_full_plan(rotor: SolidRotor, setup: inputs.Setup) -> FullPlan:
         origin = rotor.axis.project(origin)
     carried, turns = rotor.carried_prestress, None
     whole = _invariants(rotor, origin)
+    if setup.stiffening != "none" and getattr(carried, "by_loads", None) is not None:
+        whole = replace(whole, K0=carried.by_loads).loaded
     if setup.stiffening == "full":
         if carried is None:
             raise ValueError(NO_PRESTRESS)

@@ -87,13 +87,16 @@ def make_plan(reduced: ReducedRotor, setup: inputs.Setup) -> Plan:
     """Check what needs the modes, and lay out the equations."""
     damped = reduced.with_damping(mass=setup.mass_damping, stiffness=setup.stiffness_damping)
     selection = select_modes(damped, setup.formulation, setup.negligible)
-    second = second_order(selection.invariants, setup.stiffening)
+    invariants = selection.invariants
+    if setup.stiffening != "none":
+        invariants = invariants.loaded
+    second = second_order(invariants, setup.stiffening)
     orientation = setup.placement.rotation
 
     def motion(
         formulation: Formulation, plane: np.ndarray | None, gravity: np.ndarray | None
     ) -> Motion:
-        return Motion(selection.invariants, formulation, second, orientation, plane, gravity)
+        return Motion(invariants, formulation, second, orientation, plane, gravity)
 
     labels = selection.labels
     return laid_out(

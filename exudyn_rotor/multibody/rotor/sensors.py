@@ -138,9 +138,10 @@ def add_drive_torque_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIn
     """Add a sensor of the drive torque about e [N m].
 
     The torque is the rotor's own share (the row of θ in (84–86)) minus the moment of all external
-    forces, which the locked coordinate of the marker body collects. Not in static solutions:
-    Exudyn's static solver returns multipliers with the opposite sign. Explicit solvers have no
-    accelerations at the first instant, so the first value is wrong with them.
+    forces, which the locked coordinate of the marker body collects, and minus the friction of
+    bearings and stops, which the motion of a prescribed spin does not feel. Not in static
+    solutions: Exudyn's static solver returns multipliers with the opposite sign. Explicit solvers
+    have no accelerations at the first instant, so the first value is wrong with them.
     """
     _marker_body(body)
     if body.formulation.has_spin:
@@ -153,9 +154,19 @@ def add_drive_torque_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIn
         q, q_t, q_tt = body.coordinates(configuration)
         modes = slice(body.motion.formulation.translation_count, None)
         needed = body.motion.drive_torque(t, q, q_t, q_tt[modes])
-        return [needed - external(t, configuration) - _deflected_weight(body, t, q[modes])]
+        given = external(t, configuration) + _deflected_weight(body, t, q[modes])
+        return [needed - given - _friction(body, configuration)]
 
     return add_function_sensor(body, torque, options)
+
+
+def _friction(body: RotorItems, configuration: exudyn.ConfigurationType) -> float:
+    """Return the torque of bearings and stops on a rotor that does not feel it [N m]."""
+    total = 0.0
+    for made in (one.connector for one in body.supports):
+        made.read(*made.state(body.mbs, configuration))
+        total += made.friction()
+    return total
 
 
 def _deflected_weight(body: RotorItems, t: float, zeta: np.ndarray) -> float:

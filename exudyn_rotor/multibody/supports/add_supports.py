@@ -159,8 +159,8 @@ def add_supports(
     against tilts have no moment about the shaft's own axis, whatever its tilt.
 
     The friction of journal films and stops, and what a rolling bearing's contacts store, act as a
-    torque on a free spin, at twice the cost. A prescribed spin does not feel it, and the torque of
-    its drive lacks it. What carries the bearing takes the reaction; where it turns about the axis,
+    torque on a free spin. A prescribed spin does not feel it; ``add_drive_torque_sensor`` has it.
+    What carries the bearing takes the reaction; where it turns about the axis,
     bearings see the spin against it, a prescribed one but on a foundation, which hardly turns. The
     force of a bearing pulls at the middles of journal and bore, so that about the axis the base
     lacks the moment ``u × F`` of their distance u.

@@ -7,6 +7,7 @@ from math import cos, sin
 import exudyn
 import numpy as np
 
+from exudyn_rotor.bearings.annular_seal import AnnularSeal
 from exudyn_rotor.bearings.bearing import Bearing, Law, LawWithTorque
 from exudyn_rotor.bearings.journal_bearing import FilmLaw, JournalBearing, RememberingLaw
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
@@ -141,6 +142,16 @@ class BearingConnector(Connector):
         J[:3], L[:3] = self.rows()[[0, 1, 5]], self.rate_rows()[[0, 1, 5]]
         J[3:, self._second :] = np.eye(self.own)
         return Force(force, J, L, K, D)
+
+    @property
+    def has_mass(self) -> bool:
+        """Whether a mass goes with the rotor: that of the leakage in a seal."""
+        return isinstance(self.bearing, AnnularSeal)
+
+    def added_mass(self) -> float:
+        """Return the mass that goes with the rotor at its speed [kg]."""
+        speed = self.end.speed - (self.base.speed if self.feels else 0.0)
+        return self.bearing.added_mass(speed)
 
     def friction(self) -> float:
         """Return the torque on the journal that a prescribed spin does not feel [N m]."""

@@ -152,6 +152,26 @@ class Connector(ABC):
     def tangent(self, t: float) -> Force:
         """Return the law's forces on its ports where the ends have been read, and its tangent."""
 
+    @property
+    def has_mass(self) -> bool:
+        """Whether a mass goes with the rotor across the axis."""
+        return False
+
+    def added_mass(self) -> float:
+        """Return the mass that goes with the rotor at its speed [kg]."""
+        return 0.0
+
+    def inertia(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Return the mass matrix of what goes with the rotor, the forces beside it, and slopes.
+
+        The forces (size,) are those of the turning frame, and the slopes less their derivatives
+        by coordinates and by rates, (size, size).
+        """
+        m, J, H = self.added_mass(), self.rows()[:2], np.zeros((2, 2, self.size))
+        bent, H[0][:, : self._first], H[1][:, : self._first] = self.end.turning()
+        K, D = m * np.einsum("ia,nib->nab", J, H)
+        return m * J.T @ J, -m * bent @ J, K, D
+
     def friction(self) -> float:
         """Return the torque on the rotor that a prescribed spin does not feel [N m]."""
         return 0.0
@@ -162,27 +182,36 @@ class Connector(ABC):
         """Return the object, with constant matrices of the law's own; mute where `whole` is."""
         whole = whole or self
 
-        none = [0.0] * self.size
+        none, massive = [0.0] * self.size, self.has_mass
 
         def force(mbs, t, item, q, q_t):
             if whole.muted:
                 return none
             self.begin(mbs, t)
             self.read(q, q_t)
-            load = self.pull(*self.wrench(t))
+            found = self.pull(*self.wrench(t))
+            found = (found + self.inertia()[1]).tolist() if massive else found
             if self.outside:
                 self.outside = False
                 if self.guard is not None:
                     self.guard(mbs)
-            return load
+            return found
 
         def jacobian(mbs, t, item, q, q_t, factor_q, factor_v):
             self.begin(mbs, t)
             self.read(q, q_t)
             found = self.tangent(t)
             K, D = found.slopes()
+            if massive:
+                K, D = (X + Y for X, Y in zip((K, D), self.inertia()[2:], strict=True))
             return factor_q * K + factor_v * D
 
+        def mass(mbs, t, item, q, q_t):
+            self.read(q, q_t)
+            return self.inertia()[0]
+
+        if massive:
+            matrices["massMatrixUserFunction"] = mass
         given = {"massMatrix": np.zeros((self.size, self.size))} | matrices
         self.native = tuple(given.get(name) for name in ("stiffnessMatrix", "dampingMatrix"))
         return ObjectGenericODE2(

@@ -108,11 +108,8 @@ class RotorEnd:
         ax, ay = C * a - S * b, S * a + C * b
         self._arm = ax, ay, c + z0
         self.place = tx + ax - x0, ty + ay - y0, tz + c
-        self.rate = (
-            vx + C * a_t - S * b_t - speed * ay,
-            vy + S * a_t + C * b_t + speed * ax,
-            vz + c_t,
-        )
+        self._within = wx, wy = C * a_t - S * b_t, S * a_t + C * b_t
+        self.rate = vx + wx - speed * ay, vy + wy + speed * ax, vz + c_t
         self.tilt = self.tilt_rate = None
         if whole:
             a, b, c = found[7:half]
@@ -167,6 +164,25 @@ class RotorEnd:
             axis = R @ axis if turns else np.array(axis)
             J[:3, place], J[3:, place] = np.cross(axis, arm), axis
         return J
+
+    def turning(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the acceleration (2,) across the axis without those of coordinates, and slopes.
+
+        By the coordinates and by their rates, each (2, size): ``2 Ω e × w − Ω² a``, the velocity w
+        in the frame, and a the place of the point from its origin.
+        """
+        R, speed = axial_rotation(self.angle)[:2, :2], self.speed
+        by_place, by_rate = np.zeros((2, 2, self.size))
+        moved = R @ self._rows[3:5, _RIGID:]
+        by_place[:, _RIGID:] = -(speed**2) * moved
+        by_rate[:, _RIGID:] = 2.0 * speed * QUARTER[:2, :2] @ moved
+        x, y, _ = self._arm
+        within = self._within
+        return (
+            2.0 * speed * QUARTER[:2, :2] @ within - speed**2 * np.array([x, y]),
+            by_place,
+            by_rate,
+        )
 
     def rate_rows(self) -> np.ndarray:
         """Return the derivative (6, size) of the rate by the coordinates: J turns with the spin."""

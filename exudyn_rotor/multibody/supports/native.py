@@ -55,6 +55,7 @@ def native_parts(
             parts.append(_tilt_connector(body, support, seat, K, D))
     else:
         left |= {name: getattr(support, name) for name in tilts}
+    left["mass"] = support.mass
     if not any(map(acts, left.values())):
         return parts, None
     return parts, Support(support.interface, **left, extrapolate=support.extrapolate)

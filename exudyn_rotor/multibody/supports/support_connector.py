@@ -48,6 +48,16 @@ class SupportConnector(Connector):
             K, D = R @ K @ R.T, R @ D @ R.T
         return K, D
 
+    @property
+    def has_mass(self) -> bool:
+        """Whether a mass goes with the rotor."""
+        return acts(self.support.mass)
+
+    def added_mass(self) -> float:
+        """Return the mass that goes with the rotor at its speed [kg]."""
+        between = self.base.speed if self._between else 0.0
+        return self.support.mass_at(self.end.speed - between)
+
     def wrench(self, t: float) -> tuple:
         """Return force and moment on the rotor."""
         (K, D), (x, x_t), speed = self._matrices(), self._motion, self.end.speed

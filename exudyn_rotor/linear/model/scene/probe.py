@@ -165,13 +165,19 @@ class Probe:
         full = np.array(self.solver.GetSystemMassMatrix())
         mass = full[np.ix_(self.scene.free, self.scene.free)]
         mass[np.ix_(self.rotor, self.rotor)] = 0.0
+        for one in self.attached:
+            if one.connector.has_mass:  # where the laws have been read
+                whole = np.zeros_like(full)
+                whole[np.ix_(one.places, one.places)] = one.connector.inertia()[0]
+                rotor = self.scene.free[self.rotor]
+                mass[np.ix_(self.rotor, self.rotor)] += whole[np.ix_(rotor, rotor)]
         return mass
 
     def mean_mass(self, count: int) -> np.ndarray:
         """Return the mass matrix (k, k) without deviations, its mean over so many angles."""
         still, total = np.zeros(len(self.scene.free)), 0.0
         for theta in 2.0 * np.pi * np.arange(count) / count:
-            self._set(theta, still, still)
+            self.force(theta, still, still)
             T = self.turn(theta)[0]
             total = total + T.T @ (self.rotor_terms(theta)[0] + self.mass()) @ T
         return total / count
@@ -225,7 +231,12 @@ class Probe:
             one.read(q, q_t)
             found, places = one.force(self._time(theta)), one.places
             force[places] += found.values @ found.J
-            parts = zip((K, D), found.slopes(), one.connector.native, (q, q_t), strict=True)
+            slopes = found.slopes()
+            if one.connector.has_mass:
+                _, turning, *more = one.connector.inertia()
+                force[places] += turning
+                slopes = [X + Y for X, Y in zip(slopes, more, strict=True)]
+            parts = zip((K, D), slopes, one.connector.native, (q, q_t), strict=True)
             for total, block, native, state in parts:
                 if native is not None:
                     block += native
@@ -343,8 +354,8 @@ def linearised(
     x, v = T @ y, T @ y_t + T1 @ y
     rotor_M, rotor_D, rotor_K, constant = probe.rotor_terms(theta)
     foreign = probe.foreign(theta, x, v)
-    M = rotor_M + probe.mass()
     law, law_K, law_D = probe.laws(theta, x, v)
+    M = rotor_M + probe.mass()
     foreign_D, foreign_K = _foreign_slopes(probe, theta, x, v, T, M)
     force = foreign + law
     rest_D, rest_K = T.T @ (law_D @ T + foreign_D), T.T @ (law_K @ T + foreign_K)

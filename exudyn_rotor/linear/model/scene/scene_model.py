@@ -217,11 +217,11 @@ class SceneModel(LinearModel):
         return sum(body.size for body in self.bodies[:2])
 
     def unknowns(self, motion: Mapping[int, np.ndarray], speed: float) -> dict[int, np.ndarray]:
-        """Return harmonics of the unknowns y of the scene, given those (k,) of coordinates."""
+        """Return harmonics of the unknowns y of the scene, given those (…, k) of coordinates."""
         W, found = _Seen.of(self, self.assembly(speed).bodies[0]).W, {}
         for m, rows in W.items():
             for n, x in motion.items():
-                found[m + n] = found.get(m + n, 0.0) + rows @ x[: rows.shape[1]]
+                found[m + n] = found.get(m + n, 0.0) + x[..., : rows.shape[1]] @ rows.T
         return found
 
     # ------------------------------------------------------------------ what a scene tells

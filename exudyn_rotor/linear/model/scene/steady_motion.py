@@ -40,8 +40,9 @@ _LEFT_OUT = 3  # harmonics fewer than samples
 _MOST_UNRESOLVED = 48  # samples for motions whose equations stay unresolved
 _ROUGH = 1e-3  # share of such a motion that its highest harmonics may have
 _SOLVED = 0.01  # of what the harmonics leave out, beyond which more iterations are of no use
-_FIRST_STRIDE, _MOST_STRIDES = 0.25, 20  # shares of what is unbalanced at the start
-_FEW_STRIDES = 8  # with many samples
+_FIRST_STRIDE, _MOST_STRIDES = 0.25, 12  # shares of what is unbalanced at the start
+_ON_THE_WAY = 1e-3  # tolerance before the last stride
+_FEW_STRIDES = 5  # with many samples
 _HOPELESS = 2.0**10  # of UNHELD: a share of this that counts as held leaves too many strides
 _MOST_FOLLOWED = 12  # iterations for each
 _MOST_ITERATIONS = 40
@@ -239,14 +240,15 @@ class _Search:
         else:
             common = np.intersect1d(orders, self.orders)
             Y[np.isin(self.orders, common)] = still[np.isin(orders, common)]
-        first = self._left(Y)
+        first, rough = self._left(Y), replace(self, tolerance=max(self.tolerance, _ON_THE_WAY))
         left, stride = 1.0, _FIRST_STRIDE
         for tries in range(most, 0, -1):
             if stride * (2.0**tries - 1.0) < left:
                 break  # too far, though each were to succeed and the next twice as long
             goal = max(left - stride, 0.0)
             try:
-                points, Y = self._newton(Y, goal * first, _MOST_FOLLOWED)
+                search = rough if goal else self
+                points, Y = search._newton(Y, goal * first, _MOST_FOLLOWED)
             except _UnheldError:  # a share of the load is not held either
                 raise
             except UnconvergedError:
