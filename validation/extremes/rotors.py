@@ -97,18 +97,3 @@ def held(stiffness: float, *names: str, damping: float = 0.0) -> list[Support]:
     return [
         Support(name, np.diag([stiffness] * 3), np.diag([damping] * 3)) for name in names or ["all"]
     ]
-
-
-def cloud(seed: int, count: int = 6) -> dict[str, np.ndarray]:
-    """Return mass, stiffness and nodes of random masses with springs between all of them."""
-    rng = np.random.default_rng(seed)
-    nodes = rng.normal(size=(count, 3))
-    stiffness = np.zeros((3 * count, 3 * count))
-    for i in range(count):
-        for j in range(i):
-            line = np.zeros((count, 3))
-            line[i] = (nodes[i] - nodes[j]) / np.linalg.norm(nodes[i] - nodes[j])
-            line[j] = -line[i]
-            stiffness += rng.uniform(0.5, 2.0) * np.outer(line, line)
-    mass = np.diag(np.repeat(rng.uniform(0.5, 2.0, count), 3))
-    return {"mass": mass, "stiffness": stiffness, "nodes": nodes}

@@ -12,12 +12,9 @@ from exudyn_rotor import (
     Formulation,
     SolidRotor,
     Support,
-    Unbalance,
     campbell,
-    critical_speeds,
     select_modes,
     stability,
-    unbalance_response,
 )
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from validation.extremes.rotors import held, two_rings
@@ -75,47 +72,6 @@ def mismatch(length: float, stress: float = 1.0, density: float = 1.0) -> float:
     expected, found = dimensionless(1.0), dimensionless(length, stress, density)
     turning = expected > 0.0  # nothing holds the spin
     return float(np.abs(found[turning] / expected[turning] - 1.0).max())
-
-
-@cache
-def dimensionless_analyses(length: float, stress: float = 1.0, density: float = 1.0) -> np.ndarray:
-    """Return critical speeds, growth and orbits of the block, in its own units.
-
-    On bearings that are damped, cross-coupled, uneven and not alike.
-    """
-    rotor, unit = block_rotor(length, stress, density), np.sqrt(stress / density) / length
-    stiffness, damping = stress * length, stress * length / unit
-    supports = [
-        Support(
-            name,
-            stiffness * 1e7 * np.array([[share, 0.1, 0.0], [-0.1, 2.0 * share, 0.0], [0, 0, 1.0]]),
-            damping * 2e3 * np.eye(3),
-        )
-        for name, share in (("left", 1.0), ("right", 1.5))
-    ]
-    given, speeds = {"supports": supports, "accuracy": None}, np.array([400.0 * unit])
-    critical = critical_speeds(rotor, max_speed=2000.0 * unit, **given).speeds / unit
-    growth = stability(rotor, speeds, **given).growth / unit
-    unbalance = Unbalance("left", 1e-4 * density * length**4)
-    motion = unbalance_response(rotor, speeds, unbalance, **given).motion[..., :3] / length
-    parts = [critical, growth, np.abs(motion).ravel()]
-    return np.concatenate([part / np.abs(part).max() for part in parts])
-
-
-def analyses(quick: bool = False) -> Row:
-    """Analyse a rotor of a millimetre, of ten metres, of rubber, and in mm, t and MPa."""
-    systems = [(1e-3 / 0.3, 5e-5, 0.15)]
-    if not quick:
-        systems += [(1e3, 1e-6, 1e-12), (1e-3 / 0.3, 1.0, 1.0), (10.0 / 0.3, 2.0, 0.5)]
-    expected = dimensionless_analyses(1.0)
-    found = [np.abs(dimensionless_analyses(*units) - expected).max() for units in systems]
-    return Row(
-        "sizes, units and materials, analyses",
-        "1 mm to 10 m, 1e-5 to 2 × E of steel, mm and t",
-        "critical speeds, growth, orbits in units of the rotor's own, against SI; limit: 1e-8",
-        max(found),
-        1e-8,
-    )
 
 
 def lengths(quick: bool = False) -> Row:

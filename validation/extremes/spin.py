@@ -5,18 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_rotor import (
-    Formulation,
-    Invariants,
     LinearModel,
-    Motion,
     Support,
     campbell,
     linear_model,
     stability,
 )
 from exudyn_rotor.theory.stiffening import stiffening
-from validation.extremes.rotors import cloud, held, shaft_frequencies, shaft_rotor, two_rings
-from validation.extremes.rows import EPS, Row, breaking_point, message
+from validation.extremes.rotors import held, shaft_frequencies, shaft_rotor, two_rings
+from validation.extremes.rows import EPS, Row, breaking_point
 from validation.extremes.runs import bare_rotor, run
 
 BEARING = 2e5  # N/m at each end of the shaft
@@ -131,27 +128,6 @@ def false_instability(quick: bool = False) -> Row:
     )
 
 
-def false_verdict(quick: bool = False) -> Row:
-    """Raise the speed of a stable rigid rotor until round-off makes the verdict wrong."""
-    frequency, rotor = rigid_speeds()["translation"], rigid_on_support("tilt")
-
-    def stable(ratio: float) -> bool:
-        return bool(stability(rotor, [ratio * frequency]).stable[0])
-
-    found = breaking_point(stable, 1.0, 1e14, 1.1)
-    ratios = np.geomspace(1e-9, 1e6, 6 if quick else 40)
-    return Row(
-        "spin speed, verdict of stability",
-        "1e-9 to 1e6 × √(k/m)",
-        "speeds called unstable, of an undamped rotor that is stable; limit: 0",
-        sum(not stable(ratio) for ratio in ratios),
-        0.0,
-        f"{found:.1g} × √(k/m)" if np.isfinite(found) else "not reached",
-        "numerics" if np.isfinite(found) else "",
-        "unstable: Ω ± ω fall together, and a double root keeps half the digits",
-    )
-
-
 # ------------------------------------------------------------------ runs
 
 
@@ -195,72 +171,4 @@ def speeds_of_runs(quick: bool = False) -> Row:
         "drift of the Jacobi integral, which the rule keeps; limit: 10 × round-off × steps",
         max(invariant_drift(r, level, steps) for r in ratios for level in ("none", "tilt")),
         10.0 * EPS * steps,
-    )
-
-
-def mirrored_run(steps: int = 400) -> tuple[float, float]:
-    """Return the mismatch of a run with that of its mirror image, and the lowest speed passed.
-
-    A random rotor with all couplings is braked by a torque to a stop and on into the other sense;
-    its mirror image in a plane through the axis starts with the opposite spin.
-    """
-    arrays, modes = cloud(3), np.random.default_rng(4).normal(size=(18, 3))
-    normal = np.array([0.6, 0.8, 0.0])
-    mirror = np.eye(3) - 2.0 * np.outer(normal, normal)
-    ends, speeds = [], []
-    for side, M in ((1.0, np.eye(3)), (-1.0, mirror)):
-        nodal = np.kron(np.eye(6), M)
-        invariants = Invariants.of(
-            arrays["nodes"] @ M,
-            arrays["mass"],
-            nodal @ arrays["stiffness"] @ nodal,
-            None,
-            nodal @ modes,
-            np.array([0.0, 0.0, 1.0]),
-        )
-        terms = stiffening(invariants, "tilt")
-        motion = Motion(invariants, Formulation(), terms, gravity=M @ [0.3, -0.2, 0.1])
-        path = _braked(motion, side, steps)
-        back = np.concatenate([M @ path[-1][:3], [side * path[-1][3]], path[-1][4:7]])
-        ends.append(back)
-        speeds.append(side * path[-1][10])
-    return float(np.abs(ends[0] - ends[1]).max() / np.abs(ends[0]).max()), min(speeds)
-
-
-def _braked(motion: Motion, side: float, steps: int, step: float = 2e-3) -> list[np.ndarray]:
-    """Integrate by the classical Runge–Kutta method from 0.5 rad/s against a torque."""
-    brake = np.zeros(motion.size)
-    brake[3] = -4.0 * side * motion.invariants.Theta
-
-    def rate(state: np.ndarray) -> np.ndarray:
-        q, v = np.split(state, 2)
-        return np.append(
-            v, np.linalg.solve(motion.mass_matrix(0, q), motion.forces(0, q, v) + brake)
-        )
-
-    state = np.zeros(2 * motion.size)
-    state[4:7], state[motion.size + 3] = 0.01, 0.5 * side
-    path = [state]
-    for _ in range(steps):
-        a = rate(state)
-        b = rate(state + step / 2 * a)
-        c = rate(state + step / 2 * b)
-        state = state + step / 6 * (a + 2 * b + 2 * c + rate(state + step * c))
-        path.append(state)
-    return path
-
-
-def backwards(quick: bool = False) -> Row:
-    """Spin through zero into the other sense, and compare with the mirror image."""
-    steps = 400
-    mismatch, lowest = mirrored_run(steps)
-    return Row(
-        "backwards spin, through zero",
-        f"0.5 rad/s to {lowest:.3g} rad/s by a brake",
-        "run against its mirror image with opposite spin; limit: 100 × round-off × steps",
-        mismatch if lowest < 0.0 else np.inf,
-        100.0 * EPS * steps,
-        "linear sweeps at speeds below zero",
-        "input",
-        message(lambda: campbell(shaft_rotor().reduce(2), [-1.0])),
     )

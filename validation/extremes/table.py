@@ -21,9 +21,7 @@ GROUPS: dict[str, tuple[Callable[..., Row], ...]] = {
         spin.speeds_of_campbell,
         spin.definiteness,
         spin.false_instability,
-        spin.false_verdict,
         spin.speeds_of_runs,
-        spin.backwards,
     ),
     "Supports and damping": (
         holding.supports_linear,
@@ -34,7 +32,6 @@ GROUPS: dict[str, tuple[Callable[..., Row], ...]] = {
     "Sizes, units, materials": (
         sizes.lengths,
         sizes.units,
-        sizes.analyses,
         sizes.poisson,
         sizes.densities,
         sizes.far_axis,
