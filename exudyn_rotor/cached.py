@@ -3,21 +3,21 @@
 import functools
 from collections.abc import Callable
 from typing import TypeVar
-from weakref import WeakKeyDictionary
 
 Value = TypeVar("Value")
 
 
 def kept(function: Callable[..., Value]) -> Callable[..., Value]:
-    """Keep what a function finds of an object as long as the object lives.
+    """Keep what a function finds of an object as long as the object lives, within the object.
 
-    Its other arguments have to be hashable; the result must not refer to the object.
+    Its other arguments have to be hashable.
     """
-    results: WeakKeyDictionary = WeakKeyDictionary()
+    name = f"{function.__module__}.{function.__qualname__}"
 
     @functools.wraps(function)
     def known(each: object, *rest: object) -> Value:
-        found = results.setdefault(each, {})
-        return found[rest] if rest in found else found.setdefault(rest, function(each, *rest))
+        found = vars(each).setdefault("_kept", {})
+        key = name, *rest
+        return found[key] if key in found else found.setdefault(key, function(each, *rest))
 
     return known

@@ -232,9 +232,6 @@ CALLS = {
     "MotionShapes.animate": lambda w: {"path": w.folder / "shape.gif", "frames": 2},
     "MotionShapes.to_vtk": lambda w: {"path": w.folder / "shape.vtu"},
     "Mount": {"stiffness": 1e6 * np.eye(3)},
-    f"{TWIN}.AddObjectFFRFreducedOrderWithUserFunctions": {"exu": exudyn},
-    f"{TWIN}.LoadFromFile": lambda w: {"self": w.twin, "fileName": w.stored("ReducedRotor")},
-    f"{TWIN}.SaveToFile": lambda w: {"fileName": w.folder / "interface.npz"},
     "OilFilm": {
         "length": 0.05,
         "viscosity": 0.02,

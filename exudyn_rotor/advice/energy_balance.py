@@ -20,7 +20,7 @@ from exudyn_rotor import plotting
 from exudyn_rotor.advice.run_loads import external_load
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.multibody.full.full_body import reduced_body
-from exudyn_rotor.multibody.rotor.locking import guiding_force
+from exudyn_rotor.multibody.rotor.locking import driving_force
 from exudyn_rotor.multibody.rotor.record import Record
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.results import Result, numbers, storable
@@ -229,11 +229,8 @@ def _moment_on_spin(body: RotorBody, record: Record, index: int) -> float:
     """Return the external moment about e, which the locked spin holds [N m]."""
     if "marker_body" not in body.objects:
         return 0.0
-    place, spin = body.layout, body.locks.spin
-    locks = (place.lock_mass, place.lock_damping, place.lock_stiffness)
-    states = (record.q_tt, record.q_t, record.q)
-    held = sum(lock[spin] * rows[index, spin] for lock, rows in zip(locks, states, strict=True))
-    guide = guiding_force(body.locks, place)
-    if guide is not None:
-        held -= place.signs[spin] * guide(float(record.time[index]))[spin]
+    mass, spin = body.layout.lock_mass, body.locks.spin
+    held = mass[spin] * record.q_tt[index, spin]
+    if body.plan.setup.locking == "mass" and spin in body.locks.varying:
+        held -= driving_force(body.locks, mass)(float(record.time[index]))[spin]
     return float(held + record.held[index, spin])

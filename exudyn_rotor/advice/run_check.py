@@ -35,7 +35,8 @@ def default_limits(accuracy: float) -> dict[str, float]:
         "deflection": root,
         "travel": 0.1,
         "adrift": 1.0,
-        "locked": 1e-6,
+        "locked": 1e-5,
+        "any angle": 1e-3,
         "film": 1.0,
         "frozen spin": accuracy,
         "connections": 0.0,
@@ -131,7 +132,9 @@ def check_run(
                                   much in every step
     ``adrift``           1        the same distance where the spin is prescribed, too: nothing holds
                                   the rotor in its place
-    ``locked``           1e-6     locked coordinates off their place [rad], [size]
+    ``locked``           1e-5     locked coordinates off their place [rad], [size]
+    ``any angle``        1e-3     after ``mbs.SolveStatic()`` of a rotor that spins: forces that
+                                  change with its angle, over the loads
     ``film``             1        displacement of a journal at the end over that beyond which its
                                   film is too thin and the law goes on by its tangent
     ``frozen spin``      a        angular momentum of the changing moment of inertia over the whole,

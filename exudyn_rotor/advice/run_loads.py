@@ -21,7 +21,7 @@ def external_load(body: RotorBody, record: Record, index: int) -> tuple[np.ndarr
     motion, place = body.motion, body.layout
     t = float(record.time[index])
     q, q_t, q_tt = (rows[index][place.unknowns] for rows in (record.q, record.q_t, record.q_tt))
-    inertia = motion.mass_matrix(t, q) @ q_tt
+    inertia = motion.mass_matrix(t, q, q_t) @ q_tt
     return inertia, inertia - motion.forces(t, q, q_t)
 
 

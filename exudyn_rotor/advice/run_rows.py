@@ -13,7 +13,9 @@ from exudyn_rotor.advice.left_out_fields import left_out_at_nodes
 from exudyn_rotor.advice.proposal import Proposal
 from exudyn_rotor.advice.residual import residual_deflection
 from exudyn_rotor.advice.run_measures import Measures
+from exudyn_rotor.advice.static_angle import change_with_angle
 from exudyn_rotor.advice.unresisted import unresisted_load
+from exudyn_rotor.multibody.rotor.connections import lost_loads
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.tensor import von_mises
 from exudyn_rotor.solid_rotor import SolidRotor
@@ -55,11 +57,11 @@ _ALWAYS: tuple[tuple[str, Callable[[Measures], float], str, str], ...] = (
         "locked",
         methodcaller("locked"),
         "locked coordinates off their place [rad], [size]",
-        "use locking='constraints', a smaller step, or load an interface instead of the frame",
+        "use locking='constraints', or a smaller step",
     ),
     (
         "connections",
-        lambda m: len(m.body.check_connections(warn=False)),
+        lambda m: lost_loads(m.body),
         "connections, joints and loads that the rotor cannot carry",
         "body.check_connections() names them; use markers at interfaces or mesh nodes",
     ),
@@ -135,6 +137,17 @@ def rows(
             "angular momentum left out, over the whole",
             left_out,
             "add the rotor with spin_coupling='full'",
+        )
+    share = change_with_angle(measures.body)
+    if share is not None:
+        yield (
+            "any angle",
+            "forces of a static solution that change with the rotor's angle, over the loads",
+            share,
+            "gravity across the axis, forces that stand still and supports that are not alike in "
+            "all directions have no static solution of a rotor that spins: steady_state(body) "
+            "finds the motion, body.start_from(steady.state()) starts a run from it; for the rotor "
+            "at rest, use spin=0",
         )
     if isinstance(measures, FullMeasures):
         yield from _rows_of_nodes(measures)

@@ -1,9 +1,15 @@
 """Which step size a scene requires: how much the response changes by what a step does to it.
 
-Generalised alpha replaces the rate s of a motion ``exp(st)`` by ``ŝ = s(1 − κ(sh)²)``, κ = 0.0844.
-The response with ŝ in place of s is that of the simulation. The rates are those of the coordinates
-that are integrated: a motion that is slow in space is fast in a rotor frame, and ``κ(sh)²`` of its
-fast rate is a large share of its slow one. A frame that carries the translations avoids that.
+Generalised alpha replaces the rate s of a motion ``exp(st)`` by ``ŝ = s(1 − κ(sh)² + δ(sh)³)``,
+κ = 0.0844 and δ = 7.3e-5, which damps. The response with ŝ in place of s is that of the simulation.
+The rates are those of the coordinates that are integrated: a motion that is slow in space is fast
+in a rotor frame, and ``κ(sh)²`` of its fast rate is a large share of its slow one. A frame that
+carries the translations avoids that.
+
+Free motions have ŝ in place of their exponents, too. Where a forward and a backward whirl nearly
+meet, that changes the distance of their frequencies, on which their growth depends, by the shares
+of bearings and of damping that turns with the rotor in them: a step that is right for the response
+may show a stable rotor grow. The step keeps the change of each growth below half of it.
 """
 
 from __future__ import annotations
@@ -20,6 +26,11 @@ from exudyn_rotor.theory.rotating_axes import axial_skew
 
 _TRIAL = 1e-2  # ωh of the trial step at the end of the band; the error grows with its square
 _UNMOVED = 1e-9  # share of the largest response
+_DAMPING = 7.3e-5  # δ of generalised alpha with Exudyn's spectral radius 0.9
+_LIGHT, _UNDAMPED = 0.05, 1e-9  # growth per radian of motions whose growth is looked at
+_NEAR = 0.1  # relative distance of exponents that a step may mix
+_GROWTH_CHANGE = 0.5  # share of a growth by which a step may change it
+_HALVINGS, _DEFECTIVE = 8, 1e10
 _STEADY = 1e-3  # growth per radian at one speed, where motion is steady: undamped resonances
 
 
@@ -62,6 +73,44 @@ def choose_step(given: Candidate, request: Request, follows: bool) -> Step:
         size = trial * np.sqrt(request.allowed / max(change, 1e-300))
         if size < chosen.size:
             chosen = Step(float(size), float(speed), float(frequency))
+    for speed in request.speeds:
+        chosen = _with_right_growth(given, request, float(speed), follows, chosen)
+    return chosen
+
+
+def _with_right_growth(
+    given: Candidate, request: Request, speed: float, follows: bool, chosen: Step
+) -> Step:
+    """Return a step, the same or a smaller one, by which growth changes by less than half."""
+    M, D, K, _count = given.hill(speed)
+    n, step = len(M), chosen.size
+    zero, unit = np.zeros((n, n)), np.eye(n)
+    A = np.block([[zero, unit], [-np.linalg.solve(M, K), -np.linalg.solve(M, D)]])
+    exponents, shapes = np.linalg.eig(A)
+    if np.linalg.cond(shapes) > _DEFECTIVE:
+        return chosen
+    left = np.linalg.inv(shapes)[:, n:] @ np.linalg.inv(M)
+    light = np.abs(exponents.real) < _LIGHT * np.abs(exponents.imag)
+    light &= (exponents.imag > 0.0) & (exponents.imag <= request.highest)
+    light &= np.abs(exponents.real) > _UNDAMPED * np.abs(exponents.imag)
+    for _ in range(_HALVINGS):
+        worst, frequency = 0.0, np.nan
+        for number in np.flatnonzero(light):
+            own = exponents[number]
+            near = np.abs(exponents - own) < _NEAR * abs(own)
+            dynamic = _of_step(given, speed, own, step)
+            if follows:
+                dynamic = dynamic + _of_frame(given, speed, own, step)
+            moved = np.diag(exponents[near]) - left[near] @ dynamic @ shapes[:n, near]
+            found = np.linalg.eigvals(moved)
+            change = found[np.argmin(np.abs(found - own))] - own
+            share = abs(np.real(change) / own.real)
+            if share > worst:
+                worst, frequency = share, float(own.imag)
+        if worst <= _GROWTH_CHANGE:
+            break
+        step *= max(np.sqrt(_GROWTH_CHANGE / worst), 0.5)
+        chosen = Step(float(step), speed, frequency)
     return chosen
 
 
@@ -129,5 +178,5 @@ def _of_frame(given: Candidate, speed: float, s: complex, step: float) -> np.nda
 
 def _rates(s: np.ndarray | complex, step: float):
     """Return ``ŝ − s`` and ``ŝ² − s²``."""
-    integrated = s * (1.0 - PERIOD_ERROR * (s * step) ** 2)
+    integrated = s * (1.0 - PERIOD_ERROR * (s * step) ** 2 + _DAMPING * (s * step) ** 3)
     return integrated - s, integrated**2 - s**2

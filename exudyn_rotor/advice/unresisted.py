@@ -45,16 +45,12 @@ def _balance(
     """
     motion, place = body.motion, body.layout
     t = float(record.time[index])
-    q, q_t, q_tt = (rows[index] for rows in (record.q, record.q_t, record.q_tt))
+    q, q_tt = record.q[index], record.q_tt[index]
     inertia, external = external_load(body, record, index)
-    load = place.lock_mass * q_tt + place.lock_damping * q_t + place.lock_stiffness * q
-    load += record.held[index]
-    for number, guide in body.locks.prescribed.items():
-        load[number] -= (
-            place.lock_mass[number] * guide.acceleration(t)
-            + place.lock_damping[number] * guide.rate(t)
-            + place.lock_stiffness[number] * guide.value(t)
-        )
+    load = place.lock_mass * q_tt + record.held[index]
+    if body.plan.setup.locking == "mass":
+        for number, driven in body.locks.varying.items():
+            load[number] -= place.lock_mass[number] * driven.acceleration(t)
     load[place.unknowns] = external
     turn = turned(body, q)
     on_modes = external[motion.modes]
@@ -105,5 +101,4 @@ def _moment_on_node(
 
 def _axes_of_rotation(body: RotorBody, q: np.ndarray) -> np.ndarray:
     """Return the inertial axes (3, 3), in rows, that the node's angles turn about, θ about e."""
-    signs = body.layout.signs
-    return signs[3:6, None] * body.frame.axes_of_angles((signs * q)[3:6])
+    return body.frame.axes_of_angles(q[3:6])

@@ -7,15 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import exudyn
-import numpy as np
 from numpy.typing import ArrayLike
 
-import exudyn_rotor.multibody.calls.clearances
-import exudyn_rotor.multibody.calls.copying  # noqa: F401 (both answer methods of MainSystem)
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.calls.assembly import check_at_assembly
-from exudyn_rotor.multibody.calls.sparse_solver import needs_sparse_solver
-from exudyn_rotor.multibody.calls.static_check import watched
 from exudyn_rotor.multibody.full.add_full import add_full
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.full.full_memory import check_memory
@@ -23,14 +17,8 @@ from exudyn_rotor.multibody.full.full_plan import make_full_plan
 from exudyn_rotor.multibody.rotor import inputs
 from exudyn_rotor.multibody.rotor.add_reduced import add_bare, add_with_marker_body
 from exudyn_rotor.multibody.rotor.frame import CENTRE_OF_MASS, FRAME_NODES
-from exudyn_rotor.multibody.rotor.locking import (
-    LOCKINGS,
-)
-from exudyn_rotor.multibody.rotor.marker_body import (
-    marker_body_mesh,
-)
-from exudyn_rotor.multibody.rotor.node_markers import carry_markers, refuse_markers
-from exudyn_rotor.multibody.rotor.plan import Plan, make_plan
+from exudyn_rotor.multibody.rotor.locking import LOCKINGS
+from exudyn_rotor.multibody.rotor.plan import make_plan
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -45,13 +33,6 @@ from exudyn_rotor.theory.formulation import (
 )
 from exudyn_rotor.theory.stiffening import CHOICES, chosen_level, warn_of_left_out
 
-TURNED_AXES = (
-    "rotor {!r}: no node of Exudyn turns about mesh direction {} mounted along {} with the axes of "
-    "the mesh. Its flexible body and node have the mesh axes turned by body.frame.B, z along the "
-    "spin axis; so have a script's own MarkerSuperElementRigid with its offset, connectors in its "
-    "axes, MarkerNodeRotationCoordinate on the node, and sensors in local axes. Markers at the "
-    "node, body.add_marker(nodes or interface, offset) and the interfaces' markers have mesh axes"
-)
 DEFAULT_COLOR = (0.62, 0.70, 0.80, 1.0)
 
 
@@ -136,12 +117,13 @@ def add_rotor(
         Whether ``mbs.Assemble()`` moves a script's own markers on many mesh nodes of the rotor to
         one or three added nodes with the same mean motion: the same to round-off, at a cost that
         does not depend on the mesh; and whether forces at a rigid marker's own offset have their
-        lever for tilts. See :mod:`exudyn_rotor.multibody.rotor.condensed_markers`.
-    locking : {'auto', 'mass', 'constraints'}
-        How coordinates of the marker body that the formulation does not have are held; see the
-        notes and :mod:`exudyn_rotor.multibody.rotor.locking`. ``'auto'`` takes constraints for
-        time-varying prescribed motions and for in-plane translation in a plane skew to the
-        inertial axes, masses else.
+        lever for tilts. See :mod:`exudyn_rotor.multibody.rotor.assembly`.
+    locking : {'auto', 'constraints', 'mass'}
+        How coordinates of the marker body's node that the formulation does not have are held.
+        ``'constraints'``, which ``'auto'`` is, serves implicit and static solvers, and Exudyn's
+        analyses of the scene; explicit solvers (RK44, DOPRI5, …) end with an error, "contains
+        constraints that cannot be solved", and need ``'mass'``; see
+        :mod:`exudyn_rotor.multibody.rotor.locking`.
     frame_node : {'centre_of_mass', 'mesh_origin'}
         Where the node of the frame is, ``body.nodes["rigid"]``: markers and sensors that a script
         adds there move with the mean rigid motion of the rotor at this place, tilts included. The
@@ -170,46 +152,27 @@ def add_rotor(
     TooLittleMemoryError
         Where an implicit run with a full body needs more memory than is available.
 
-    Warns
-    -----
-    UserWarning
-        Where the flexible body cannot have the axes of the mesh; see the notes.
-
     Notes
     -----
-    What a script attaches to the flexible body or its node by itself has mesh axes, as with
-    Exudyn's own body, if the spin axis is mesh z (any mounting), is mounted along inertial x (any
-    mesh axis), or lies across mesh z and is mounted across inertial x: all coordinate axes mounted
-    along coordinate axes are among these. For any other axis a warning says what is turned;
-    ``body.add_marker`` and ``body.marker`` give mesh axes always.
+    The flexible body and its node have mesh axes, as with Exudyn's own body, if the spin axis is
+    mesh z (any mounting), is mounted along inertial x (any mesh axis), or lies across mesh z and is
+    mounted across inertial x. For any other axis they have the mesh axes turned by
+    ``body.frame.B``, with z along the spin axis; local output, and rotations about single axes of
+    the node, are in those. Markers have mesh axes always.
 
     The node itself carries the frame's coordinates, which do not tilt: its translation is that of
-    the centre of mass, its angle the rotor's mean rotation about the axis. Rigid and position
-    markers that are added at it (``MarkerNodeRigid``, ``MarkerNodePosition``), and sensors of
-    position, displacement, velocity, rotation and angular velocity, are put on virtual nodes of the
-    flexible body, so that forces, torques, springs and joints there act as on Exudyn's body. They
-    cost as much as a marker at an interface. Markers of single coordinates stay;
-    ``body.check_connections()`` names what they lack.
+    the centre of mass, its angle the rotor's mean rotation about the axis. What a script attaches
+    to rigid and position markers there (``MarkerNodeRigid``, ``MarkerNodePosition``) is pointed by
+    ``mbs.Assemble()`` at markers with the rotor's mean motion, so that forces, torques, springs,
+    joints and sensors act as on Exudyn's body. Markers of single coordinates, and sensors of the
+    node, stay what they are; a warning, and ``body.check_connections()``, name what they lack.
 
-    Locking and solvers:
-
-    ============================  =======================  =====================================
-    rotor                         implicit solvers         explicit solvers (RK44, DOPRI5, …)
-    ============================  =======================  =====================================
-    free or constant spin         any locking              ``'mass'``; with constraints they are
-                                                           of first order only
-    θ(t) or τ(t)                  any; ``'constraints'``   ``'mass'``; a run with constraints
-                                  is exact                 stops with an error
-    in-plane, plane skew to the   ``'constraints'``        none; use ``marker_body=False`` or
-    inertial axes                                          translation ``'free'``
-    ============================  =======================  =====================================
-
-    The static solver keeps the initial velocities, so the rotor spins in it. With a constant spin
-    and translation ``'none'`` its solution is the steady state in the rotating frame, where nothing
-    that stands still in space acts across the axis: no gravity there, and supports that are alike
-    in all directions. Else ``mbs.SolveStatic()`` raises an error, and
-    :func:`exudyn_rotor.steady_state` gives the motion instead. θ is that of the solver's load time
-    (1 s by default). For θ(t) a static solution has no meaning but at its initial speed.
+    The static solver keeps the initial velocities, so the rotor spins in it, its angle stands
+    still. With a constant spin and translation ``'none'`` its solution is the steady state in the
+    rotating frame, where nothing that stands still in space acts across the axis: no gravity there,
+    and supports that are alike in all directions; :func:`exudyn_rotor.check_run` says so. Else
+    :func:`exudyn_rotor.steady_state` gives the motion instead. For θ(t) a static solution has no
+    meaning but at its initial speed.
 
     A solid rotor is added with the displacements of all its nodes, Ψ = I, and sparse matrices: the
     formulations of Sects. 2.2 to 2.5 in full. What the frame describes, 4, 3 or 1 rigid motions, is
@@ -296,16 +259,8 @@ def _add_reduced(mbs: exudyn.MainSystem, reduced: ReducedRotor, setup: inputs.Se
     if reduced.invariants.H is not None:
         warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=3)
     if not setup.marker_body:
-        return watched(add_bare(mbs, plan))
-    _warn_of_turned_axes(plan)
-    offsets = {interface: request.offset for interface, request in setup.markers.items()}
-    mesh = marker_body_mesh(
-        reduced.shapes, reduced.interfaces, plan.selection.T, reduced.axis, plan.frame, offsets
-    )
-    body = watched(add_with_marker_body(mbs, plan, mesh))
-    carry_markers(body)
-    check_at_assembly(body)
-    return body
+        return add_bare(mbs, plan)
+    return add_with_marker_body(mbs, plan, reduced)
 
 
 def _add_solid(mbs: exudyn.MainSystem, rotor: SolidRotor, setup: inputs.Setup) -> FullRotorBody:
@@ -316,19 +271,4 @@ def _add_solid(mbs: exudyn.MainSystem, rotor: SolidRotor, setup: inputs.Setup) -
     plan = make_full_plan(rotor, replace(setup, stiffening=level))
     if rotor.structural_damping is not None:
         warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=3)
-    if setup.marker_body:
-        _warn_of_turned_axes(plan)
-    body = watched(add_full(mbs, plan))
-    needs_sparse_solver(mbs)
-    if setup.marker_body:
-        refuse_markers(body)
-        check_at_assembly(body)
-    return body
-
-
-def _warn_of_turned_axes(plan: Plan) -> None:
-    if plan.frame.has_mesh_axes:
-        return
-    e = plan.motion.invariants.direction
-    axes = (np.round(axis, 3).tolist() for axis in (e, plan.motion.orientation @ e))
-    warnings.warn(TURNED_AXES.format(plan.setup.name, *axes), UserWarning, stacklevel=4)
+    return add_full(mbs, plan)

@@ -15,6 +15,12 @@ _SIGN = -2.0  # no opacity of a colour
 _numbers = count(1)
 
 Mark = tuple[float, float]
+ENTRY = "exudyn_rotor"  # the package's one entry of mbs.sys
+
+
+def entry(mbs: exudyn.MainSystem) -> dict:
+    """Return the package's own entry of ``mbs.sys``."""
+    return mbs.sys.setdefault(ENTRY, {})
 
 
 def mark_of(mbs: exudyn.MainSystem, item: exudyn.ObjectIndex) -> Mark | None:

@@ -1,61 +1,44 @@
-"""The one way in which methods of Exudyn's ``MainSystem`` are given something more to do.
+"""The one method of Exudyn's ``MainSystem`` that does more for rotors: ``mbs.Assemble()``.
 
-Importing this module wraps them; what they do more comes with the modules of rotors, which a scene
-without rotors does not load.
+Markers, loads and connectors are all known when a system is assembled. What happens then stands in
+:mod:`exudyn_rotor.multibody.rotor.assembly`, which a scene without rotors does not load.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import wraps
-from typing import Any
 
 import exudyn
 from exudyn.misc.extensionRegistry import extends, install
 
-METHODS = (
-    "AddMarker",
-    "AddSensor",
-    "Assemble",
-    "GetDictionary",
-    "SetObjectParameter",
-    "SolveDynamic",
-    "SolveStatic",
-)
-_OWN = "_knows_fixed_axis_rotors"  # attribute of a wrapped method: who answers it
+from exudyn_rotor.multibody.mark import ENTRY
+
+_OWN = "_knows_fixed_axis_rotors"  # attribute of the wrapped method
 
 
-def wraps_method(name: str) -> Callable[[Callable], Callable]:
-    """Let a function of (Exudyn's method, mbs, arguments) answer ``mbs.<name>(arguments)``."""
-
-    def put_in_place(function: Callable) -> Callable:
-        getattr(getattr(exudyn.MainSystem, name), _OWN)["answer"] = function
-        return function
-
-    return put_in_place
-
-
-def _wrap(name: str) -> None:
-    """Let a method ask for its answer; once, however often the package is imported."""
-    original = getattr(exudyn.MainSystem, name)
+def _wrap_assemble() -> None:
+    """Let ``mbs.Assemble()`` look after rotors; once, however often the package is imported."""
+    original = exudyn.MainSystem.Assemble
     if hasattr(original, _OWN):
         return
-    own: dict[str, Callable] = {}
 
     @wraps(original)
-    def method(mbs: exudyn.MainSystem, *given: Any, **options: Any) -> Any:
-        if "answer" not in own:  # no rotor was ever made
-            return original(mbs, *given, **options)
-        return own["answer"](original, mbs, *given, **options)
+    def assemble(mbs: exudyn.MainSystem) -> None:
+        if ENTRY not in mbs.sys:
+            return original(mbs)
+        from exudyn_rotor.multibody.rotor import assembly
 
-    setattr(method, _OWN, own)
+        assembly.prepare(mbs)
+        original(mbs)
+        return assembly.warn_of_lost_connections(mbs, stacklevel=3)
+
+    setattr(assemble, _OWN, True)
     if hasattr(original, "_exudynExtension"):
         # registered, or Exudyn's own would be put back with the next extension
-        extends(exudyn.MainSystem, name)(method)
+        extends(exudyn.MainSystem, "Assemble")(assemble)
         install()
     else:
-        setattr(exudyn.MainSystem, name, method)
+        exudyn.MainSystem.Assemble = assemble
 
 
-for _name in METHODS:
-    _wrap(_name)
+_wrap_assemble()

@@ -5,7 +5,8 @@ Kinetic energy with the mean translation τ, from the velocities ``τ̇ + A (ω 
     T = ½ m τ̇² + τ̇ᵀA (Sζ̇ + ω (mχ* + S*ζ))
         + ½ ω² (Θ + 2hᵀζ + ζᵀĈζ) + ω (g + Wζ)ᵀζ̇ + ½ ζ̇ᵀM_ψψζ̇
 
-its mass matrix is (41–43, 65, 84, 85); θ and τ may be unknowns or prescribed.
+less ``(3/2)ω⁴ζᵀK4ζ`` with a stiffness per ω⁴; its mass matrix is (41–43, 65, 84, 85); θ and τ may
+be unknowns or prescribed.
 """
 
 from __future__ import annotations
@@ -101,5 +102,7 @@ def energy_of(
         + omega * (terms.g + terms.W @ bent) @ zeta_t
         + 0.5 * zeta_t @ (inv.M @ zeta_t)
     )
+    if terms.K4 is not None and not form.has_frozen_spin:
+        kinetic -= 1.5 * omega**4 * zeta @ (terms.K4 @ zeta)
     moved = inv.mass * (shift + (A - motion.orientation) @ inv.center) + A @ (inv.S @ zeta)
     return Energy(float(kinetic), float(0.5 * zeta @ (inv.K @ zeta)), float(-g @ moved))

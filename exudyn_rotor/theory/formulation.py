@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -209,7 +209,8 @@ class Formulation:
     spin_coupling : {'full', 'frozen'}
         ``'frozen'`` leaves the part of the mass matrix that varies with the modal coordinates out
         of a free spin, with the forces that belong to it; see
-        :class:`exudyn_rotor.theory.motion.Motion`.
+        :class:`exudyn_rotor.theory.motion.Motion`. It needs a frame that follows the rotor,
+        translation 'free' or 'in-plane'.
 
     Raises
     ------
@@ -257,20 +258,12 @@ class Formulation:
                 "spin_coupling='frozen' needs spin='free'; a prescribed spin has no equation that "
                 "it would shorten, so leave it out"
             )
-
-    def reversed(self) -> Formulation:
-        """Return the formulation with the spin angle counted about the opposite axis, −θ."""
-        if self.has_spin:
-            return self
-        if self.is_constant_speed:
-            return replace(self, spin=ConstantSpeed(-self.spin.speed, -self.spin.angle))
-        forward = self.spin
-        backward = PrescribedMotion(
-            lambda t: -forward.value(t),
-            lambda t: -forward.rate(t),
-            lambda t: -forward.acceleration(t),
-        )
-        return replace(self, spin=backward)
+        if self.spin_coupling == "frozen" and not self.translation_count:
+            raise ValueError(
+                "spin_coupling='frozen' needs translation='free' or 'in-plane': rigid motions that "
+                "are modes turn backwards in the rotor frame, and err with every change of speed "
+                "by the Euler force that a frozen spin leaves out"
+            )
 
     @property
     def has_spin(self) -> bool:

@@ -94,11 +94,6 @@ class FullStiffening:
     euler: Factors
     K4: sp.csr_array | None = None
 
-    def reversed(self) -> FullStiffening:
-        """Return the same for the opposite axis: the Euler field changes its sign."""
-        V, W = self.euler
-        return replace(self, B=sp.csr_array(-self.B), euler=(V, -W))
-
 
 def full_stiffening(
     invariants: Invariants, level: str, turns: np.ndarray | None = None
@@ -295,10 +290,11 @@ class FullMotion(Motion):
             force[self.modes] = self.spin_terms.load(self.formulation.spin.speed)
         return force
 
-    def varying_inertia(self, c: np.ndarray) -> tuple[float, np.ndarray]:
-        """Return ``2hᵀc + cᵀĈc`` of (85) and ``Wc`` of (84), which add to Θ and g."""
+    def varying_inertia(self, c: np.ndarray, omega: float) -> tuple[float, np.ndarray]:
+        """Return what adds to Θ (85), at the spin speed ω by K4, and ``Wc`` of (84)."""
         terms = self.spin_terms
-        return float((2.0 * terms.h + terms.C_hat @ c) @ c), terms.W @ c
+        inertia = (2.0 * terms.h + terms.C_hat @ c) @ c - 6.0 * omega**2 * self._fourth(c)
+        return float(inertia), terms.W @ c
 
     def varying_forces(self, t: float, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
         """Return (86), (87), the accelerations of (108) and App. A without weight, shape (size,).
@@ -328,7 +324,7 @@ class FullMotion(Motion):
         if not frozen:
             torque -= rate @ (terms.B @ rate)
         if terms.K4 is not None:
-            torque += omega**3 * (c @ (terms.K4 @ rate))
+            torque += self._fourth_share * omega**3 * (c @ (terms.K4 @ rate))
         return float(torque)
 
     def varying_jacobian(

@@ -242,11 +242,6 @@ class Invariants:
         """The invariants whose stiffness K holds that of given static loads."""
         return self if self.K0 is None else replace(self, K=self.K + self.K0, K0=None)
 
-    def reversed(self) -> Invariants:
-        """Return the invariants for the opposite axis ``−e``: G, B and g change their sign."""
-        B = None if self.B is None else -self.B
-        return replace(self, direction=-self.direction, G=-self.G, B=B)
-
     def in_basis(self, T: np.ndarray) -> Invariants:
         """Return the invariants for the basis ``Ψ T``, T of shape (k, l)."""
         T = checks.matrix(T, "T", shape=(self.size, None))

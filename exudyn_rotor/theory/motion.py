@@ -16,11 +16,10 @@ the spin, so ``T − T₁ + ½ζᵀKζ`` is conserved exactly. From ``Θω̇ = �
 share c/2Θ, where conserved momentum, ``(Θ + c)ω``, has c/Θ: spin fluctuations come out halved, and
 speeds and angles err by c/2Θ, below 1e-4 for rotors in balance.
 
-A static displacement gives the modes the force ``−ω⁴K4ζ``. A free spin gets the torque
-``ω³ζᵀK4ζ̇``, so that the two together do no work and the sum above is conserved exactly. The term
-``−½ω⁴ζᵀK4ζ`` in the Lagrangian function, from which that force comes, has the torque
-``4ω³ζᵀK4ζ̇ + 6ω²ω̇ζᵀK4ζ``; what is left out is a mass matrix that depends on ω and a share
-``ω²ζᵀK4ζ/Θ`` of the spin, second-order parts of the static state that K4 itself leaves out.
+A static displacement adds ``−½ω⁴ζᵀK4ζ`` to the Lagrangian function: the force ``−ω⁴K4ζ`` on the
+modes, and in the equation of the spin ``−6ω²ζᵀK4ζ`` of its inertia and the torque ``4ω³ζᵀK4ζ̇``.
+Conserved are the momentum with ``−2ω³ζᵀK4ζ`` and the energy with ``−(3/2)ω⁴ζᵀK4ζ``. A frozen spin
+gets the torque ``ω³ζᵀK4ζ̇`` alone, which takes the power of the force from it.
 
 Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
 """
@@ -193,17 +192,25 @@ class Motion:
             and not self.has_body_force
         )
 
-    def mass_matrix(self, t: float, q: ArrayLike) -> np.ndarray | sp.csr_array:
-        """Return the mass matrix (65, 41–43, 84, 85), shape (size, size)."""
+    def mass_matrix(
+        self, t: float, q: ArrayLike, q_t: ArrayLike | None = None
+    ) -> np.ndarray | sp.csr_array:
+        """Return the mass matrix (65, 41–43, 84, 85), shape (size, size).
+
+        That of a free spin depends on its speed in `q_t`, zero by default, where there is a
+        stiffness per ω⁴.
+        """
         inv = self.invariants
-        now = self._state(t, q, np.zeros(self.size))
+        now = self._state(t, q, np.zeros(self.size) if q_t is None else q_t)
         blocks = {}
         if self.is_coupled:
             blocks["t", "f"] = now.A @ inv.S
             blocks["f", "t"] = blocks["t", "f"].T
         if self.formulation.has_spin:
             zeta = 0.0 * now.zeta if self.formulation.has_frozen_spin else now.zeta
-            blocks["r", "r"] = [[self._spin_inertia(zeta)]]
+            blocks["r", "r"] = [
+                [self._spin_inertia(zeta) - 6.0 * now.omega**2 * self._fourth(zeta)]
+            ]
             blocks["r", "f"] = (inv.g + self.spin_terms.W @ zeta)[None, :]
             blocks["f", "r"] = blocks["r", "f"].T
             if self.is_coupled:
@@ -228,7 +235,8 @@ class Motion:
             frozen = self.formulation.has_frozen_spin
             force[self._spin] = -0.5 * coriolis if frozen else -coriolis - euler
             if terms.K4 is not None:
-                force[self._spin] += now.omega**3 * (now.zeta @ (terms.K4 @ now.zeta_t))
+                share = self._fourth_share * now.omega**3
+                force[self._spin] += share * (now.zeta @ (terms.K4 @ now.zeta_t))
         force[self.translations] = self.weight
         if self.has_body_force:
             self._add_body_force(now.zeta, now.body_acceleration, force)
@@ -255,10 +263,11 @@ class Motion:
                 by_v["r", "f"] -= 2.0 * (terms.B @ zeta_t)[None, :]
             if terms.K4 is not None:
                 displaced, rate = terms.K4 @ zeta, terms.K4 @ zeta_t
-                by_q["r", "f"] = by_q["r", "f"] + omega**3 * rate[None, :]
+                share = self._fourth_share
+                by_q["r", "f"] = by_q["r", "f"] + share * omega**3 * rate[None, :]
                 by_v["f", "r"] = by_v["f", "r"] - 4.0 * omega**3 * displaced[:, None]
-                by_v["r", "r"] = [[by_v["r", "r"][0][0] + 3.0 * omega**2 * zeta @ rate]]
-                by_v["r", "f"] = by_v["r", "f"] + omega**3 * displaced[None, :]
+                by_v["r", "r"] = [[by_v["r", "r"][0][0] + 3.0 * share * omega**2 * zeta @ rate]]
+                by_v["r", "f"] = by_v["r", "f"] + share * omega**3 * displaced[None, :]
             if self.has_body_force:
                 by_angle = -self._e @ now.body_acceleration
                 by_q["f", "r"] = (self.invariants.S.T @ by_angle)[:, None]
@@ -272,17 +281,23 @@ class Motion:
     def energy(self, t: float, q: ArrayLike, q_t: ArrayLike) -> float:
         """Return kinetic plus elastic energy [J] of the free motion, gravity left out."""
         q, q_t = self._coordinates(q, "q"), self._coordinates(q_t, "q_t")
-        zeta = q[self.modes]
+        zeta, omega = q[self.modes], float(np.sum(q_t[self._spin]))
         kinetic = 0.5 * q_t @ (self.mass_matrix(t, q) @ q_t)
+        if not self.formulation.has_frozen_spin:
+            kinetic -= 1.5 * omega**4 * self._fourth(zeta)
         return float(kinetic + 0.5 * zeta @ (self.invariants.K @ zeta))
 
     def momentum(self, t: float, q: ArrayLike, q_t: ArrayLike) -> np.ndarray:
-        """Return the generalised momenta ``M(q) q̇``, shape (size,).
+        """Return the generalised momenta, shape (size,): ``M q̇``, with a stiffness per ω⁴ less.
 
         With a free spin, the entry of θ is the angular momentum about the spin axis relative to
         the frame origin.
         """
-        return self.mass_matrix(t, q) @ self._coordinates(q_t, "q_t")
+        q_t = self._coordinates(q_t, "q_t")
+        momenta = self.mass_matrix(t, q) @ q_t
+        if not self.formulation.has_frozen_spin:
+            momenta[self._spin] -= 2.0 * q_t[self._spin] ** 3 * self._fourth(q[self.modes])
+        return momenta
 
     def terms(self, t: float, q: ArrayLike, q_t: ArrayLike) -> Terms:
         """Return every block by its name and equation; see :mod:`exudyn_rotor.theory.terms`."""
@@ -296,12 +311,13 @@ class Motion:
         terms = self.spin_terms
         zeta_tt = checks.vector(zeta_tt, "zeta_tt", size=self.invariants.size)
         now = self._state(t, q, q_t)
-        torque = self._spin_inertia(now.zeta) * now.omega_t
+        inertia = self._spin_inertia(now.zeta) - 6.0 * now.omega**2 * self._fourth(now.zeta)
+        torque = inertia * now.omega_t
         torque += (terms.g + terms.W @ now.zeta) @ zeta_tt
         torque += 2.0 * now.omega * (self._centrifugal(now.zeta) @ now.zeta_t)
         torque += now.zeta_t @ (terms.B @ now.zeta_t)
         if terms.K4 is not None:
-            torque -= now.omega**3 * (now.zeta @ (terms.K4 @ now.zeta_t))
+            torque -= 4.0 * now.omega**3 * (now.zeta @ (terms.K4 @ now.zeta_t))
         if self.has_body_force:
             torque -= self._unbalance(now.zeta) @ now.body_acceleration
         return float(torque)
@@ -330,6 +346,16 @@ class Motion:
     def _spin_inertia(self, zeta: np.ndarray) -> float:
         """(85)."""
         return self.invariants.Theta + (self.spin_terms.h + self._centrifugal(zeta)) @ zeta
+
+    def _fourth(self, zeta: np.ndarray) -> float:
+        """``ζᵀK4ζ``."""
+        K4 = self.spin_terms.K4
+        return 0.0 if K4 is None else float(zeta @ (K4 @ zeta))
+
+    @property
+    def _fourth_share(self) -> float:
+        """Of ``ω³ζᵀK4ζ̇`` in the torque on a free spin."""
+        return 1.0 if self.formulation.has_frozen_spin else 4.0
 
     def _unbalance(self, zeta: np.ndarray) -> np.ndarray:
         """``mχ* + S*ζ``, the bracket of (65): the static unbalance of the deformed rotor."""

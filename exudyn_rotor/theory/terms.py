@@ -235,7 +235,9 @@ def _spin_and_modes(motion: Equations, now: _Instant) -> list[Term]:
     else:
         torque -= rate @ (spin.B @ rate)
     if spin.K4 is not None:
-        torque += omega**3 * zeta @ (spin.K4 @ rate)
+        frozen = motion.formulation.has_frozen_spin
+        torque += (1.0 if frozen else 4.0) * omega**3 * zeta @ (spin.K4 @ rate)
+        inertia -= 0.0 if frozen else 6.0 * omega**2 * zeta @ (spin.K4 @ zeta)
     force = spin.load(omega) - spin.stiffness(omega) @ zeta - spin.damping(omega) @ rate
     return [
         Term("M_ζζ", _number(motion, "42"), inv.M, "mass matrix"),

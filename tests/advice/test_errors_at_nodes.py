@@ -14,8 +14,6 @@ from exudyn_rotor.advice.left_out_fields import left_out_at_nodes
 from exudyn_rotor.advice.run_measures import Measures
 from exudyn_rotor.solid.tensor import von_mises
 
-pytestmark = pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
-
 RUN_UP = PrescribedMotion.run_up(0.0, 300.0, 1e-2)
 
 

@@ -6,8 +6,6 @@ import pytest
 
 from exudyn_rotor import SolidRotor, StartState, add_rotor, check_run, recommended_settings
 
-pytestmark = pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
-
 FREQUENCY, PERIODS = 1000.0, 20  # rad/s
 
 

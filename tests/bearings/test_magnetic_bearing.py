@@ -171,7 +171,6 @@ KINDS = {
     ("turn", "rotation"), [(None, None), (SKEW, SKEW)], ids=["upright", "skew"]
 )
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 def test_scene_and_list_have_the_same_exponents(kind, turn, rotation):
     # a heavy spot would turn journals on a circle, on which magnets have other slopes
     reduced, supports = rings(turn, 0.0 if kind == "magnets" else 1e-3), [*KINDS[kind], AXIAL]

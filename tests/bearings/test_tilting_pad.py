@@ -124,7 +124,6 @@ def scene(rotor, supports, gravity, foundation=None, **options):
     return mbs, body, added
 
 
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 @pytest.mark.parametrize(
     ("axis", "foundation"),
     [((0.0, 0.0, 1.0), BLOCK), (SKEW_AXIS, None)],

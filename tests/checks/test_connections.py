@@ -130,7 +130,6 @@ CARRIED = {
 }
 
 
-@pytest.mark.filterwarnings("ignore:.*no node of Exudyn turns")
 @pytest.mark.parametrize("mount", MOUNTED)
 def test_only_what_the_node_cannot_carry_is_found(mount):
     """Markers at the node carry everything but dampers of tilts."""

@@ -184,11 +184,6 @@ def frame_held_by_modes(_):
     mbs.CreateFixedAxisFFRFReducedOrderObject("tilted", held, axis="z")
 
 
-def axis_that_no_node_turns_about(beam):
-    rotor = ring_rotor(0.1, 0.1, 2.0, axis=[1.0, 2.0, 2.0]).reduce(0)
-    add_rotor(exu.SystemContainer().AddSystem(), rotor)
-
-
 def torque_on_a_tilt_of_the_node(beam, source=None):
     mbs = exu.SystemContainer().AddSystem()
     body = add_rotor(mbs, source or ring_rotor(0.1, 0.1, 2.0).reduce(0))
@@ -329,11 +324,9 @@ PLACES = {
         scene_of_a_lossy_rotor, UserWarning, "A scene runs without it"),
     "multibody/add_rotor.py:_add_solid": (
         scene_of_a_full_lossy_rotor, UserWarning, "A scene runs without it"),
-    "multibody/add_rotor.py:_warn_of_turned_axes": (
-        axis_that_no_node_turns_about, UserWarning, "no node of Exudyn turns about"),
     "multibody/rotor/scene_body.py:check_connections": (
         asked_for_connections, ConnectionWarning, "does not tilt"),
-    "multibody/calls/assembly.py:_warn": (
+    "multibody/rotor/assembly.py:warn_of_lost_connections": (
         torque_on_a_tilt_of_the_node, ConnectionWarning, "does not tilt"),
     "advice/run_check.py:check_run": (
         run_beyond_its_assumptions, AssumptionWarning, "tilt .* exceeds"),

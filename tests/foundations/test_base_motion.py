@@ -97,7 +97,6 @@ def run(step, turn=None, rotation=None, moved=False, block=BLOCK, end_time=0.04)
 
 
 @pytest.mark.parametrize("rotation", [None, SKEW], ids=["upright", "skew"])
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 def test_scene_and_linear_response_agree(rotation):
     """By the integrator's second order: two steps, and what they lead to."""
     model = linear_model(rigid(), supports=SUPPORTS, foundation=BLOCK)

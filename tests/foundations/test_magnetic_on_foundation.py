@@ -96,7 +96,6 @@ KINDS = {
 
 @pytest.mark.parametrize(("turn", "rotation"), [(TO_X, None), (SKEW, TO_X)], ids=["x", "skew"])
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 def test_scene_and_list_have_the_same_exponents(kind, turn, rotation):
     rotor, supports = rings(turn, heavy=0.0), [*KINDS[kind], AXIAL]
     block = (BLOCK if turn is None else BLOCK.turned(turn)).modal()

@@ -1,5 +1,7 @@
 """Two spools of solids, coaxial and geared, against beams of ROSS; what mesh and few modes do."""
 
+import warnings
+
 import numpy as np
 import pytest
 from spool_models import ROSS, dual_spool, spool
@@ -190,3 +192,10 @@ def test_modes_of_geared_spools_are_those_of_ross():
     products = np.abs(np.sum(given.conj() * theirs, axis=0)) ** 2
     lengths = np.sum(np.abs(given) ** 2, axis=0) * np.sum(theirs**2, axis=0)
     assert (products / lengths).min() > 0.99
+
+
+def test_bases_that_suffice_give_small_errors_without_a_warning():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        good = campbell(dual_spool(1.5, 16), [0.0, SPEED], modes=8)
+    assert 0.0 < np.nanmax(good.basis_errors) < 1e-3

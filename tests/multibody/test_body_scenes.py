@@ -152,7 +152,6 @@ def references(reduced):
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
 @pytest.mark.parametrize("formulation", FORMULATIONS)
-@pytest.mark.filterwarnings("ignore:.*no node of Exudyn turns")
 def test_directions_of_mesh_and_scene_change_nothing_else(
     reduced, turned, references, formulation, direction
 ):
@@ -165,7 +164,6 @@ def test_directions_of_mesh_and_scene_change_nothing_else(
     for expected, actual in zip(references[formulation], result, strict=True):
         assert abs(actual - expected).max() < 1e-9 * abs(expected).max()
     skew_plane = formulation == "in-plane" and "skew in" in direction and placed is not UNIT
-    assert ("plane" in body.constraints) == skew_plane
     if skew_plane:  # the axial motion is the modes', though any other plane would serve
         travel = mbs.GetNodeOutput(body.nodes["rigid"], exu.OutputVariableType.Coordinates)[:3]
         assert abs(travel @ placed[:, 2]) < 1e-9 * np.linalg.norm(travel)

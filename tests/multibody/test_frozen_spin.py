@@ -39,7 +39,7 @@ def frozen_motion(translation: str, **changes) -> Motion:
     return Motion(invariants, formulation, stiffening(invariants, "tilt"))
 
 
-@pytest.mark.parametrize("translation", ["free", "in-plane", "none"])
+@pytest.mark.parametrize("translation", ["free", "in-plane"])
 def test_energy_is_conserved(translation):
     """With unbalance, S, g and B, so that τ, θ and ζ all exchange energy.
 
@@ -55,9 +55,11 @@ def test_energy_is_conserved(translation):
 
 def test_spin_follows_half_the_change_of_inertia():
     """Θω̇ = −½ωċ without a coupling g, so ω exp(c/2Θ) stays as it is; c = ζᵀĈζ without h."""
-    motion = frozen_motion("none", P=np.zeros((3, 3, 2)))
+    motion = frozen_motion(
+        "in-plane", P=np.zeros((3, 3, 2)), S=np.zeros((3, 2)), center=np.zeros(3)
+    )
     q, v = integrated(motion, [0.05, -0.03], 4.0)
-    zeta, omega = q[:, 1:], v[:, 0]
+    zeta, omega = q[:, motion.modes], v[:, 2]
     change = np.einsum("si,ij,sj->s", zeta, motion.spin_terms.C_hat, zeta)
     assert np.ptp(omega) > 1e-4 * SPEED
     kept = omega * np.exp(change / (2.0 * motion.invariants.Theta))
@@ -109,6 +111,8 @@ def test_run_errs_by_what_the_check_reports(rings):
     ("arguments", "message"),
     [
         ({"spin_coupling": "frozen", "spin": 10.0}, "needs spin='free'"),
+        # wrong by 2 % of the motion under a torque of 50 N m
+        ({"spin_coupling": "frozen", "translation": "none"}, "needs translation='free' or"),
         ({"spin_coupling": "half"}, "spin_coupling"),
     ],
 )

@@ -129,7 +129,6 @@ CASES = [(name, "z", "tilt") for name in FAMILY] + [
 ]
 
 
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 @pytest.mark.parametrize(("name", "axis", "level"), CASES)
 def test_full_and_reduced_with_all_modes_agree(bar, name, axis, level):
     """The same equations in two bases: all differences are those of Newton's tolerance.
@@ -178,7 +177,6 @@ def energy_and_momentum(body):
     return 0.5 * energy, e @ np.cross(place, momentum.reshape(-1, 3)).sum(axis=0), rates[count]
 
 
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
 @pytest.mark.parametrize(
     ("name", "axis", "damping"),
     [("2.2", "z", 0.0), ("2.3", "skew", 0.0), ("2.4", "off", 0.0), ("2.2", "skew", 2e-5)],

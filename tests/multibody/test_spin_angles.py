@@ -1,4 +1,4 @@
-"""Which angle of the marker body's node is the spin angle, and which way round it counts."""
+"""Which angle of the marker body's node is the spin angle."""
 
 import exudyn as exu
 import numpy as np
@@ -86,7 +86,7 @@ def test_axis_against_mesh_z_gives_the_same_motion(translation, spin):
     """θ, its speed and the drive torque are about −z of the mesh then, not about +z."""
     one, first = motion_of(np.array([0.0, 0.0, 1.0]), translation, spin)
     two, second = motion_of(np.array([0.0, 0.0, -1.0]), translation, spin)
-    assert (one.frame.sign, two.frame.sign) == (1, -1)
+    assert (one.frame.has_mesh_axes, two.frame.has_mesh_axes) == (True, False)
     assert second[0][-1, 0] > 0.3
     for a, b in zip(first, second, strict=True):
         # both solve the same equations; Newton's method stops at 1e-7 of them
@@ -106,15 +106,32 @@ def skew_scene():
         interfaces={"a": [0, 1, 2, 3]},
     )
     mbs = exu.SystemContainer().AddSystem()
-    with pytest.warns(UserWarning, match=r"body\.add_marker\(nodes or interface, offset\)"):
-        body = add_rotor(mbs, solid.reduce(3), rotation=SKEW, initial_speed=20.0)
+    body = add_rotor(mbs, solid.reduce(3), rotation=SKEW, initial_speed=20.0)
     return solid, mbs, body
 
 
 OFFSET = np.array([0.3, -0.2, 0.5])
 
 
-@pytest.mark.filterwarnings("ignore:.*no node of Exudyn turns")
+def test_added_markers_have_mesh_axes_and_their_offset(skew_scene):
+    solid, mbs, body = skew_scene
+    interface = solid.interfaces["a"]
+    markers = [
+        body.add_marker("a", OFFSET),
+        body.add_marker([0, 1, 2, 3], OFFSET, weights=interface.weights, name="own"),
+        body.add_marker("a", OFFSET, kind="position"),
+    ]
+    expected = solid.nodes[:4].T @ interface.weights + OFFSET
+    mbs.Assemble()
+    for marker in markers:
+        place = mbs.GetMarkerOutput(marker, KINDS.Position, exu.ConfigurationType.Initial)
+        np.testing.assert_allclose(place, SKEW @ expected, atol=1e-12)
+    for marker in markers[:2]:
+        turn = mbs.GetMarkerOutput(marker, KINDS.RotationMatrix, exu.ConfigurationType.Initial)
+        np.testing.assert_allclose(np.reshape(turn, (3, 3)), SKEW, atol=1e-12)
+    assert int(mbs.GetMarkerNumber("own")) == int(markers[1])
+
+
 def test_force_at_an_added_marker_has_its_lever(skew_scene):
     """A force at the offset moves the rotor like a force and a moment at the interface."""
     force = np.array([3.0, -1.0, 2.0])

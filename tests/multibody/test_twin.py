@@ -139,7 +139,6 @@ def test_returned_keys_are_those_of_exudyn(fem):
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
-@pytest.mark.filterwarnings("ignore:.*no node of Exudyn turns")
 def test_swapping_the_name_of_the_call_gives_the_same_motion(fem, direction):
     own, twin = (run_script(call, fem, *DIRECTIONS[direction]) for call in (OWN, TWIN))
     assert list(own) == list(twin)

@@ -4,7 +4,7 @@ import exudyn as exu
 import exudyn.utilities as eu
 import numpy as np
 import pytest
-from exudyn.FEM import CMSObjectComputeNorm, FEMinterface, ObjectFFRFreducedOrderInterface
+from exudyn.FEM import CMSObjectComputeNorm, ObjectFFRFreducedOrderInterface
 from models import disc_fem
 
 from exudyn_rotor import ObjectFixedAxisFFRFreducedOrderInterface
@@ -23,7 +23,7 @@ def made(kind, fem, **more):
     return kind(fem, **(more if kind is CLASSES[1] else {}))
 
 
-def run_script(kind, fem, later=None, **more):
+def run_script(kind, fem, **more):
     """Run a script as Exudyn's examples are: the markers its own, bodies known by numbers."""
     mbs = exu.SystemContainer().AddSystem()
     cms = made(kind, fem, **more)
@@ -39,14 +39,6 @@ def run_script(kind, fem, later=None, **more):
         color=[0.1, 0.9, 0.1, 1.0],
         name="rotor",
     )
-    if later is not None:
-        number = rotor["oFFRFreducedOrder"]
-        mbs.SetObjectParameter(
-            objectNumber=number, parameterName="outputVariableModeBasis", value=later
-        )
-        mbs.SetObjectParameter(
-            number, "outputVariableTypeModeBasis", exu.OutputVariableType.StressLocal
-        )
     ground = mbs.CreateGround()
     sensors = []
     for z in (0.0, 0.5):
@@ -114,55 +106,21 @@ def test_returned_keys_and_attributes_are_those_of_exudyn(fem):
 
 
 @pytest.mark.parametrize("locking", ["mass", "constraints"])
-@pytest.mark.parametrize("later", [False, True], ids=["stress before", "stress set later"])
-def test_swapping_the_name_of_the_class_gives_motion_and_stress(fem, later, locking):
+def test_swapping_the_name_of_the_class_gives_motion_and_stress(fem, locking):
     """Stress by body number 0, and with one set of columns per mode of the FEMinterface.
 
     The bounds are those of the other call: 2e-3 of the motion, by second-order terms of the tilts.
     """
-    model, stress = fem, None
-    if later:
-        model, stress = bare(fem), fem.postProcessingModes["matrix"]
-    own, twin = (
-        run_script(kind, model, stress, locking=locking, translation="free") for kind in CLASSES
-    )
+    own, twin = (run_script(kind, fem, locking=locking, translation="free") for kind in CLASSES)
     for signal, other in zip(own, twin, strict=True):
         assert abs(signal).max() > 0.0
         assert abs(other - signal).max() < 2e-3 * abs(signal - signal[0]).max()
 
 
-def bare(fem):
-    """Return the FEMinterface without its stress modes."""
-    model = FEMinterface()
-    for name in ("nodes", "massMatrix", "stiffnessMatrix", "modeBasis", "surface", "nodeSets"):
-        setattr(model, name, getattr(fem, name))
-    return model
-
-
-def test_a_file_keeps_the_rotor(fem, tmp_path):
-    """An empty interface adds what another has saved."""
-    cms = ObjectFixedAxisFFRFreducedOrderInterface(fem, axis="z", translation="none", spin=10.0)
-    cms.SaveToFile(tmp_path / "rotor")
-    empty = ObjectFixedAxisFFRFreducedOrderInterface(translation="none", spin=10.0)
-    assert empty.LoadFromFile(str(tmp_path / "rotor.npz")) == 1
-    bodies = [
-        one.AddObjectFFRFreducedOrder(exu.SystemContainer().AddSystem())["rotorBody"]
-        for one in (cms, empty)
-    ]
-    stiffness = [body.motion.invariants.K for body in bodies]
-    np.testing.assert_array_equal(*stiffness)
-    assert (empty.nModes, empty.nNodes) == (cms.nModes, cms.nNodes)
-    with pytest.raises(ValueError, match="spin axis is"):
-        ObjectFixedAxisFFRFreducedOrderInterface(axis="x").LoadFromFile(tmp_path / "rotor.npz")
-
-
-def test_an_interface_without_a_model(fem, tmp_path):
+def test_stress_modes_of_a_fem_interface_come_before_the_rotor(fem):
     mbs = exu.SystemContainer().AddSystem()
-    with pytest.raises(ValueError, match="femInterface: this interface is empty"):
-        ObjectFixedAxisFFRFreducedOrderInterface().AddObjectFFRFreducedOrder(mbs)
-    model = bare(fem)
-    model.modeBasis = {}
-    with pytest.raises(ValueError, match="holds no modes"):
-        ObjectFixedAxisFFRFreducedOrderInterface(model)
-    with pytest.raises(ValueError, match="nothing to save before the spin axis is known"):
-        ObjectFixedAxisFFRFreducedOrderInterface(fem).SaveToFile(tmp_path / "rotor")
+    made = ObjectFixedAxisFFRFreducedOrderInterface(fem, axis="z").AddObjectFFRFreducedOrder(mbs)
+    columns = fem.postProcessingModes["matrix"]
+    mbs.SetObjectParameter(made["oFFRFreducedOrder"], "outputVariableModeBasis", columns)
+    with pytest.raises(ValueError, match=r"outputVariableModeBasis: .* needs the shape"):
+        mbs.Assemble()

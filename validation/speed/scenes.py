@@ -98,8 +98,8 @@ def frozen_matrices(body: RotorBody) -> dict[str, np.ndarray]:
     by_q, by_v = motion.jacobian(0.0, q, q_t)
     return {
         "massMatrix": place.spread(motion.mass_matrix(0.0, q), place.lock_mass),
-        "stiffnessMatrix": place.spread(-by_q, place.lock_stiffness),
-        "dampingMatrix": place.spread(-by_v, place.lock_damping),
+        "stiffnessMatrix": place.spread(-by_q),
+        "dampingMatrix": place.spread(-by_v),
     }
 
 

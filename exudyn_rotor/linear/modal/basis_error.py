@@ -8,7 +8,6 @@ shapes, too, is solved at a few points of an analysis, and compared.
 from __future__ import annotations
 
 import warnings
-from dataclasses import replace
 
 import numpy as np
 import scipy.linalg as la
@@ -30,7 +29,6 @@ _NEAR = 0.3  # share of a frequency by which the same motion may differ
 _MISSING = 0.1  # share of a flexibility that counts as missing
 _DIGITS = 9  # of costs that are compared
 _POINTS = 3  # speeds at which the richer model is solved
-_MOST_UNEVEN = 0.02  # unevenness of a richer model, beyond which its mean is not taken
 
 
 def is_known(model: LinearModel, accuracy: float | None) -> bool:
@@ -53,9 +51,9 @@ def shifts_over(model: LinearModel, named: Named, *, held: bool = False) -> np.n
     speeds, known, shape = named.motions.speeds, named.motions.known, named.inertial.shape
     if model.is_full:
         return np.zeros(shape, dtype=complex)
-    richer = _averaged_little(model, model.richer, float(speeds[known[-1]]))
+    richer = model.richer
     if richer is None:
-        return None if model.richer is None else np.full(shape, np.nan, dtype=complex)
+        return None
     chosen, lifted = known[points(len(known))], lifting(model, richer)
     if lifted.shape[0] == lifted.shape[1]:
         return np.zeros(shape, dtype=complex)
@@ -66,26 +64,6 @@ def shifts_over(model: LinearModel, named: Named, *, held: bool = False) -> np.n
     lines = [np.interp(speeds, speeds[chosen], part.real) for part in shifts.T]
     slopes = [np.interp(speeds, speeds[chosen], part.imag) for part in shifts.T]
     return np.array(lines).T + 1j * np.array(slopes).T
-
-
-def is_averaged_much(richer: LinearModel) -> bool:
-    """Return whether the mean over a turn leaves out too much of a model for an estimate."""
-    return not richer.turns and richer.unevenness > _MOST_UNEVEN
-
-
-def _averaged_little(
-    model: LinearModel, richer: LinearModel | None, speed: float
-) -> LinearModel | None:
-    """Return a richer model in which nothing large is averaged; None where there is none.
-
-    The shapes that a basis lacks come in pairs less well than modes do. Where the equations are
-    constant in the axes of the rotor, too, nothing is averaged there.
-    """
-    if richer is None or not is_averaged_much(richer):
-        return richer
-    exact = replace(richer, wanted_axes="rotor")
-    constant = len(model.rotors) == 1 and not model.standing_interfaces
-    return exact if constant and exact.at(speed or 1.0).is_constant else None
 
 
 def lifting(model: LinearModel, richer: LinearModel) -> np.ndarray:

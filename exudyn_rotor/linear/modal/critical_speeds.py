@@ -272,8 +272,6 @@ def basis_errors(model: LinearModel, found: Sequence[Resonance], count: int) -> 
         errors[:count] = 0.0
         return errors
     richer = model.richer
-    if basis_error.is_averaged_much(richer):
-        return errors
     lifted, stiffness = basis_error.lifting(model, richer), Stiffness(richer)
     for i, one in enumerate(found[:count]):
         lift, slope = one._replace(vectors=one.vectors @ lifted.T), None

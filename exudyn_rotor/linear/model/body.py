@@ -102,14 +102,19 @@ class RotorAlone:
 
 
 @kept
-def rotor_alone(rotor: ReducedRotor, stiffening: str, whole: bool) -> RotorAlone:
-    """Return a rotor at a level of stiffening; without halves of pairs unless it is `whole`."""
+def rotor_alone(
+    rotor: ReducedRotor, stiffening: str, whole: bool, inner: ReducedRotor | None = None
+) -> RotorAlone:
+    """Return a rotor at a level of stiffening; without halves of pairs unless it is `whole`.
+
+    Its waves are those of an `inner` rotor, all of whose motions it has, and others.
+    """
     origin = rotor.axis.project(rotor.center_of_mass)
     invariants = rotor.invariants.moved(origin - rotor.center_of_mass)
     level = chosen_level(stiffening, invariants.K2 is not None)
     if level != "none":
         invariants = invariants.loaded
-    turning, Q = turning_of(rotor), np.eye(rotor.size)
+    turning, Q = turning_of(rotor, inner), np.eye(rotor.size)
     left_out, lowest = {}, np.inf
     if turning.halves.shape[1]:
         squares = np.linalg.eigvalsh(turning.halves.T @ invariants.K @ turning.halves)

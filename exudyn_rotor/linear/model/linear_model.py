@@ -155,7 +155,8 @@ class LinearModel:
         return tuple(dict.fromkeys(interface for owner, interface in ends if owner == name))
 
     def _alone(self, name: str, whole: bool) -> RotorAlone:
-        return rotor_alone(self._used[name], self.stiffening_asked, whole)
+        inner = self.rotors[name] if self.is_richer else None
+        return rotor_alone(self._used[name], self.stiffening_asked, whole, inner)
 
     @cached_property
     def _own_unevenness(self) -> dict[str, float]:

@@ -140,36 +140,89 @@ class Turning:
 
 
 @kept
-def turning_of(rotor: ReducedRotor) -> Turning:
+def turning_of(rotor: ReducedRotor, inner: ReducedRotor | None = None) -> Turning:
     """Find the waves of a reduced rotor from its modes at rest.
 
     Of each group of nearly equal frequencies the combinations with the most of one lateral wave,
-    and the least of the opposite one, are a pair.
+    and the least of the opposite one, are a pair. A rotor with all motions of an `inner` one has
+    the waves of that, and waves of the rest.
     """
+    if inner is not None:
+        return _beyond(turning_of(inner), inner.in_attached, rotor)
     omega, kinds = rotor.frequencies.copy(), rotor.rigid_kinds
     size, rigid = rotor.size, len(rotor.rigid_kinds)
     omega[:rigid] = 0.0
     first = omega[omega > 0.0].min(initial=np.inf)
     weights = 1.0 / (1.0 + (omega / first) ** 2)
     flexibility = np.divide(1.0, omega**2, out=np.zeros(size), where=omega > 0.0)
-    T, waves, halves = np.eye(size, dtype=complex), np.zeros(size, dtype=int), []
+    seen, lateral = _energies(rotor)
+    floor = _SEEN * seen.diagonal().max(initial=0.0) or 1.0
+    # the unnamed free motions of a grounded rotor are one group
+    start = 0 if ModeKind.FREE in kinds else rigid
+    T, waves, halves = _of_groups(omega, start, *lateral, seen + floor * np.eye(size))
     for pair in _RIGID_PAIRS:
         if set(pair) <= set(kinds):
             columns = [kinds.index(kind) for kind in pair]
             T[np.ix_(columns, columns)], waves[columns] = _PAIR, (1, -1)
-    seen, lateral = _energies(rotor)
-    floor = _SEEN * seen.diagonal().max(initial=0.0) or 1.0
-    # the unnamed free motions of a grounded rotor are one group
-    groups = _groups(omega, 0 if ModeKind.FREE in kinds else rigid)
-    for group in groups:
+    order = np.argsort(np.abs(T).argmax(axis=0), kind="stable")
+    return Turning(T[:, order], waves[order], weights[order], flexibility[order], halves)
+
+
+def _beyond(known: Turning, columns: np.ndarray, rotor: ReducedRotor) -> Turning:
+    """Return the waves of a rotor of which those of some `columns` (l, k) are `known`.
+
+    The others, and halves of pairs, are told by the motion of interfaces, and by the waves that
+    they are coupled with.
+    """
+    paired = np.linalg.norm(known.halves.T @ known.T, axis=0) < 0.5
+    waves, weights, flexibility = (
+        each[paired] for each in (known.waves, known.weights, known.flexibility)
+    )
+    T, inv = columns @ known.T[:, paired], rotor.invariants
+    rest = la.null_space(np.vstack([T.real.T, T.imag.T]))
+    squares, modes = np.linalg.eigh(rest.T @ inv.K @ rest)
+    rest = rest @ modes
+    rows = {n: [] for n in (-1, 0, 1)}
+    for name, place in rotor.interfaces.items():
+        U = np.repeat([1.0, place.radius], 3)[:, None] * interface_motion(rotor, name)
+        for n, turn in turning_harmonics(6).items():
+            rows[n].append(turn @ U @ rest)
+    for X in (inv.K, inv.G, inv.C):
+        coupled = T.conj().T @ X @ rest
+        size = np.linalg.norm(T.conj().T @ X @ T) * np.linalg.norm(rest.T @ X @ rest)
+        for n, each in rows.items():
+            each.append(coupled[waves == n] / (np.sqrt(size) or 1.0))
+    forms = {n: sum(R.conj().T @ R for R in each) for n, each in rows.items()}
+    whole = sum(forms.values()).real
+    whole = whole + (_SEEN * np.trace(whole) + 1e-300) * np.eye(len(whole))
+    given = np.sqrt(np.maximum(squares, 0.0)), 0, forms[1], forms[-1], whole
+    found, more, halves = _of_groups(*given)
+    first = flexibility.max(initial=0.0) or 1.0 / squares.min(initial=np.inf)
+    return Turning(
+        np.hstack([T, rest @ found]),
+        np.r_[waves, more],
+        np.r_[weights, 1.0 / (1.0 + squares * first)],
+        np.r_[flexibility, 1.0 / squares],
+        rest @ halves,
+    )
+
+
+def _of_groups(
+    omega: np.ndarray, start: int, forward: np.ndarray, backward: np.ndarray, whole: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return waves (k, k) of modes from `start` on, by groups of nearly equal frequencies.
+
+    With their n, and halves of pairs (k, h).
+    """
+    size, halves = len(omega), [np.zeros((len(omega), 0))]
+    T, waves = np.eye(size, dtype=complex), np.zeros(size, dtype=int)
+    for group in _groups(omega, start):
         within = np.ix_(group, group)
-        whole = seen[within] + floor * np.eye(len(group))
-        T[within], waves[group], half = _pairs(lateral[0][within], lateral[1][within], whole)
+        given = forward[within], backward[within], whole[within]
+        T[within], waves[group], half = _pairs(*given)
         halves.append(np.zeros((size, half.shape[1])))
         halves[-1][group] = half
-    order = np.argsort(np.abs(T).argmax(axis=0), kind="stable")
-    found = np.hstack([np.zeros((size, 0)), *halves])
-    return Turning(T[:, order], waves[order], weights[order], flexibility[order], found)
+    return T, waves, np.hstack(halves)
 
 
 def _energies(rotor: ReducedRotor) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:

@@ -71,8 +71,7 @@ class SceneDrive:
 
         def output(mbs, t, sensors, factors, configuration):
             if made is None:
-                rate = mbs.GetNodeOutput(node, _KINDS.Coordinates_t, configuration)[spin]
-                speed = self.body.locks.sign * float(rate)
+                speed = float(mbs.GetNodeOutput(node, _KINDS.Coordinates_t, configuration)[spin])
             else:
                 made.read(*made.state(mbs, configuration))
                 speed = made.speed
@@ -191,13 +190,13 @@ def check_turning_interface(body: RotorBody | FullRotorBody, name: str, argument
 
 
 def _on_the_spin(body: RotorBody | FullRotorBody, drive: Drive) -> tuple[exudyn.ObjectIndex, str]:
-    mbs, law, sign = body.mbs, drive.law, body.locks.sign
+    mbs, law = body.mbs, drive.law
     ground = MarkerNodeCoordinate(nodeNumber=mbs.AddNode(NodePointGround()), coordinate=0)
     spin = MarkerNodeCoordinate(nodeNumber=body.nodes["rigid"], coordinate=body.locks.spin)
     item = CoordinateSpringDamper(markerNumbers=[mbs.AddMarker(ground), mbs.AddMarker(spin)])
 
     def force(mbs, t, item, u, v, stiffness, damping, offset):
-        return -sign * law(sign * v, t)
+        return -law(v, t)
 
     if drive.is_formula:
         force = symbolic_function(mbs, force, item, "springForceUserFunction")

@@ -14,7 +14,8 @@ from exudyn_rotor.multibody.full.full_equations import sparse_object, spin_coupl
 from exudyn_rotor.multibody.full.full_plan import FullPlan
 from exudyn_rotor.multibody.full.ties import FieldNode, Ties, add_ties
 from exudyn_rotor.multibody.rotor import inputs
-from exudyn_rotor.multibody.rotor.locking import add_spin_guide, hold
+from exudyn_rotor.multibody.rotor.known_rotor import note_rotor
+from exudyn_rotor.multibody.rotor.locking import add_constraints, driving_force
 from exudyn_rotor.multibody.rotor.marker_body import (
     MarkerBodyMesh,
     add_weight,
@@ -22,7 +23,7 @@ from exudyn_rotor.multibody.rotor.marker_body import (
     marker_body_mesh,
     marker_body_object,
 )
-from exudyn_rotor.multibody.rotor.rotor_nodes import generic_node, rigid_node
+from exudyn_rotor.multibody.rotor.plan import generic_node
 from exudyn_rotor.reduction.fields import ReducedInterface
 from exudyn_rotor.theory.full_motion import principal
 
@@ -32,8 +33,8 @@ def add_full(mbs: exudyn.MainSystem, plan: FullPlan) -> FullRotorBody:
     if not plan.setup.marker_body:
         return _add_bare(mbs, plan)
     ties, mesh, weight = _ties_and_mesh(plan)
-    rigid = mbs.AddNode(rigid_node(plan))
-    start = (plan.modal_start, plan.modal_start_rate)
+    rigid = mbs.AddNode(plan.rigid_node())
+    start = plan.start
     name = inputs.item_name("NodeGeneric:", plan.setup.name)
     fields = mbs.AddNode(generic_node(*start, name))
     place = FieldNode(fields, len(plan.modal_start), 0)
@@ -51,47 +52,40 @@ def add_full(mbs: exudyn.MainSystem, plan: FullPlan) -> FullRotorBody:
             plan.setup.color,
         )
     )
-    guide, constraints = hold(mbs, plan.locks, plan.layout, plan.by_mass, rigid)
-    if motion.is_constant:
-        guide = None
-        add_spin_guide(mbs, plan.locks, plan.layout, rigid)
+    by_mass = plan.setup.locking == "mass"
+    guide = driving_force(plan.locks, plan.layout.lock_mass) if by_mass else None
     drawing = surface_drawing(plan, rigid, fields)
     objects = _add_equations(mbs, plan, [rigid, fields], guide, drawing)
-    load = add_weight(mbs, marker_body, plan.marker_body_gravity)
-    return FullRotorBody(
+    body = FullRotorBody(
         mbs,
         plan,
         nodes={"rigid": rigid, "fields": fields},
         objects=objects | {"marker_body": marker_body},
         markers=interface_markers(mbs, plan.setup, marker_body, mesh, plan.frame),
-        constraints=constraints,
-        gravity_load=load,
+        constraints={} if by_mass else add_constraints(mbs, plan.locks, rigid),
+        gravity_load=add_weight(mbs, marker_body, plan.marker_body_gravity),
         ties=ties_object,
     )
+    note_rotor(body)
+    return body
 
 
 def _add_bare(mbs: exudyn.MainSystem, plan: FullPlan) -> FullRotorBody:
     """Add only the unknowns of the formulation, on one generic node."""
-    motion, place = plan.motion, plan.setup.placement
-    spin = int(motion.formulation.has_spin)
-    start = (plan.modal_start, plan.modal_start_rate)
-    frame = [*(motion.free_directions.T @ place.translation), *([place.angle] * spin)]
-    rates = [*(motion.free_directions.T @ place.velocity), *([place.speed] * spin)]
-    values = (np.r_[frame, start[0]], np.r_[rates, start[1]])
-    name = inputs.item_name("NodeGeneric:", plan.setup.name)
-    node = mbs.AddNode(generic_node(*values, name))
+    motion = plan.motion
+    node = mbs.AddNode(plan.bare_node())
     objects, ties = _add_equations(mbs, plan, [node], None, None), None
     every = _ties(plan, {})
     if every.count or len(every.held):
         fields = FieldNode(node, motion.size, motion.modes.start)
-        ties = add_ties(mbs, fields, every, motion.invariants, start)[1]
+        ties = add_ties(mbs, fields, every, motion.invariants, plan.start)[1]
     return FullRotorBody(mbs, plan, {"coordinates": node}, objects, ties=ties)
 
 
 def _add_equations(
     mbs: exudyn.MainSystem, plan: FullPlan, nodes: list, guide, graphics: Callable | None
 ) -> dict[str, exudyn.ObjectIndex]:
-    motion = plan.node_motion
+    motion = plan.motion
     item = sparse_object(motion, plan.layout, nodes, guide, graphics)
     objects = {"physics": mbs.AddObject(item)}
     if motion.has_varying_inertia:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 import exudyn
@@ -55,6 +55,7 @@ class FullRotorBody(SceneBody):
 
     plan: FullPlan
     ties: exudyn.ObjectIndex | None = None
+    stored: list = field(default_factory=list, init=False, repr=False)
 
     _kind: ClassVar[str] = "full, "
 

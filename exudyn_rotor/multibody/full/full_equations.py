@@ -15,7 +15,8 @@ import scipy.sparse as sp
 from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 
 from exudyn_rotor.multibody.full.ties import container, no_jacobian
-from exudyn_rotor.multibody.rotor.equations import Layout, LockedForce
+from exudyn_rotor.multibody.rotor.equations import Layout
+from exudyn_rotor.multibody.rotor.locking import LockedForce
 from exudyn_rotor.theory.full_motion import FullMotion
 
 
@@ -30,7 +31,8 @@ def sparse_object(
 
     `guide` drives locked coordinates; `graphics` draws the rotor.
     """
-    locks = (layout.lock_mass, layout.lock_damping, layout.lock_stiffness)
+    none = np.zeros(layout.size)
+    locks = (layout.lock_mass, none, none)
     mass, damping, stiffness = (
         container(_spread(matrix, layout, diagonal))
         for matrix, diagonal in zip(motion.constant_matrices(), locks, strict=True)
@@ -68,7 +70,7 @@ def spin_coupling_object(motion: FullMotion, layout: Layout, nodes: list) -> Obj
     matrix = exudyn.MatrixContainer()
 
     def mass(mbs, t, item, q, q_t):
-        moment, row = motion.varying_inertia(np.asarray(q)[places])
+        moment, row = motion.varying_inertia(np.asarray(q)[places], q_t[spin])
         table[0, 2] = moment
         table[1 : count + 1, 2] = table[count + 1 :, 2] = row
         matrix.SetWithSparseMatrixCSR(size, size, table, False)

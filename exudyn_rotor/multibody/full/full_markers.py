@@ -134,8 +134,7 @@ def _tied_body(
     none = np.zeros((0, size))
     rows = sp.csr_array(interface.mean_motion(rotor.node_count))
     fields = FieldNode(body.nodes["fields"], size, 0)
-    start = (plan.modal_start, plan.modal_start_rate)
-    tied, _ = add_ties(body.mbs, fields, Ties(rows, none, none), inv, start)
+    tied, _ = add_ties(body.mbs, fields, Ties(rows, none, none), inv, plan.start)
     shown = ReducedInterface(interface.reference, interface.center, interface.radius, np.eye(6))
     name = interface.name
     mesh = marker_body_mesh(None, {name: shown}, np.eye(6), rotor.axis, frame, {name: shift})

@@ -55,7 +55,6 @@ class FullPlan(Plan):
 
     selection: NodalFields
     motion: FullMotion
-    node_motion: FullMotion
 
 
 def make_full_plan(rotor: SolidRotor, setup: inputs.Setup) -> FullPlan:
@@ -85,16 +84,9 @@ def make_full_plan(rotor: SolidRotor, setup: inputs.Setup) -> FullPlan:
     fields = NodalFields(checks.read_only(origin), inv, rotor, held)
 
     def motion(
-        formulation: Formulation, plane: np.ndarray | None, gravity: np.ndarray | None, sign: int
+        formulation: Formulation, plane: np.ndarray | None, gravity: np.ndarray | None
     ) -> FullMotion:
-        return FullMotion(
-            inv if sign > 0 else inv.reversed(),
-            formulation,
-            second if sign > 0 else second.reversed(),
-            orientation=setup.placement.rotation,
-            plane=plane,
-            gravity=gravity,
-        )
+        return FullMotion(inv, formulation, second, setup.placement.rotation, plane, gravity)
 
     return laid_out(
         FullPlan,

@@ -19,7 +19,6 @@ from exudyn_rotor.multibody.rotor.record import Record, read_record, spin_speeds
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 
 _KINDS = exudyn.OutputVariableType
-_RECORDS = "exudyn_rotor: displacements of full bodies at instants"  # key in mbs.sys, by marks
 _ROUNDING = 1e-9  # of an instant, which a sum of steps may miss
 
 
@@ -43,7 +42,7 @@ class FullRecord:
     stress: np.ndarray | None
 
 
-class _Stored:
+class Stored:
     """Which instants are wanted, and what has been stored."""
 
     def __init__(self, instants: np.ndarray) -> None:
@@ -72,24 +71,23 @@ def start_recording(body: RotorItems, instants: ArrayLike) -> None:
             f"start_recording: the system of rotor {body.name!r} is assembled already; call this "
             "before mbs.Assemble()"
         )
-    records = body.mbs.sys.setdefault(_RECORDS, {})
-    if body.mark in records:
+    if body.stored:
         raise ValueError(f"start_recording: rotor {body.name!r} has its instants already")
-    records[body.mark] = stored = _Stored(wanted)
+    body.stored.append(stored := Stored(wanted))
     body.mbs.AddSensor(
         SensorUserFunction(
-            sensorUserFunction=_storing(stored, tuple(body.nodes.values()), body.layout.signs),
+            sensorUserFunction=_storing(stored, tuple(body.nodes.values())),
             storeInternal=True,
             writeToFile=False,
         )
     )
 
 
-def _storing(stored: _Stored, nodes: tuple[exudyn.NodeIndex, ...], signs: np.ndarray) -> Callable:
+def _storing(stored: Stored, nodes: tuple[exudyn.NodeIndex, ...]) -> Callable:
     def store(mbs, t, sensors, factors, configuration):
         if configuration == exudyn.ConfigurationType.Current and stored.is_due(t):
             values = (
-                signs * np.hstack([mbs.GetNodeOutput(node, kind, configuration) for node in nodes])
+                np.hstack([mbs.GetNodeOutput(node, kind, configuration) for node in nodes])
                 for kind in (_KINDS.Coordinates, _KINDS.Coordinates_t)
             )
             stored.time.append(t)
@@ -102,7 +100,7 @@ def _storing(stored: _Stored, nodes: tuple[exudyn.NodeIndex, ...], signs: np.nda
 def recorded(body: RotorItems) -> FullRecord:
     """Return what was stored at all the instants."""
     body.check_assembled()
-    stored = body.mbs.sys.get(_RECORDS, {}).get(body.mark)
+    stored = body.stored[0] if body.stored else None
     if stored is None:
         raise ValueError(
             f"rotor {body.name!r} stores nothing; call body.start_recording(instants) before "
@@ -130,7 +128,7 @@ def recorded_states(body: RotorItems) -> Record:
     The current state where nothing was stored.
     """
     body.check_assembled()
-    stored = body.mbs.sys.get(_RECORDS, {}).get(body.mark)
+    stored = body.stored[0] if body.stored else None
     if stored is None or not stored.time:
         return read_record(body)
     time = np.array(stored.time)

@@ -30,7 +30,7 @@ import numpy as np
 import scipy.sparse as sp
 from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 
-from exudyn_rotor.multibody.rotor.rotor_nodes import generic_node
+from exudyn_rotor.multibody.rotor.plan import generic_node
 from exudyn_rotor.theory.invariants import Invariants
 
 _SCALE = 1e-3  # of rows over mass matrix

@@ -1,7 +1,7 @@
 """What a scene attaches to a rotor and the rotor cannot carry, found by a walk through the ``mbs``.
 
 Rigid and position markers at the node of the frame move with the rotor
-(:mod:`exudyn_rotor.multibody.rotor.node_markers`). Markers of its coordinates see the frame alone:
+(:mod:`exudyn_rotor.multibody.rotor.node_motion`). Markers of its coordinates see the frame alone:
 it turns about the spin axis and translates as the formulation says, and its translation is that of
 the centre of mass. Tilts are modal coordinates.
 """
@@ -14,13 +14,18 @@ from typing import Any
 import exudyn
 import numpy as np
 
-from exudyn_rotor.multibody.rotor.node_markers import place_of
+from exudyn_rotor.multibody.rotor.known_rotor import KnownRotor, known_rotor
+from exudyn_rotor.multibody.rotor.node_motion import NODE_MARKERS
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 
 _ALONG = 1e-6  # sine of the angle up to which a direction counts as that of the spin axis
 _COORDINATES = ("NodeCoordinate", "NodeCoordinates", "NodeRotationCoordinate")
 _KINDS = exudyn.OutputVariableType
-_OF_THE_FRAME = (_KINDS.Acceleration, _KINDS.AngularVelocityLocal, _KINDS.AngularAcceleration)
+# what a sensor of the node shows without the rotor's tilts
+_WITHOUT_TILTS = (
+    *(_KINDS.Position, _KINDS.Displacement, _KINDS.Velocity, _KINDS.Acceleration),
+    *(_KINDS.AngularVelocityLocal, _KINDS.AngularAcceleration),
+)
 _APART = 1e-3  # of the radius of gyration, by which the node is off the centre of mass
 _INSTEAD = "; use body.marker(interface) or body.add_marker(nodes)"
 
@@ -39,47 +44,47 @@ class ConnectionWarning(UserWarning):
     """
 
 
-def lost_connections(body: RotorItems) -> tuple[str, ...]:
+def lost_connections(mbs: exudyn.MainSystem, rotor: KnownRotor) -> tuple[str, ...]:
     """Return what the rotor cannot carry, one sentence each, for an assembled system."""
+    walk = _Walk(mbs, rotor)
+    lost = (*walk.loads(), *walk.objects())
+    return tuple(f"{item}: {reason}" for item, reason in (*lost, *walk.sensors()))
+
+
+def lost_loads(body: RotorItems) -> int:
+    """Return how many loads and connectors a rotor cannot carry; sensors change no motion."""
     if "marker_body" not in body.objects:
-        return ()
-    walk = _Walk(body)
-    connections = (*walk.loads(), *walk.objects(), *walk.sensors())
-    return tuple(f"{item}: {reason}" for item, reason in connections)
+        return 0
+    walk = _Walk(body.mbs, known_rotor(body))
+    return len([*walk.loads(), *walk.objects()])
 
 
 class _Walk:
     """The items of an ``mbs`` that act on one rotor where it may not carry them."""
 
-    def __init__(self, body: RotorItems) -> None:
-        self.body, self.mbs = body, body.mbs
-        motion, locks = body.motion, body.locks
-        self.n = motion.orientation @ motion.invariants.direction
+    def __init__(self, mbs: exudyn.MainSystem, rotor: KnownRotor) -> None:
+        self.mbs, self.rotor = mbs, rotor
+        self.n, locks = rotor.axis, rotor.plan.locks
         self.locked = {*locks.tilts, *(i for i in (*locks.fixed, *locks.prescribed) if i < 3)}
         self.apart = self._distance_to_centre_of_mass()
-        count = self.mbs.systemData.NumberOfMarkers()
-        every = {number: self.mbs.GetMarker(number) for number in range(count)}
-        self.node, flexible = int(body.nodes["rigid"]), int(body.objects["marker_body"])
-        self.coordinates = {
-            number: marker
+        numbers = range(mbs.systemData.NumberOfMarkers())
+        every = {number: mbs.GetMarker(number) for number in numbers}
+        at_node = {n: m for n, m in every.items() if int(m.get("nodeNumber", -1)) == rotor.node}
+        self.coordinates = {n: m for n, m in at_node.items() if m["markerType"] in _COORDINATES}
+        self.rigid = {n for n, m in at_node.items() if m["markerType"] in NODE_MARKERS}
+        self.offset = {
+            number
             for number, marker in every.items()
-            if marker["markerType"] in _COORDINATES and int(marker["nodeNumber"]) == self.node
+            if marker["markerType"] == "SuperElementRigid"
+            and int(marker["bodyNumber"]) == rotor.marker_body
+            and np.any(marker["offset"])
         }
-        rigid = {
-            number: marker
-            for number, marker in every.items()
-            if marker["markerType"] == "SuperElementRigid" and int(marker["bodyNumber"]) == flexible
-        }
-        self.offset = {number for number, marker in rigid.items() if np.any(marker["offset"])}
-        at_node = place_of(body).rigid_nodes
-        self.at_node = {
-            n for n, marker in rigid.items() if list(marker["meshNodeNumbers"]) in at_node
-        }
+        self.carriers = set(rotor.carriers.values())
 
     def _distance_to_centre_of_mass(self) -> float:
         """Return how far the node's place is off the centre of mass that its coordinates move."""
-        body, inv = self.body, self.body.motion.invariants
-        apart = float(np.linalg.norm(body.frame.node - body.selection.origin - inv.center))
+        plan, inv = self.rotor.plan, self.rotor.plan.motion.invariants
+        apart = float(np.linalg.norm(plan.frame.node - plan.selection.origin - inv.center))
         return apart if apart > _APART * np.sqrt(np.trace(inv.J) / inv.mass) else 0.0
 
     def loads(self) -> Iterator[tuple[str, str]]:
@@ -89,6 +94,8 @@ class _Walk:
             marker, reason = int(load["markerNumber"]), None
             if marker in self.coordinates:
                 reason = self._coordinate(int(self.coordinates[marker]["coordinate"]), "a load")
+            elif marker in self.rigid:
+                reason = self._of_full()
             elif marker in self.offset and load["loadType"] == "ForceVector":
                 reason = _offset("a force")
             if reason:
@@ -96,8 +103,7 @@ class _Walk:
 
     def objects(self) -> Iterator[tuple[str, str]]:
         """Yield connectors and joints, and what of them is lost or wrong."""
-        own = {int(number) for number in self.body.constraints.values()}
-        own |= {int(drive.object) for drive in self.body.drives}
+        own = self.rotor.own | {int(drive.object) for drive in self.rotor.drives}
         for number in range(self.mbs.systemData.NumberOfObjects()):
             item = self.mbs.GetObject(number)
             if number in own or "markerNumbers" not in item or not item.get("activeConnector", 1):
@@ -106,9 +112,11 @@ class _Walk:
                 reason = None
                 if marker in self.coordinates:
                     reason = self._connector(item, place, marker)
+                elif marker in self.rigid:
+                    reason = self._of_full()
                 elif marker in self.offset:
                     reason = _offset("its force")
-                elif marker in self.at_node:
+                elif marker in self.carriers:
                     reason = self._damping(item)
                 if reason:
                     yield f"{item['objectType']} {item['name']!r}", reason
@@ -117,42 +125,44 @@ class _Walk:
         """Yield sensors of the frame's node that show less than on Exudyn's body."""
         for number in range(self.mbs.systemData.NumberOfSensors()):
             sensor = self.mbs.GetSensor(number)
-            if sensor["sensorType"] != "Node" or int(sensor["nodeNumber"]) != self.node:
+            if sensor["sensorType"] != "Node" or int(sensor["nodeNumber"]) != self.rotor.node:
                 continue
             kind = sensor["outputVariableType"]
-            if kind in _OF_THE_FRAME:
+            if kind in _WITHOUT_TILTS:
                 yield (
                     f"sensor {sensor['name']!r}",
                     f"{kind.name} of the frame's node is that of spin and centre of mass alone, "
-                    "without tilts; take Velocity or AngularVelocity",
+                    "without tilts; take a sensor of a MarkerNodeRigid there",
                 )
 
+    def _of_full(self) -> str:
+        """Return why a rigid or position marker at the node is lost: only full bodies have none."""
+        return f"the node of a full body does not tilt: what acts there is lost{_INSTEAD}"
+
     def _connector(self, item: dict[str, Any], place: int, number: int) -> str | None:
-        marker = self.coordinates[number]
+        marker, spin = self.coordinates[number], self.rotor.plan.locks.spin
         if marker["markerType"] == "NodeCoordinate":
             return self._coordinate(int(marker["coordinate"]), "a connector")
         if marker["markerType"] == "NodeRotationCoordinate":
             axis = np.eye(3)[int(marker["rotationCoordinate"])]
+            if not self.rotor.plan.frame.has_mesh_axes:
+                return "the node's axes are those of the mesh turned by body.frame.B"
             across = np.linalg.norm(np.cross(axis, self.n)) > _ALONG
-            return (
-                _tilts("a connector")
-                if across
-                else self._coordinate(self.body.locks.spin, "a connector")
-            )
+            return _tilts("a connector") if across else self._coordinate(spin, "a connector")
         used = np.atleast_2d(item.get(f"scalingMarker{place}", np.zeros((0, 0))))
         columns = np.flatnonzero(np.any(used != 0.0, axis=0)) if used.size else ()
         reasons = (self._coordinate(int(column), "a connector") for column in columns)
         return next(filter(None, reasons), None)
 
     def _coordinate(self, index: int, what: str) -> str | None:
-        if index in self.body.locks.tilts:
+        if index in self.rotor.plan.locks.tilts:
             return _tilts(f"{what} on its coordinate {index}")
         if index in self.locked:
             return (
                 f"the frame's node does not move so: {what} on its coordinate {index} has no "
                 f"effect{_INSTEAD}"
             )
-        if index == self.body.locks.spin and place_of(self.body).held:
+        if index == self.rotor.plan.locks.spin and self.rotor.frame_shares is not None:
             return (
                 "the angle of the frame's node is the rotor's mean rotation, on Exudyn's body with "
                 f"these Craig–Bampton modes that of the first boundary: {what} on it acts there; "

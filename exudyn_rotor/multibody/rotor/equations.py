@@ -15,6 +15,7 @@ import exudyn
 import numpy as np
 from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 
+from exudyn_rotor.multibody.rotor.locking import LockedForce
 from exudyn_rotor.theory.kernel import Kernel, constant_part
 from exudyn_rotor.theory.motion import Motion
 
@@ -25,7 +26,6 @@ _NO_FORCES = {
     "forceUserFunction": 0,
 }
 
-LockedForce = Callable[[float], np.ndarray]
 StateForce = Callable[[float, list, list], np.ndarray]
 
 
@@ -39,31 +39,22 @@ class Layout:
         Number of node coordinates.
     unknowns : ndarray of int
         Coordinate of every unknown of the :class:`Motion`.
-    lock_mass, lock_stiffness, lock_damping : ndarray, shape (size,)
-        Diagonals added for locked coordinates; zero for unknowns.
-    signs : ndarray, shape (size,), optional
-        1, and −1 for a spin angle that the node counts the other way than θ; all 1 by default.
+    lock_mass : ndarray, shape (size,)
+        Masses of locked coordinates; zero for unknowns.
     """
 
     size: int
     unknowns: np.ndarray
     lock_mass: np.ndarray
-    lock_stiffness: np.ndarray
-    lock_damping: np.ndarray
-    signs: np.ndarray | None = None
-
-    def __post_init__(self) -> None:
-        if self.signs is None:
-            object.__setattr__(self, "signs", np.ones(self.size))
 
     @classmethod
     def unlocked(cls, size: int) -> Layout:
         """Return the layout of a node that holds the unknowns alone."""
-        return cls(size, np.arange(size), *np.zeros((3, size)))
+        return cls(size, np.arange(size), np.zeros(size))
 
-    def spread(self, matrix: np.ndarray, diagonal: np.ndarray) -> np.ndarray:
+    def spread(self, matrix: np.ndarray, diagonal: np.ndarray | float = 0.0) -> np.ndarray:
         """Return a (size, size) matrix with `matrix` on the unknowns and `diagonal` added."""
-        full = np.diag(diagonal)
+        full = np.diag(np.broadcast_to(diagonal, self.size).astype(float))
         full[np.ix_(self.unknowns, self.unknowns)] += matrix
         return full
 
@@ -124,8 +115,8 @@ def _constant_items(motion: Motion, layout: Layout) -> dict[str, np.ndarray]:
     force = np.zeros(layout.size)
     force[layout.unknowns] = constant.force
     return {
-        "stiffnessMatrix": layout.spread(constant.stiffness, layout.lock_stiffness),
-        "dampingMatrix": layout.spread(constant.damping, layout.lock_damping),
+        "stiffnessMatrix": layout.spread(constant.stiffness),
+        "dampingMatrix": layout.spread(constant.damping),
         "forceVector": force,
     }
 
@@ -164,12 +155,12 @@ def _varying_mass(
     fill = matrix.SetWithSparseMatrixCSR
 
     def mass_matrix(mbs, t, item, q, q_t):
-        values = kernel.mass_entries(t, q)
+        values = kernel.mass_entries(t, q, q_t)
         one[:], mirrored[:] = values, values[skipped:]
         fill(size, size, table, False)
         return matrix
 
-    return mass_matrix(None, 0.0, None, [0.0] * size, None), mass_matrix
+    return mass_matrix(None, 0.0, None, [0.0] * size, [0.0] * size), mass_matrix
 
 
 def _jacobian(kernel: Kernel) -> Callable:

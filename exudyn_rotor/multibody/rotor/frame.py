@@ -4,12 +4,12 @@
 turn without bound while the other two stand still. With n the spin axis in inertial axes and e in
 mesh axes, the body can have the axes of the mesh where
 
-- e is along mesh z: c turns, however the rotor is mounted;
-- n is along inertial x: a turns, whatever e is;
+- e is mesh z: c turns, however the rotor is mounted;
+- n is inertial x: a turns, whatever e is;
 - n is across inertial x and e across mesh z: b turns.
 
-So every coordinate axis mounted along a coordinate axis is among them. Elsewhere the axes of the
-marker body are the mesh axes turned by B, with ``B e = e_z``, and c turns.
+Elsewhere the axes of the marker body are the mesh axes turned by B, with ``B e = e_z``, and c
+turns.
 """
 
 from __future__ import annotations
@@ -45,8 +45,6 @@ class BodyFrame:
         Reference Tait–Bryan angles (a, b, c) of the marker body's node [rad].
     spin : {3, 4, 5}
         The node's coordinate that is the spin angle.
-    sign : {1, -1}
-        −1 where that coordinate is −θ.
     """
 
     origin: np.ndarray
@@ -56,7 +54,6 @@ class BodyFrame:
     position: np.ndarray
     angles: np.ndarray
     spin: int
-    sign: int
 
     @classmethod
     def of(
@@ -79,7 +76,7 @@ class BodyFrame:
         orientation_of_node = _with_mesh_axes(direction, orientation)
         if orientation_of_node is None:
             B = _turn_to_z(direction)
-            orientation_of_node = _tait_bryan(orientation @ B.T), THIRD, 1
+            orientation_of_node = _tait_bryan(orientation @ B.T), THIRD
         position = mesh_position + orientation @ origin
         return cls(origin, place, B, orientation, position, *orientation_of_node)
 
@@ -109,31 +106,19 @@ class BodyFrame:
 
 def _with_mesh_axes(
     direction: np.ndarray, orientation: np.ndarray
-) -> tuple[np.ndarray, int, int] | None:
-    """Return angles, spin coordinate and sign for a body with mesh axes; None if there is none."""
+) -> tuple[np.ndarray, int] | None:
+    """Return angles and spin coordinate of a body with mesh axes; None if there is none."""
     e, n = direction, orientation @ direction
-    if np.hypot(e[0], e[1]) < _ALONG:
-        return _tait_bryan(orientation), THIRD, int(np.sign(e[2]))
-    if np.hypot(n[1], n[2]) < _ALONG:
-        return _tait_bryan(orientation), FIRST, int(np.sign(n[0]))
-    if abs(n[0]) < _ALONG and abs(e[2]) < _ALONG:
-        return _second_angle(e, n, orientation)
-    return None
-
-
-def _second_angle(
-    e: np.ndarray, n: np.ndarray, orientation: np.ndarray
-) -> tuple[np.ndarray, int, int]:
-    """Return the angles with ``Rx(a) e_y = ±n`` and ``Rz(−c) e_y = ±e``, and |b| ≤ 90°."""
-    # of the two solutions, one for each sign, the usual one has |b| ≤ 90°
-    for sign in (1, -1):
-        a, c = np.arctan2(sign * n[2], sign * n[1]), np.arctan2(sign * e[0], sign * e[1])
+    if np.hypot(e[0], e[1]) < _ALONG and e[2] > 0.0:
+        return _tait_bryan(orientation), THIRD
+    if np.hypot(n[1], n[2]) < _ALONG and n[0] > 0.0:
+        return _tait_bryan(orientation), FIRST
+    if abs(n[0]) < _ALONG and abs(e[2]) < _ALONG:  # Rx(a) e_y = n and Rz(−c) e_y = e
+        a, c = np.arctan2(n[2], n[1]), np.arctan2(e[0], e[1])
         Ry = Rotation.from_euler("x", -a).as_matrix() @ orientation
         Ry = Ry @ Rotation.from_euler("z", -c).as_matrix()
-        b = np.arctan2(Ry[0, 2], Ry[0, 0])
-        if abs(b) <= 0.5 * np.pi:
-            break
-    return np.array([a, b, c]), SECOND, sign
+        return np.array([a, np.arctan2(Ry[0, 2], Ry[0, 0]), c]), SECOND
+    return None
 
 
 def _tait_bryan(orientation: np.ndarray) -> np.ndarray:
@@ -147,5 +132,6 @@ def _tait_bryan(orientation: np.ndarray) -> np.ndarray:
 def _turn_to_z(direction: np.ndarray) -> np.ndarray:
     """Return the smallest rotation that takes `direction` to e_z."""
     across = np.cross(direction, [0.0, 0.0, 1.0])
-    angle = np.arctan2(np.linalg.norm(across), direction[2])
-    return Rotation.from_rotvec(angle * across / np.linalg.norm(across)).as_matrix()
+    size = np.linalg.norm(across)
+    across = across / size if size else np.array([1.0, 0.0, 0.0])  # any serves for −e_z
+    return Rotation.from_rotvec(np.arctan2(size, direction[2]) * across).as_matrix()

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import numpy as np
+from exudyn.itemInterface import NodeGenericODE2, NodeRigidBodyRxyz, VNodeRigidBodyRxyz
 
 from exudyn_rotor.multibody.rotor import inputs
 from exudyn_rotor.multibody.rotor.equations import Layout
 from exudyn_rotor.multibody.rotor.frame import BodyFrame
-from exudyn_rotor.multibody.rotor.locking import Locks, layout
+from exudyn_rotor.multibody.rotor.locking import MODES, Locks, lock_masses
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import Selection, select_modes
 from exudyn_rotor.theory.formulation import Formulation
@@ -33,11 +34,6 @@ class Plan:
     layout : Layout
         Where the unknowns stand among the coordinates of the nodes.
     motion : Motion
-        Equations for θ about the spin axis.
-    node_motion : Motion
-        The same for the spin coordinate of the node, which may be −θ.
-    by_mass : bool
-        Whether locked coordinates are held by mass, not by constraints.
     marker_body_gravity : ndarray, shape (3,)
         Gravity that Exudyn applies to the marker body, not the equations [m/s²].
     modal_start, modal_start_rate : ndarray, shape (m,)
@@ -50,39 +46,57 @@ class Plan:
     locks: Locks
     layout: Layout
     motion: Motion
-    node_motion: Motion
-    by_mass: bool
     marker_body_gravity: np.ndarray
     modal_start: np.ndarray
     modal_start_rate: np.ndarray
 
+    @property
+    def start(self) -> tuple[np.ndarray, np.ndarray]:
+        """Modal coordinates and velocities at the start."""
+        return self.modal_start, self.modal_start_rate
+
+    def rigid_node(self) -> NodeRigidBodyRxyz:
+        """Return the node of the frame, at its place and with its velocity at the start."""
+        values, rates = np.zeros(MODES), np.zeros(MODES)
+        start, spin = self.setup.placement, self.locks.spin
+        values[:3], rates[:3] = start.translation, start.velocity
+        values[spin], rates[spin] = start.angle, start.speed
+        return NodeRigidBodyRxyz(
+            name=inputs.item_name("NodeRigidBody:", self.setup.name),
+            referenceCoordinates=[*self.frame.position, *self.frame.angles],
+            initialCoordinates=values,
+            initialVelocities=rates,
+            visualization=VNodeRigidBodyRxyz(show=False),
+        )
+
+    def bare_node(self) -> NodeGenericODE2:
+        """Return the one node of a rotor without a marker body, with all its unknowns."""
+        place, free = self.setup.placement, self.motion.free_directions.T
+        spin = int(self.setup.formulation.has_spin)
+        values = [*(free @ place.translation), *[place.angle] * spin, *self.modal_start]
+        rates = [*(free @ place.velocity), *[place.speed] * spin, *self.modal_start_rate]
+        return generic_node(values, rates, inputs.item_name("NodeGeneric:", self.setup.name))
+
 
 PlanKind = TypeVar("PlanKind", bound=Plan)
-# of a formulation, the plane of its translations, gravity in the equations, and the sense in which
-# the node counts the spin
-Motions = Callable[[Formulation, np.ndarray | None, np.ndarray | None, int], Motion]
+# of a formulation, the plane of its translations, and gravity in the equations
+Motions = Callable[[Formulation, np.ndarray | None, np.ndarray | None], Motion]
 
 
 def make_plan(reduced: ReducedRotor, setup: inputs.Setup) -> Plan:
     """Check what needs the modes, and lay out the equations."""
     damped = reduced.with_damping(mass=setup.mass_damping, stiffness=setup.stiffness_damping)
     selection = select_modes(damped, setup.formulation, setup.negligible)
+    invariants = selection.invariants
+    if setup.stiffening != "none":
+        invariants = invariants.loaded
+    second = second_order(invariants, setup.stiffening)
+    orientation = setup.placement.rotation
 
     def motion(
-        formulation: Formulation, plane: np.ndarray | None, gravity: np.ndarray | None, sign: int
+        formulation: Formulation, plane: np.ndarray | None, gravity: np.ndarray | None
     ) -> Motion:
-        invariants = selection.invariants
-        if setup.stiffening != "none":
-            invariants = invariants.loaded
-        invariants = invariants if sign > 0 else invariants.reversed()
-        return Motion(
-            invariants,
-            formulation,
-            second_order(invariants, setup.stiffening),
-            orientation=setup.placement.rotation,
-            plane=plane,
-            gravity=gravity,
-        )
+        return Motion(invariants, formulation, second, orientation, plane, gravity)
 
     labels = selection.labels
     return laid_out(
@@ -102,7 +116,7 @@ def laid_out(
     motions: Motions,
     **more: Any,
 ) -> PlanKind:
-    """Return a plan of the given kind, with frame, locks, layout and motions.
+    """Return a plan of the given kind, with frame, locks, layout and motion.
 
     `more` is what else the kind holds.
     """
@@ -115,40 +129,43 @@ def laid_out(
     frame = BodyFrame.of(
         direction, selection.origin, place.position, place.rotation, setup.frame_node
     )
-    sign = frame.sign if setup.marker_body else 1
-    locks = Locks.of(formulation, place.rotation @ direction, frame.spin, sign)
+    locks = Locks.of(formulation, place.rotation @ direction, frame.spin)
     skew = setup.marker_body and locks.normal is not None
-    by_mass = _is_held_by_mass(setup.locking, locks, skew)
+    if skew and setup.locking == "mass":
+        raise ValueError(
+            "locking='mass' cannot hold the rotor in a plane that is skew to the inertial axes; "
+            "use locking='constraints', translation='free', or marker_body=False"
+        )
     # gravity on the marker body exerts no moment about e by the deflection Sζ; a free spin needs it
     in_equations = not setup.marker_body or (
         formulation.has_spin and formulation.translation_count == 0
     )
-    # a rotor all on its axis has no inertia about it, and its locked spin still needs one
-    spin_inertia = invariants.Theta or np.trace(invariants.J) or invariants.mass
-    inertia = np.repeat([invariants.mass, spin_inertia], 3)
     # a skew plane of rotation keeps all three translations and adds a linear constraint
     form = replace(formulation, translation="free") if skew else formulation
-    gravity = setup.gravity if in_equations else None
-    motion = motions(form, locks.plane, gravity, 1)
-    node_motion = motion
-    if sign < 0:
-        node_motion = motions(form.reversed(), motion.free_directions, gravity, -1)
+    motion = motions(form, locks.plane, setup.gravity if in_equations else None)
     return kind(
         setup=setup,
         selection=selection,
         frame=frame,
         locks=locks,
-        layout=(
-            layout(locks, invariants.size, inertia, by_mass)
-            if setup.marker_body
-            else Layout.unlocked(motion.size)
-        ),
+        layout=_layout(setup, locks, motion),
         motion=motion,
-        node_motion=node_motion,
-        by_mass=by_mass,
         marker_body_gravity=np.zeros(3) if in_equations else setup.gravity,
         **more,
     )
+
+
+def _layout(setup: inputs.Setup, locks: Locks, motion: Motion) -> Layout:
+    """Return where the unknowns stand among the coordinates of the nodes, and what is locked."""
+    if not setup.marker_body:
+        return Layout.unlocked(motion.size)
+    inv = motion.invariants
+    size = MODES + inv.size
+    # a rotor all on its axis has no inertia about it, and its locked spin still needs one
+    about_axis = inv.Theta or np.trace(inv.J) or inv.mass
+    inertia = np.repeat([inv.mass, about_axis], 3)
+    unknowns = np.array([*locks.unknown, *range(MODES, size)])
+    return Layout(size, unknowns, lock_masses(locks, size, inertia, setup.locking == "mass"))
 
 
 def turned_origin(selection: Selection, rotation: np.ndarray, angle: float) -> np.ndarray:
@@ -169,11 +186,14 @@ def turned_origin(selection: Selection, rotation: np.ndarray, angle: float) -> n
     return rotation @ ((np.cos(angle) - 1.0) * off + np.sin(angle) * axis.skew @ off)
 
 
-def _is_held_by_mass(locking: str, locks: Locks, skew: bool) -> bool:
-    """Return whether masses hold locked coordinates, which they cannot in a skew plane."""
-    if locking == "mass" and skew:
-        raise ValueError(
-            "locking='mass' cannot hold the rotor in a plane that is skew to the inertial axes; "
-            "use locking='constraints', translation='free', or marker_body=False"
-        )
-    return locking == "mass" or (locking == "auto" and not locks.varying and not skew)
+def generic_node(
+    values: Sequence[float], rates: Sequence[float], name: str = ""
+) -> NodeGenericODE2:
+    """Return a node of coordinates with start values and rates."""
+    return NodeGenericODE2(
+        name=name,
+        numberOfODE2Coordinates=len(values),
+        referenceCoordinates=np.zeros(len(values)),
+        initialCoordinates=values,
+        initialCoordinates_t=rates,
+    )

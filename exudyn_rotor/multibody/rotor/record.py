@@ -8,6 +8,7 @@ import exudyn
 import numpy as np
 from exudyn.itemInterface import SensorNode, SensorObject
 
+from exudyn_rotor.multibody.rotor.locking import LOCKS, MODES
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 
 _KINDS = exudyn.OutputVariableType
@@ -44,8 +45,7 @@ class Record:
     time : ndarray, shape (s,)
         [s]
     q, q_t, q_tt : ndarray, shape (s, n)
-        Coordinates of the body's nodes, those that are locked included; the spin angle is θ, also
-        where the node's coordinate is −θ.
+        Coordinates of the body's nodes, those that are locked included.
     held : ndarray, shape (s, n)
         Forces of locking constraints on these coordinates.
     speed : ndarray, shape (s,)
@@ -99,15 +99,16 @@ def read_record(body: RotorItems) -> Record:
         read = _current
     parts = [
         np.hstack([read(body, name, node, kind) for name, node in body.nodes.items()])
-        * body.layout.signs
         for kind in _RATES
     ]
     held = np.zeros_like(parts[0])
     for name, constraint in body.constraints.items():
-        if name in body.locks.names:
-            force = read(body, name, constraint, _KINDS.Force)
+        force = read(body, name, constraint, _KINDS.Force)
+        if name == LOCKS:
+            rows, _ = body.locks.rows
+            held[:, :MODES] += force @ rows
+        else:
             held[:, body.locks.names.index(name)] = force[:, 0]
-    held *= body.layout.signs
     return Record(time, *parts, held, spin_speeds(body, time, parts[1]), complete)
 
 

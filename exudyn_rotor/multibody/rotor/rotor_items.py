@@ -11,7 +11,6 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.evaluation import STATES
 from exudyn_rotor.multibody.mark import Mark, mark_of, set_mark
-from exudyn_rotor.multibody.rotor.carrying_rotor import CarryingRotor, note_rotor
 from exudyn_rotor.multibody.rotor.equations import Layout
 from exudyn_rotor.multibody.rotor.frame import BodyFrame
 from exudyn_rotor.multibody.rotor.inputs import main_system
@@ -48,7 +47,8 @@ class RotorItems:
     markers : mapping of str
         Marker number of every interface.
     constraints : mapping of str
-        Locking constraints by coordinate, where ``locking='constraints'``.
+        Locking constraints, where ``locking='constraints'``: ``'locks'`` holds what stands still
+        or turns at a constant speed; motions that vary with time have one each.
     gravity_load : LoadIndex or None
         None without gravity, and where it is part of the equations (``motion.gravity``): without
         the marker body, and for a free spin without translation.
@@ -93,10 +93,6 @@ class RotorItems:
         checks.flag(self.mesh_stress, "mesh_stress")
         physics = self.objects["physics"]
         object.__setattr__(self, "mark", set_mark(self.mbs, physics))
-        if "rigid" in self.nodes:  # markers hang on it
-            locks, e = self.locks, self.standing_axes[:, 2]
-            turns = int(self.nodes["rigid"]), locks.spin, float(locks.sign), tuple(e.tolist())
-            note_rotor(self.mbs, CarryingRotor(*turns, int(physics), self.mark))
 
     @property
     def name(self) -> str | None:
@@ -173,7 +169,7 @@ class RotorItems:
         def values(kind: exudyn.OutputVariableType) -> np.ndarray:
             nodes = self.nodes.values()
             parts = [self.mbs.GetNodeOutput(node, kind, configuration) for node in nodes]
-            return (place.signs * np.hstack(parts))[place.unknowns]
+            return np.hstack(parts)[place.unknowns]
 
         return tuple(map(values, (kinds.Coordinates, kinds.Coordinates_t, kinds.Coordinates_tt)))
 

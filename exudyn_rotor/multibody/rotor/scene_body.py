@@ -12,6 +12,7 @@ import exudyn
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor import sensors
 from exudyn_rotor.multibody.rotor.connections import ConnectionWarning, lost_connections
+from exudyn_rotor.multibody.rotor.known_rotor import known_rotor
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 
 
@@ -94,7 +95,9 @@ class SceneBody(RotorItems, ABC):
         """
         checks.flag(warn, "warn")
         self.check_assembled()
-        lost = lost_connections(self)
+        if "marker_body" not in self.objects:
+            return ()
+        lost = lost_connections(self.mbs, known_rotor(self))
         for sentence in lost if warn else ():
             warnings.warn(f"rotor {self.name!r}: {sentence}", ConnectionWarning, stacklevel=2)
         return lost

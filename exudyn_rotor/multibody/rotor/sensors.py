@@ -12,7 +12,7 @@ import numpy as np
 from exudyn.itemInterface import SensorMarker, SensorSuperElement, SensorUserFunction
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor.locking import guiding_force
+from exudyn_rotor.multibody.rotor.locking import LOCKS, driving_force
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.energy import energy_of
@@ -126,12 +126,10 @@ def add_spin_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
             f"rotor {body.name!r}: without the marker body a prescribed spin has no node"
         )
 
-    sign = float(body.layout.signs[index])
-
     def spin(mbs, t, sensors, factors, configuration):
         angle = mbs.GetNodeOutput(node, _KINDS.Coordinates, configuration)[index]
         speed = mbs.GetNodeOutput(node, _KINDS.Coordinates_t, configuration)[index]
-        return [sign * float(angle), sign * float(speed)]
+        return [float(angle), float(speed)]
 
     return add_function_sensor(body, spin, options)
 
@@ -141,10 +139,9 @@ def add_drive_torque_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIn
 
     The torque is the rotor's own share (the row of θ in (84–86)) minus the moment of all external
     forces, which the locked coordinate of the marker body collects, and minus the friction of
-    bearings and stops, which the motion of a prescribed spin does not feel. In static solutions it
-    is right for a constant spin; not for θ(t) held by a constraint, because Exudyn's static solver
-    returns multipliers with the opposite sign. Explicit solvers have no accelerations at the first
-    instant, so the first value is wrong with them.
+    bearings and stops, which the motion of a prescribed spin does not feel. Not in static
+    solutions: Exudyn's static solver returns multipliers with the opposite sign. Explicit solvers
+    have no accelerations at the first instant, so the first value is wrong with them.
     """
     _marker_body(body)
     if body.formulation.has_spin:
@@ -185,26 +182,20 @@ def _deflected_weight(body: RotorItems, t: float, zeta: np.ndarray) -> float:
 
 def _external_moment(body: RotorItems):
     """Return a function that reads the external moment about e from the locked spin."""
-    place, node, mbs = body.layout, body.nodes["rigid"], body.mbs
-    guide = guiding_force(body.locks, place)
-    constraint = body.constraints.get("spin")
-    spin, sign = body.locks.spin, body.locks.sign
+    node, mbs, spin = body.nodes["rigid"], body.mbs, body.locks.spin
+    mass, drive = body.layout.lock_mass, driving_force(body.locks, body.layout.lock_mass)
+    own = "spin" in body.constraints
+    constraint = body.constraints.get("spin", body.constraints.get(LOCKS))
+    share = np.ones(1) if own else body.locks.rows[0][:, spin]
 
     def moment(t, configuration) -> float:
-        kinds = (_KINDS.Coordinates, _KINDS.Coordinates_t, _KINDS.Coordinates_tt)
-        angle, rate, acceleration = (
-            float(mbs.GetNodeOutput(node, kind, configuration)[spin]) for kind in kinds
-        )
-        reaction = (
-            place.lock_mass[spin] * acceleration
-            + place.lock_damping[spin] * rate
-            + place.lock_stiffness[spin] * angle
-        )
-        if guide is not None:
-            reaction -= guide(t)[spin]
+        acceleration = mbs.GetNodeOutput(node, _KINDS.Coordinates_tt, configuration)[spin]
+        reaction = mass[spin] * float(acceleration)
         if constraint is not None:
-            reaction += float(np.ravel(mbs.GetObjectOutput(constraint, _KINDS.Force))[0])
-        return sign * reaction
+            reaction += float(share @ np.ravel(mbs.GetObjectOutput(constraint, _KINDS.Force)))
+        if drive is not None and constraint is None:
+            reaction -= drive(t)[spin]
+        return reaction
 
     return moment
 

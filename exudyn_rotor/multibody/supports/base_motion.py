@@ -132,7 +132,7 @@ def _add_load(
 
 def _add_forces(body: RotorItems, load: Callable) -> exudyn.ObjectIndex:
     """Add an object of forces, without inertia or stiffness, on the nodes of a rotor."""
-    motion, layout = body.plan.node_motion, body.plan.layout
+    motion, layout = body.plan.motion, body.plan.layout
     empty = container(sp.csr_array((layout.size, layout.size)))
 
     def forces(mbs, t, item, q, q_t):

@@ -8,6 +8,7 @@ or of pads. Exudyn gets ``Jᵀf`` and the tangent ``Jᵀ(K, D)J``; a law may hav
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from typing import NamedTuple
 
 import exudyn
@@ -57,6 +58,8 @@ class Connector(ABC):
     """
 
     whole = False  # whether it needs rotations
+    outside = False  # whether it was evaluated beyond a clearance
+    guard: Callable[[exudyn.MainSystem], None] | None = None  # looks at the accepted state then
 
     def __init__(
         self,
@@ -187,7 +190,12 @@ class Connector(ABC):
             self.begin(mbs, t)
             self.read(q, q_t)
             found = self.pull(*self.wrench(t))
-            return (found + self.inertia()[1]).tolist() if massive else found
+            found = (found + self.inertia()[1]).tolist() if massive else found
+            if self.outside:
+                self.outside = False
+                if self.guard is not None:
+                    self.guard(mbs)
+            return found
 
         def jacobian(mbs, t, item, q, q_t, factor_q, factor_v):
             self.begin(mbs, t)

@@ -31,7 +31,7 @@ from exudyn.utilities import (
 
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.full.full_markers import interface_carrier
-from exudyn_rotor.multibody.rotor.carrying_rotor import CarryingRotor
+from exudyn_rotor.multibody.rotor.known_rotor import KnownRotor
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_rotation, axial_skew
@@ -78,10 +78,10 @@ class RotorEnd:
         rows = np.zeros((9, self.size))
         rows[:3, :3] = self.axes.T
         rows[3:, _RIGID:] = modes
-        spin, sign, self._rows = body.locks.spin, float(body.locks.sign), rows
-        self._spin, self._sign = spin, sign
+        self._spin = spin = body.locks.spin
+        self._rows = rows
         turning = np.zeros((1, self.size))
-        turning[0, spin] = sign
+        turning[0, spin] = 1.0
         # one product gives motion, rate, angle and speed, and one the forces: a call costs more
         both = [np.vstack([turning, part]) for part in (rows[:6], rows)]
         self._read_across, self._read_whole = (np.kron(np.eye(2), part) for part in both)
@@ -157,9 +157,9 @@ class RotorEnd:
         arm, spin = np.array(self._arm), self._spin
         J[:3] = self._rows[:3] + R @ self._rows[3:6]
         J[3:] = R @ self._rows[6:]
-        J[:3, spin] = self._sign * np.array([-arm[1], arm[0], 0.0])
+        J[:3, spin] = np.array([-arm[1], arm[0], 0.0])
         tilt = self.tilt or (0.0, 0.0, 0.0)
-        J[3:, spin] = self._sign * np.array([-tilt[1], tilt[0], 1.0])
+        J[3:, spin] = np.array([-tilt[1], tilt[0], 1.0])
         for place, axis, turns in self._held:
             axis = R @ axis if turns else np.array(axis)
             J[:3, place], J[3:, place] = np.cross(axis, arm), axis
@@ -235,7 +235,7 @@ class MarkerEnd:
         item: dict,
         place: np.ndarray,
         axes: np.ndarray,
-        rotor: CarryingRotor | None,
+        rotor: KnownRotor | None,
     ) -> None:
         body = mbs.GetObject(item["bodyNumber"]) if "bodyNumber" in item else item
         nodes = body["nodeNumbers"] if "nodeNumbers" in body else [body["nodeNumber"]]
@@ -261,7 +261,7 @@ class MarkerEnd:
         self._spin, self.is_rotor = None, rotor is not None
         if rotor is not None:
             sense = float(np.sign(np.dot(rotor.axis, axes[:, 2])))
-            self._spin = rotor.place, sense * rotor.sign
+            self._spin = rotor.plan.locks.spin, sense
 
     def read(self, q: list[float], q_t: list[float]) -> None:
         """Take the motion from coordinates and their rates."""

@@ -31,7 +31,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.multibody.rotor.inputs import main_system
 from exudyn_rotor.multibody.rotor.marker_body import add_weight, append_nodes, virtual_nodes
-from exudyn_rotor.multibody.rotor.rotor_nodes import generic_node
+from exudyn_rotor.multibody.rotor.plan import generic_node
 from exudyn_rotor.theory.axis import SpinAxis
 
 _ARM = 0.1  # m, of the virtual nodes of a point; any does

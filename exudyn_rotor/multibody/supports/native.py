@@ -18,12 +18,13 @@ from exudyn.advancedUtilities import CreateSymbolicUserFunction
 from exudyn.itemInterface import CartesianSpringDamper, RigidBodySpringDamper
 
 from exudyn_rotor.bearings.support import Support, acts, varies
+from exudyn_rotor.multibody.mark import entry
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.supports.seats import Seat, point_marker, rigid_marker
 
 NATIVE, SYMBOLIC, PYTHON = "Exudyn", "symbolic function", "Python function"
 _ROUNDING = 1e-13  # of the largest entry of a turned matrix
-_FUNCTIONS = "exudyn_rotor: symbolic functions of supports"  # key in mbs.sys
+_FUNCTIONS = "symbolic functions of supports"
 Parts = list[tuple[exudyn.ObjectIndex, str]]
 
 
@@ -122,5 +123,5 @@ def symbolic_function(
     """Return a function as Exudyn's symbolic one, kept alive by the system."""
     kind = type(item).__name__
     made = CreateSymbolicUserFunction(mbs, function, name, itemTypeName=kind)
-    mbs.sys.setdefault(_FUNCTIONS, []).append(made)
+    entry(mbs).setdefault(_FUNCTIONS, []).append(made)
     return made

@@ -17,10 +17,9 @@ from exudyn.itemInterface import (
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.full.full_markers import interface_carrier
-from exudyn_rotor.multibody.rotor.carrying_rotor import carrying_rotor
+from exudyn_rotor.multibody.rotor.known_rotor import carrying_rotor
 from exudyn_rotor.multibody.rotor.marker_body import append_nodes, virtual_nodes
 from exudyn_rotor.multibody.rotor.more_markers import interface_motion
-from exudyn_rotor.multibody.rotor.node_markers import CopiedMarker
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.supports.ends import BaseEnd, FoundationEnd, MarkerEnd
 from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation, foundation_marker
@@ -118,7 +117,7 @@ class Seat:
         shift = self.orientation.T @ (self.place - self.origin)
         shift[np.abs(shift) <= _ROUNDING * np.abs([self.place, self.origin]).max()] = 0.0
         if isinstance(self.base, exudyn.MarkerIndex):
-            item = CopiedMarker(mbs.GetMarker(self.base))
+            item = dict(mbs.GetMarker(self.base))
             item["localHT"] = item["localHT"] @ _frame(turn, shift)
             for given in ("name", "localPosition", "offset"):  # the place is in localHT
                 item.pop(given, None)

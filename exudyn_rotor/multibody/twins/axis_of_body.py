@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from exudyn_rotor.solid.interface import Interface
@@ -61,11 +59,6 @@ def axis_at_rest(rotor: SolidRotor) -> SpinAxis:
     if reason:
         raise ValueError(f"axis: is not known: the rotor starts at rest, and {reason}; {_NAME_IT}")
     return axis
-
-
-def with_axis(rotor: SolidRotor, axis: SpinAxis) -> SolidRotor:
-    """Return the rotor with another spin axis."""
-    return replace(rotor, axis=axis)
 
 
 def _line_through_seats(seats: list[Interface]) -> SpinAxis | None:

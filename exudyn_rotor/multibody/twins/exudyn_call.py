@@ -86,7 +86,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
             rotor, at half the Python calls of a step; see exudyn_rotor.add_rotor
         stiffening: centrifugal stiffening, 'tilt' or 'none' (the paper's equations); 'full' needs
             prestress; 'auto' is 'full' with prestress, else 'tilt'
-        locking: 'auto', 'mass' or 'constraints'; see exudyn_rotor.multibody.rotor.locking
+        locking: 'auto', 'constraints', or 'mass' for explicit solvers; see exudyn_rotor.add_rotor
         markers: kind of the markers, 'rigid' or 'position'; the latter serves springs and forces
             at a fraction of the cost
         condense_markers: whether mbs.Assemble() moves the script's own markers on many mesh nodes
@@ -101,13 +101,13 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
             'oFFRFreducedOrder', 'loadGravity' and 'rotorBody'
 
     Note:
-        Markers and sensors that a script adds at the node 'nRigidBody' are in the mesh origin and
-        move and tilt with the rotor, as on Exudyn's body with these modes. The node's own
-        coordinates are the spin and the translation of the centre of mass; mbs.GetNodeOutput() and
-        markers of single coordinates see these, and body.check_connections() names what such
-        markers lack. It has mesh axes but for
-        skew spin axes, for which a warning says what is turned. In local output
-        (DisplacementLocal) the modes hold the rigid tilts, which Exudyn's own frame takes.
+        What a script attaches to rigid and position markers at the node 'nRigidBody' acts in the
+        mesh origin, and moves and tilts with the rotor, as on Exudyn's body with these modes. The
+        node's own coordinates are the spin and the translation of the centre of mass;
+        mbs.GetNodeOutput(), sensors of the node and markers of single coordinates see these, and
+        body.check_connections() names what they lack. In local output (DisplacementLocal) the modes
+        hold the rigid tilts, which Exudyn's own frame takes. Stress modes must be in the
+        FEMinterface before.
 
         Craig-Bampton modes of FEMinterface hold the frame of Exudyn's own body at the first
         boundary, and what tilts the rotor against it softens falsely with the square of the speed;
@@ -137,48 +137,25 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
 
     from exudyn_rotor import checks
     from exudyn_rotor.multibody.rotor import inputs
-    from exudyn_rotor.multibody.rotor.node_markers import carry_markers
-    from exudyn_rotor.multibody.twins.later_stress import StressConversion, accept_stress_modes
-    from exudyn_rotor.multibody.twins.swapped_body import (
-        Additions,
-        State,
-        add_swapped_body,
-        numbers,
-        solid_rotor,
-    )
-    from exudyn_rotor.reduction.mean_axis import frame_shares, warn_of_held_frame
+    from exudyn_rotor.multibody.twins import swapped_body
 
+    given = locals()
     inputs.main_system(mbs)
     checks.instance(femInterface, "femInterface", FEMinterface)
     checks.flag(showMarkers, "showMarkers")
     checks.flag(verbose, "verbose")
     checks.choice(markers, "markers", inputs.MARKER_KINDS)
-    more = Additions.checked(
-        *(translation, spin, spin_coupling, stiffening, locking),
-        *(markers, condense_markers, prestress),
-    )
-    start = State.checked(
-        position=("referencePosition", referencePosition),
-        rotation=("referenceRotationMatrix", referenceRotationMatrix),
-        velocity=initialVelocity,
-        omega=initialAngularVelocity,
-        mass_damping=massProportionalDamping,
-        stiffness_damping=stiffnessProportionalDamping,
-        gravity=gravity,
-        color=color,
-    )
-    rotor = solid_rotor(femInterface, axis, start)
+    own = (translation, spin, spin_coupling, stiffening, locking)
+    options = swapped_body.checked_options(*own, markers, condense_markers, prestress)
+    start = swapped_body.State.checked("referencePosition", "referenceRotationMatrix", given)
+    rotor = swapped_body.solid_rotor(femInterface, axis, start)
     offsets = _offsets(list(rotor.interfaces), superElementRigidMarkersOffsets)
-    reduced = rotor.reduce(femInterface, prestress=prestress)
-    modes = femInterface.modeBasis["matrix"]
-    warn_of_held_frame(rotor, modes, stacklevel=2)
-    conversion = StressConversion(modes, reduced, femInterface.postProcessingModes)
-    body = add_swapped_body(mbs, name, reduced, start, more, offsets, showMarkers)
-    accept_stress_modes(body, conversion)
-    carry_markers(body, frame_shares(rotor, reduced, modes))
+    body = swapped_body.add_swapped_body(
+        mbs, name, femInterface, rotor, start, options, offsets, showMarkers
+    )
     if verbose:
         exudyn.Print(body.report())
-    return {"FFRFReducedOrderObjectDict": numbers(body)} | {
+    return {"FFRFReducedOrderObjectDict": swapped_body.numbers(body)} | {
         inputs.marker_name(body.name, interface): marker
         for interface, marker in body.markers.items()
     }

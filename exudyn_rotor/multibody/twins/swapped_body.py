@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import exudyn
 import numpy as np
@@ -13,10 +14,11 @@ from exudyn_rotor import checks
 from exudyn_rotor.multibody.add_rotor import add_rotor
 from exudyn_rotor.multibody.rotor import inputs
 from exudyn_rotor.multibody.rotor.frame import MESH_ORIGIN
+from exudyn_rotor.multibody.rotor.known_rotor import known_rotor
 from exudyn_rotor.multibody.rotor.locking import LOCKINGS
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.multibody.twins.axis_of_body import axis_at_rest, axis_of_motion, with_axis
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.multibody.twins.axis_of_body import axis_at_rest, axis_of_motion
+from exudyn_rotor.reduction.mean_axis import frame_shares, warn_of_held_frame
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.axis import SpinAxis
@@ -28,52 +30,6 @@ from exudyn_rotor.theory.formulation import (
     suited_translation,
 )
 from exudyn_rotor.theory.stiffening import chosen_level
-
-
-@dataclass(frozen=True, eq=False)
-class Additions:
-    """What the twins take beyond the arguments of Exudyn's calls, checked.
-
-    The attributes are arguments of ``add_rotor``; `markers` may be None for no markers.
-    """
-
-    translation: str | PrescribedMotion
-    spin: str | float | ConstantSpeed | PrescribedMotion
-    spin_coupling: str
-    stiffening: str
-    locking: str
-    markers: str | None
-    condense_markers: bool
-    prestress: Prestress | None
-
-    @classmethod
-    def checked(
-        cls,
-        translation: str | PrescribedMotion,
-        spin: str | float | ConstantSpeed | PrescribedMotion,
-        spin_coupling: str,
-        stiffening: str,
-        locking: str,
-        markers: str | None,
-        condense_markers: bool,
-        prestress: Prestress | None,
-    ) -> Additions:
-        """Return the arguments, or refuse them."""
-        _check_prestress(chosen_level(stiffening, prestress is not None), prestress)
-        if markers is not None:
-            checks.choice(markers, "markers", inputs.MARKER_KINDS)
-        suited = suited_translation(translation, grounded=False)
-        Formulation(suited, spin, spin_coupling=spin_coupling)  # or refuse it
-        return cls(
-            translation=translation,
-            spin=spin,
-            spin_coupling=spin_coupling,
-            stiffening=stiffening,
-            locking=checks.choice(locking, "locking", LOCKINGS),
-            markers=markers,
-            condense_markers=checks.flag(condense_markers, "condense_markers"),
-            prestress=prestress,
-        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,53 +61,75 @@ class State:
     color: tuple[float, ...]
 
     @classmethod
-    def checked(
-        cls,
-        position: tuple[str, ArrayLike],
-        rotation: tuple[str, ArrayLike],
-        velocity: ArrayLike,
-        omega: ArrayLike,
-        mass_damping: float,
-        stiffness_damping: float,
-        gravity: ArrayLike,
-        color: ArrayLike,
-    ) -> State:
+    def checked(cls, position: str, rotation: str, given: dict[str, ArrayLike]) -> State:
         """Return the arguments, or refuse them; two have another name in each of the calls."""
-        checked, name = checks.number, "ProportionalDamping"
+        by_mass, by_stiffness = (
+            checks.number(given[name], name, least=0.0)
+            for name in ("massProportionalDamping", "stiffnessProportionalDamping")
+        )
         return cls(
-            position=checks.vector(position[1], position[0], "m"),
-            velocity=checks.vector(velocity, "initialVelocity", "m/s"),
-            rotation=checks.rotation(rotation[1], rotation[0]),
-            omega=checks.vector(omega, "initialAngularVelocity", "rad/s"),
-            mass_damping=checked(mass_damping, f"mass{name}", "1/s", least=0.0),
-            stiffness_damping=checked(stiffness_damping, f"stiffness{name}", "s", least=0.0),
-            gravity=checks.vector(gravity, "gravity", "m/s²"),
-            color=inputs.color_of(color),
+            position=checks.vector(given[position], position, "m"),
+            velocity=checks.vector(given["initialVelocity"], "initialVelocity", "m/s"),
+            rotation=checks.rotation(given[rotation], rotation),
+            omega=checks.vector(given["initialAngularVelocity"], "initialAngularVelocity", "rad/s"),
+            mass_damping=by_mass,
+            stiffness_damping=by_stiffness,
+            gravity=checks.vector(given["gravity"], "gravity", "m/s²"),
+            color=inputs.color_of(given["color"]),
         )
 
 
+def checked_options(
+    translation: str | PrescribedMotion,
+    spin: str | float | ConstantSpeed | PrescribedMotion,
+    spin_coupling: str,
+    stiffening: str,
+    locking: str,
+    markers: str | None,
+    condense_markers: bool,
+    prestress: Prestress | None,
+) -> dict[str, Any]:
+    """Return what the twins take beyond the arguments of Exudyn's calls, or refuse it."""
+    _check_prestress(chosen_level(stiffening, prestress is not None), prestress)
+    if markers is not None:
+        checks.choice(markers, "markers", inputs.MARKER_KINDS)
+    suited = suited_translation(translation, grounded=False)
+    Formulation(suited, spin, spin_coupling=spin_coupling)  # or refuse it
+    return {
+        "translation": translation,
+        "spin": spin,
+        "spin_coupling": spin_coupling,
+        "stiffening": stiffening,
+        "locking": checks.choice(locking, "locking", LOCKINGS),
+        "markers": {} if markers is None else markers,
+        "condense_markers": checks.flag(condense_markers, "condense_markers"),
+        "prestress": prestress,
+    }
+
+
 def solid_rotor(
-    fem: FEMinterface, axis: SpinAxis | str | ArrayLike | None, start: State | None = None
+    fem: FEMinterface, axis: SpinAxis | str | ArrayLike | None, start: State
 ) -> SolidRotor:
     """Return the model in `fem`; without an axis it spins about that of its angular velocity.
 
-    A body at rest, or without a state, spins about the line through its seats. Either must fit the
-    body: see :mod:`exudyn_rotor.multibody.twins.axis_of_body`.
+    A body at rest spins about the line through its seats. Either must fit the body: see
+    :mod:`exudyn_rotor.multibody.twins.axis_of_body`.
     """
     if axis is not None:
         return SolidRotor.from_fem_interface(fem, axis)
     rotor = SolidRotor.from_fem_interface(fem, "z")
-    if start is not None and np.any(start.omega):
-        return with_axis(rotor, axis_of_motion(rotor, start.rotation.T @ start.omega))
-    return with_axis(rotor, axis_at_rest(rotor))
+    if np.any(start.omega):
+        return replace(rotor, axis=axis_of_motion(rotor, start.rotation.T @ start.omega))
+    return replace(rotor, axis=axis_at_rest(rotor))
 
 
 def add_swapped_body(
     mbs: exudyn.MainSystem,
     name: str | None,
-    reduced: ReducedRotor,
+    fem: FEMinterface,
+    rotor: SolidRotor,
     start: State,
-    more: Additions,
+    options: dict[str, Any],
     offsets: dict[str, np.ndarray] | None = None,
     show_markers: bool = True,
 ) -> RotorBody:
@@ -159,21 +137,21 @@ def add_swapped_body(
 
     The offsets of rigid markers turn with the rotor's mean rotation, as on Exudyn's body.
     """
+    more = dict(options)
+    reduced = rotor.reduce(fem, prestress=more.pop("prestress"))
+    modes = np.asarray(fem.modeBasis["matrix"])
+    warn_of_held_frame(rotor, modes, stacklevel=3)
     speed = _speed_along(start.rotation @ reduced.axis.direction, start.omega)
-    translation = suited_translation(more.translation, reduced.grounded)
-    formulation = Formulation(translation, more.spin)
+    more["translation"] = suited_translation(more["translation"], reduced.grounded)
+    formulation = Formulation(more["translation"], more["spin"])
     velocity = start.velocity
     if formulation.translation_count:
         velocity = velocity + np.cross(start.omega, start.rotation @ reduced.center_of_mass)
-    rigid = more.markers == "rigid"
+    rigid = more["markers"] == "rigid"
     body = add_rotor(
         mbs,
         reduced,
         name=name,
-        translation=translation,
-        spin=formulation.spin,
-        spin_coupling=more.spin_coupling,
-        stiffening=more.stiffening,
         position=start.position,
         rotation=start.rotation,
         initial_velocity=velocity,
@@ -181,22 +159,20 @@ def add_swapped_body(
         gravity=start.gravity,
         mass_damping=start.mass_damping,
         stiffness_damping=start.stiffness_damping,
-        markers={} if more.markers is None else more.markers,
         marker_offsets=None if rigid else offsets,
         show_markers=show_markers,
-        condense_markers=more.condense_markers,
-        locking=more.locking,
         frame_node=MESH_ORIGIN,
         color=start.color,
+        **more,
     )
+    known_rotor(body).frame_shares = frame_shares(rotor, reduced, modes)
     for interface, offset in (offsets or {}).items() if rigid else ():
         # Exudyn's own, which turns with the mean rotation, not with that of the interface
-        turned = body.frame.B @ offset
-        mbs.SetMarkerParameter(body.marker(interface), "offset", turned)
+        mbs.SetMarkerParameter(body.marker(interface), "offset", body.frame.B @ offset)
     return body
 
 
-def numbers(body: RotorBody) -> dict:
+def numbers(body: RotorBody) -> dict[str, Any]:
     """Return the entries that Exudyn's calls return for a flexible body, and the rotor."""
     return {
         "nRigidBody": body.nodes["rigid"],

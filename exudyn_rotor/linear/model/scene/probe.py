@@ -53,7 +53,7 @@ class Probe:
         self.scene, self.speed, self.solver, self.attached = scene, speed, solver, attached
         self.mbs = scene.body.mbs
         self.bearings = [one for one in attached if isinstance(one, AttachedBearing)]
-        self.spin, self.spin_sign = scene.spin_coordinate, scene.spin_sign
+        self.spin = scene.spin_coordinate
         self.is_constrained = bool(solver.GetAEsize())
         self.has_foreign = bool(scene.foreign)
         self.rotor = np.arange(scene.modal.stop)
@@ -261,7 +261,7 @@ class Probe:
         q[self.scene.free] += x
         q_t[self.scene.free] = v
         if self.spin is not None:
-            q[self.spin], q_t[self.spin] = self.spin_sign * theta, self.spin_sign * self.speed
+            q[self.spin], q_t[self.spin] = theta, self.speed
         return q, q_t
 
     def _set(self, theta: float, x: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -60,7 +60,7 @@ class SceneCoordinates:
         made = cls(body, free, np.eye(len(free)), rest)
         rest[free[made.count :]] = 0.0
         if made.spin_coordinate is not None:  # where the rotor is when it has turned back
-            angle = made.spin_sign * rest[made.spin_coordinate]
+            angle = rest[made.spin_coordinate]
             turned = turned_origin(body.selection, body.plan.setup.placement.rotation, angle)
             rest[free[: made.count]] -= body.motion.free_directions.T @ turned
         return made
@@ -109,11 +109,6 @@ class SceneCoordinates:
         if "marker_body" in body.objects:
             return int(places[body.locks.spin])
         return int(places[self.count]) if body.formulation.has_spin else None
-
-    @property
-    def spin_sign(self) -> int:
-        """1, or −1 where the node's coordinate counts −θ."""
-        return self.body.locks.sign if "marker_body" in self.body.objects else 1
 
     @cached_property
     def axes(self) -> np.ndarray:
@@ -241,7 +236,7 @@ class SceneCoordinates:
         q_t[self.free] = T @ y_t + speed * T1 @ y
         spin = self.spin_coordinate
         if spin is not None:
-            q[spin], q_t[spin] = self.spin_sign * angle, self.spin_sign * speed
+            q[spin], q_t[spin] = angle, speed
         return StartState(q, q_t, angle, speed)
 
 

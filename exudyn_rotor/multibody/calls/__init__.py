@@ -1,1 +1,0 @@
-"""What is put around calls of Exudyn's mbs."""
