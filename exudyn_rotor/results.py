@@ -206,7 +206,9 @@ class Result:
         arrays, rest = {}, {}
         for item, value in values.items():
             if len(shapes.get(item.name, ())) == np.ndim(value) > 0:
-                named = (_dimension(word, item.name, shapes) for word in shapes[item.name])
+                named = [_dimension(word, item.name, shapes) for word in shapes[item.name]]
+                if len(set(named)) < len(named):  # a square matrix
+                    named = [f"{name}_{place}" for place, name in enumerate(named)]
                 arrays[item.name] = (tuple(named), np.array(value))
             elif value is not None:
                 rest[item.name] = value

@@ -86,7 +86,7 @@ class StaticResponse(Result):
     journals: np.ndarray = numbers("supports", 6)
     heights: np.ndarray = numbers("places")
     support_heights: np.ndarray = numbers("supports")
-    axes: np.ndarray = numbers("directions", 3)
+    axes: np.ndarray = numbers(3, 3)
     speed: float
     frame: str = "inertial"
     basis_errors: np.ndarray | None = numbers("places", optional=True)

@@ -177,7 +177,10 @@ class Probe:
         """Return the mass matrix (k, k) without deviations, its mean over so many angles."""
         still, total = np.zeros(len(self.scene.free)), 0.0
         for theta in 2.0 * np.pi * np.arange(count) / count:
-            self.force(theta, still, still)
+            q, q_t = self._set(theta, still, still)
+            for one in self.attached:
+                if one.connector.has_mass:
+                    one.read(q, q_t)
             T = self.turn(theta)[0]
             total = total + T.T @ (self.rotor_terms(theta)[0] + self.mass()) @ T
         return total / count
