@@ -179,6 +179,7 @@ CALLS = {
         "participation": np.ones((3, 2)),
         "places": {"left": [0.0, 0.0, 0.0], "right": [0.0, 0.0, 0.3]},
     },
+    TWIN: lambda w: {"femInterface": w.fem, "axis": "z"},
     "Foundation.from_solid": lambda w: {
         "solid": w.SolidRotor.clamped(["left"]),
         "points": {"right": [0.0, 0.0, 0.3]},
@@ -218,7 +219,6 @@ CALLS = {
     "LinearActuator.current_for": {"place": 1e-5},
     "LinearActuator.force": {"place": 1e-5},
     "LinearActuator.place_under": {"load": 100.0},
-    "LinearActuator.slopes": {"place": 1e-5},
     "Link": {"first": "first:left", "second": "second:left", "connection": er.Support("left", 1e6)},
     "MagneticBearing": lambda w: {
         "actuator": w.SaturatingActuator,
@@ -278,7 +278,6 @@ CALLS = {
     "SaturatingActuator.current_for": {"place": 1e-5},
     "SaturatingActuator.force": {"place": 1e-5},
     "SaturatingActuator.place_under": {"load": 100.0},
-    "SaturatingActuator.slopes": {"place": 1e-5},
     "ShortJournalBearing": {"load": [0.0, -500.0]},
     "SolidRotor.add_disc": {"position": 0.15, "mass": 1.0, "inertia": [0.02, 0.02], "width": 0.4},
     "SolidRotor.clamped": {"names": ["left"]},

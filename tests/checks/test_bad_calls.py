@@ -42,6 +42,9 @@ LEFT_OUT = {
     "Result": "the base of classes that are called",
 }
 
+# methods that scenes call in every step, with the numbers of the equations
+OF_SCENES = ("slopes", "law_of_small_motions", "coupling")
+
 
 def public_calls():
     """Return the names of all that can be called: 'function', 'Class', 'Class.method'."""
@@ -54,6 +57,8 @@ def public_calls():
 
 
 def _is_method(owner, name):
+    if name in OF_SCENES:
+        return False
     static = inspect.getattr_static(owner, name)
     return isinstance(static, staticmethod | classmethod) or inspect.isfunction(static)
 
