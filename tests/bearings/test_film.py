@@ -164,3 +164,13 @@ def test_picture_shows_the_whole_film():
 def test_sommerfeld_number_is_that_of_the_load():
     state = carried(film(), 0.5)
     assert state.sommerfeld_number == pytest.approx(0.5, rel=1e-8)
+
+
+def test_rigid_mass_is_at_the_limit_of_whirl():
+    state = carried(film(), 0.9)
+    stiffness, damping = state.coefficients()
+    mass = state.critical_mass()
+    system = np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness / mass, -damping / mass]])
+    growth = np.linalg.eigvals(system).real
+    assert np.max(growth) == pytest.approx(0.0, abs=1e-9 * np.max(np.abs(growth)))
+    assert film(preload=0.6).equilibrium(30.0, [-3e4, 0.0]).critical_mass() == np.inf

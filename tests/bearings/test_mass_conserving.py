@@ -88,3 +88,10 @@ def test_small_motion_in_a_scene_decays_as_the_linear_film_says():
     expected = s * (1.0 - (abs(s) * step) ** 2 / 12.0)
     assert found.real == pytest.approx(expected.real, rel=1e-2)
     assert found.imag == pytest.approx(expected.imag, rel=1e-4)
+
+
+def test_limit_of_a_rigid_mass_is_that_of_its_exponents():
+    state = oil().equilibrium(SPEED, [0.0, -525.0])
+    mass = state.critical_mass()
+    assert exponent(state, mass, 0.5j * SPEED).real == pytest.approx(0.0, abs=1e-6 * SPEED)
+    assert exponent(state, 0.9 * mass, 0.5j * SPEED).real < 0.0
