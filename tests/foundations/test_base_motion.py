@@ -1,7 +1,6 @@
 """Ground that shakes: closed forms of one mass, scenes, and a base that really moves."""
 
 from dataclasses import replace
-from functools import cache
 
 import exudyn as exu
 import numpy as np
@@ -9,6 +8,7 @@ import pytest
 from exudyn.itemInterface import LoadMassProportional, MarkerBodyMass, SensorBody
 from point_rotors import ring_rotor
 from scipy.interpolate import CubicSpline
+from shaken_rotors import ENDS, rigid, springs
 from test_foundations import BLOCK, HELD
 from test_supports_in_scenes import KINDS, SKEW
 
@@ -25,26 +25,6 @@ from exudyn_rotor import (
 )
 from exudyn_rotor.multibody.spatial_body import add_spatial_rotor
 from exudyn_rotor.theory.rotating_axes import axes_of
-
-ENDS = ("left", "right")
-
-
-@cache
-def rigid():
-    rotor = ring_rotor(0.1, 0.15, 5.0)
-    return rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
-
-
-def springs(omega, ratio=0.0):
-    """Return supports on which the rotor's 5 kg have a natural frequency [rad/s]."""
-    k = 2.5 * omega**2 * np.eye(3)
-    return [Support(name, k, 5.0 * ratio * omega * np.eye(3)) for name in ENDS]
-
-
-def record(function, end, step, direction=(1.0, 0.0, 0.0)):
-    t = np.linspace(0.0, end, round(end / step) + 1)
-    return BaseRecord(t, np.outer(function(t), direction))
-
 
 # ------------------------------------------------------------------ scenes
 

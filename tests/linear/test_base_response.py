@@ -1,11 +1,10 @@
 """Rotors on ground that shakes: closed forms, other steps, stiff supports, films."""
 
-from functools import cache
-
 import numpy as np
 import pytest
 from models import centered_disc
 from point_rotors import ring_rotor
+from shaken_rotors import ENDS, record, rigid, springs
 
 from exudyn_rotor import (
     BaseAcceleration,
@@ -17,25 +16,6 @@ from exudyn_rotor import (
     harmonic_response,
 )
 from exudyn_rotor.theory.rotating_axes import axes_of
-
-ENDS = ("left", "right")
-
-
-@cache
-def rigid():
-    rotor = ring_rotor(0.1, 0.15, 5.0)
-    return rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
-
-
-def springs(omega, ratio=0.0):
-    """Return supports on which the rotor's 5 kg have a natural frequency [rad/s]."""
-    k = 2.5 * omega**2 * np.eye(3)
-    return [Support(name, k, 5.0 * ratio * omega * np.eye(3)) for name in ENDS]
-
-
-def record(function, end, step, direction=(1.0, 0.0, 0.0)):
-    t = np.linspace(0.0, end, round(end / step) + 1)
-    return BaseRecord(t, np.outer(function(t), direction))
 
 
 @pytest.mark.parametrize("speed", [0.0, 180.0])
