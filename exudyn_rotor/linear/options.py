@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import Executor
 
 import numpy as np
 
@@ -24,12 +23,6 @@ def check_basis_accuracy(value: float | None) -> None:
     """Check the largest error by the basis of a reduced rotor, or None: `accuracy`."""
     if value is not None:
         checks.tolerance(value, "accuracy")
-
-
-def check_sweep(executor: Executor | None, progress: bool) -> None:
-    """Check how values are computed: `executor` and `progress`."""
-    checks.executor(executor)
-    checks.flag(progress, "progress")
 
 
 def place(value: Place, name: str) -> str | int | tuple[float, float, float]:

@@ -11,7 +11,6 @@ import scipy.sparse as sp
 from exudyn_rotor import checks
 from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.rotor import FiniteElementRotor, Rotor
-from exudyn_rotor.solvers.inertia_relief import free_rigid_motions
 
 _UNITS = {"mass": "1/s", "stiffness": "s", "loss": ""}
 
@@ -49,16 +48,6 @@ def with_damping(
         mass_damping=mass_damping,
         structural_damping=_sum(rotor.structural_damping, by_loss),
     )
-
-
-def dense_damping(rotor: FiniteElementRotor) -> np.ndarray:
-    """Return the whole damping (3n, 3n) of a small rotor; no free rigid motion is damped."""
-    damping = np.zeros(rotor.mass.shape) if rotor.damping is None else rotor.damping.toarray()
-    if rotor.mass_damping is None:
-        return damping
-    free = free_rigid_motions(rotor.nodes, rotor.mass, rotor.stiffness, rotor.rigid_motions)
-    flexible = np.eye(len(damping)) - free @ (rotor.mass @ free).T
-    return damping + flexible.T @ (rotor.mass_damping @ flexible)
 
 
 def sparse_damping(rotor: FiniteElementRotor) -> sp.csr_array | None:

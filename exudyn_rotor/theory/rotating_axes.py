@@ -5,7 +5,6 @@ Axes are (n1, n2, e) of :attr:`SpinAxis.plane` and the spin axis.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from functools import cache
 from math import cos, sin
 
@@ -62,27 +61,6 @@ def into_rotor_frame(vector: np.ndarray) -> dict[int, np.ndarray]:
     """Return the harmonics of ``Rᵀ(θ) v`` for triples v (3n,) fixed in space; none that is zero."""
     turned = {-n: R @ vector for n, R in turning_harmonics(len(vector)).items()}
     return {n: term for n, term in turned.items() if np.any(term)}
-
-
-def into_inertial_frame(motion: Mapping[int, np.ndarray]) -> dict[int, np.ndarray]:
-    """Return the harmonics of ``R(θ) u`` for a motion (p, 6) seen in the rotor frame."""
-    return _turned(motion, lambda R: R.T)
-
-
-def out_of_inertial_frame(motion: Mapping[int, np.ndarray]) -> dict[int, np.ndarray]:
-    """Return the harmonics of ``Rᵀ(θ) u`` for a motion (p, 6) in inertial axes."""
-    return _turned(motion, lambda R: R)
-
-
-def _turned(
-    motion: Mapping[int, np.ndarray], from_right: Callable[[np.ndarray], np.ndarray]
-) -> dict[int, np.ndarray]:
-    """Multiply harmonics of rows (p, 6) by R_n or its transpose, `from_right`."""
-    turned: dict[int, np.ndarray] = {}
-    for m, amplitudes in motion.items():
-        for n, R in turning_harmonics(amplitudes.shape[-1]).items():
-            turned[m + n] = turned.get(m + n, 0.0) + amplitudes @ from_right(R)
-    return turned
 
 
 def turned_harmonics(matrix: np.ndarray) -> dict[int, np.ndarray]:

@@ -19,18 +19,6 @@ def differences(function, at, sizes):
     return np.array(ends).T / (2.0 * STEP * sizes)
 
 
-def asked_films(monkeypatch):
-    """Return a list that grows with every motion for which a film is asked for its force."""
-    asked, call = [], FilmLaw.__call__
-
-    def asking(law, *motion):
-        asked.append(motion)
-        return call(law, *motion)
-
-    monkeypatch.setattr(FilmLaw, "__call__", asking)
-    return asked
-
-
 @pytest.mark.parametrize("cavitation", CAVITATION)
 def test_tangent_of_a_film_is_its_derivative(cavitation):
     """Of one that conserves mass within a step, from the voids at its beginning."""
