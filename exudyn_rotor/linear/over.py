@@ -8,10 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 from tqdm import tqdm
 
-from exudyn_rotor.callers import user_level
+from exudyn_rotor.calls import one_thread, user_level
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.solve.motions import Motions, margins_of, motions_of
-from exudyn_rotor.threads import one_thread
 
 
 @one_thread()

@@ -20,8 +20,8 @@ from scipy.optimize import root
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, given_supports
+from exudyn_rotor.calls import one_thread
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear import options
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.build import Target
 from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
@@ -36,8 +36,6 @@ from exudyn_rotor.nonlinear.periodic_response import size_of, warn_of
 from exudyn_rotor.nonlinear.periodic_result import PeriodicResponse
 from exudyn_rotor.nonlinear.problem import Problem
 from exudyn_rotor.nonlinear.scene import as_lists
-from exudyn_rotor.sweep import ascending_from_zero
-from exudyn_rotor.threads import one_thread
 
 _FIRST = 0.02  # of a clearance: size of the first motion
 _BELOW = 0.3  # of the onset, down to which a branch is followed that turns back
@@ -105,11 +103,11 @@ def limit_cycles(
     >>> print(round(whirl.rates[point, 0] / 1200.0, 2))
     0.5
     """
-    speeds = ascending_from_zero(speeds, "speeds")
+    speeds = checks.ascending_from_zero(speeds, "speeds")
     checks.instance(onset, "onset", StabilityThresholds, "stability_threshold(…) makes one")
     loads = checks.instances(loads, "loads", HarmonicForce)
     gravity = checks.vector(gravity, "gravity", "m/s²")
-    tolerance = options.accuracy(tolerance, "tolerance")
+    tolerance = checks.tolerance(tolerance)
     asked = checked_places(at)
     begins = np.flatnonzero(onset.onset)
     if not begins.size:

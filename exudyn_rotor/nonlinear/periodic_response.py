@@ -13,9 +13,8 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.support import NoCoefficientsError
-from exudyn_rotor.callers import user_level
+from exudyn_rotor.calls import one_thread, user_level
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear import options
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.build import Target, warn_of_left_out_stiffening
 from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
@@ -29,8 +28,6 @@ from exudyn_rotor.nonlinear.continuation import Family, Point, same
 from exudyn_rotor.nonlinear.periodic_result import PeriodicResponse
 from exudyn_rotor.nonlinear.problem import Problem
 from exudyn_rotor.nonlinear.scene import as_lists
-from exudyn_rotor.sweep import ascending_from_zero
-from exudyn_rotor.threads import one_thread
 
 _LABELS = {"speed": "spin speed [rad/s]", "unbalance": "unbalance"}
 _MOST = (24, 48)  # harmonics of the second phase, and of the spin in a revolution
@@ -154,7 +151,7 @@ def periodic_response(
     unbalances = checks.instances(unbalances, "unbalances", Unbalance)
     loads = checks.instances(loads, "loads", HarmonicForce)
     gravity = checks.vector(gravity, "gravity", "m/s²")
-    tolerance = options.accuracy(tolerance, "tolerance")
+    tolerance = checks.tolerance(tolerance)
     revolutions = checks.count(revolutions, "revolutions", least=1)
     checks.flag(own, "own")
     checks.flag(follow, "follow")
@@ -222,7 +219,7 @@ def _checked_parameter(
     if over == "speed":
         if speed is not None:
             raise ValueError("speed: is for another parameter than over='speed'; leave it out")
-        return ascending_from_zero(values, "values"), None
+        return checks.ascending_from_zero(values, "values"), None
     if speed is None:
         raise ValueError("speed: needs the spin speed [rad/s] where the parameter is another one")
     return checks.ascending(values, "values"), checks.number(speed, "speed", "rad/s", least=0.0)

@@ -13,7 +13,7 @@ import numpy as np
 import scipy.linalg as la
 from scipy.optimize import linear_sum_assignment
 
-from exudyn_rotor.callers import user_level
+from exudyn_rotor.calls import user_level
 from exudyn_rotor.linear.modal.whirl import Content, Named
 from exudyn_rotor.linear.model.assembly import rotors_of
 from exudyn_rotor.linear.model.linear_model import LinearModel

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal import basis_error
 from exudyn_rotor.linear.modal.campbell_result import Campbell
 from exudyn_rotor.linear.modal.tracking import track
@@ -36,7 +35,6 @@ from exudyn_rotor.linear.model.build import (
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import motions_over
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.sweep import checked_speeds
 from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.units import Units
 
@@ -134,11 +132,11 @@ def campbell(
     >>> result.whirl[1, 1:5].tolist()
     ['forward', 'forward', 'backward', 'backward']
     """
-    values = checked_speeds(speeds, allow_negative)
+    values = checks.spin_speeds(speeds, allow_negative)
     if modes is not None:
         modes = checks.count(modes, "modes", least=1)
-    tolerance = options.accuracy(tolerance, "tolerance")
-    options.check_basis_accuracy(accuracy)
+    tolerance = checks.tolerance(tolerance)
+    checks.accuracy(accuracy)
     checks.flag(progress, "progress")
     checks.choice(frame, "frame", FRAMES)
     model = linear_model(

@@ -16,7 +16,6 @@ from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.basis_error import in_table, is_known, points
 from exudyn_rotor.linear.modal.critical_speeds import (
     CriticalSpeeds,
@@ -256,7 +255,7 @@ def critical_speed_map(
     checks.choice(stiffening, "stiffening", CHOICES)
     checks.choice(axes, "axes", AXES)
     checks.tolerance(tolerance)
-    options.check_basis_accuracy(accuracy)
+    checks.accuracy(accuracy)
     checks.flag(progress, "progress")
     curve = None if bearing is None else _as_support(bearing)
     first = linear_model(

@@ -9,8 +9,8 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
+from exudyn_rotor.calls import one_thread
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal import basis_error
 from exudyn_rotor.linear.modal.basis_error import in_table
 from exudyn_rotor.linear.modal.model_result import ModelResult
@@ -26,7 +26,6 @@ from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_o
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.results import numbers, storable, words
-from exudyn_rotor.threads import one_thread
 from exudyn_rotor.units import Units
 
 JUDGED = 6  # critical speeds that count where no largest speed is given
@@ -207,7 +206,7 @@ def critical_speeds(
     """
     given = checked(order, max_speed, nodal_diameters)
     checks.tolerance(tolerance)
-    options.check_basis_accuracy(accuracy)
+    checks.accuracy(accuracy)
     model = linear_model(
         target, supports=supports, foundation=foundation, body=body, stiffening=stiffening,
         axes=axes,

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from exudyn_rotor.cached import kept
+from exudyn_rotor.calls import kept
 from exudyn_rotor.linear.model.body import RotorAlone, RotorBody
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.points import rotor_points

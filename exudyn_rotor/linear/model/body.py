@@ -19,7 +19,7 @@ from functools import cached_property
 import numpy as np
 import scipy.linalg as la
 
-from exudyn_rotor.cached import kept
+from exudyn_rotor.calls import kept
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import Terms, turned
 from exudyn_rotor.linear.model.points import interface_motion, radius_of_gyration

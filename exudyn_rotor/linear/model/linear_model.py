@@ -23,7 +23,7 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor import checks
-from exudyn_rotor.callers import user_level
+from exudyn_rotor.calls import user_level
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, spread, turned
 from exudyn_rotor.linear.model.assembly import Assembly, rotors_of

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.cached import kept
+from exudyn_rotor.calls import kept
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.rotating_axes import axes_of

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg as la
 
-from exudyn_rotor.cached import kept
+from exudyn_rotor.calls import kept
 from exudyn_rotor.linear.equations import without_rounding
 from exudyn_rotor.linear.model.points import interface_motion, rotor_points
 from exudyn_rotor.linear.model.waves import HIGHEST, wave_amplitudes

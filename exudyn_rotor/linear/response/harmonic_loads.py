@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.linear import options
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.response.places import At, Place, place
 from exudyn_rotor.linear.response.unbalance import Unbalance
@@ -58,7 +57,7 @@ class HarmonicForce:
 
     def __post_init__(self) -> None:
         checks.choice(self.frame, "frame", FRAMES)
-        object.__setattr__(self, "at", options.place(self.at, "at"))
+        object.__setattr__(self, "at", checks.place(self.at, "at"))
         for name, unit in (("force", "N"), ("moment", "N m")):
             vector = _vector(getattr(self, name), f"{name} at {self.at!r}", unit)
             object.__setattr__(self, name, vector)

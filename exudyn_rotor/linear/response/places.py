@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.linear import options
 from exudyn_rotor.linear.equations import Terms, turned
 from exudyn_rotor.linear.model.linear_model import LinearModel
 
@@ -93,7 +92,7 @@ def checked_places(at: Sequence[At] | At | None) -> tuple[At, ...] | None:
     if isinstance(at, str | int | np.integer):
         at = (at,)
     listed = checks.items(at, "at", "places of the rotor in a sequence")
-    return tuple(options.place(one, f"at[{index}]") for index, one in enumerate(listed))
+    return tuple(checks.place(one, f"at[{index}]") for index, one in enumerate(listed))
 
 
 def places(model: LinearModel, at: Sequence[At] | None, speed: float = 1.0) -> list[Place]:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from exudyn_rotor.callers import user_level
+from exudyn_rotor.calls import user_level
 
 Solved = Mapping[int, np.ndarray]  # harmonics (s, k)
 _MOST_TURN = 0.3  # phase [rad] between neighbours: 1 − cos(0.15) = 1 % of a peak lies between

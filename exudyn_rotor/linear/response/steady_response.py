@@ -14,8 +14,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
-from exudyn_rotor.callers import user_level
-from exudyn_rotor.linear import options
+from exudyn_rotor.calls import one_thread, user_level
 from exudyn_rotor.linear.modal.basis_error import warn
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import LinearModel
@@ -34,9 +33,7 @@ from exudyn_rotor.linear.response.run_start import kept_coordinates
 from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.linear.solve.forced import forced_motions
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.sweep import ascending_from_zero, checked_speeds
 from exudyn_rotor.theory.rotating_axes import FRAMES
-from exudyn_rotor.threads import one_thread
 from exudyn_rotor.units import Units
 
 Coordinates = dict[int, np.ndarray]  # harmonics (s, k) over speeds or frequencies
@@ -130,7 +127,7 @@ def unbalance_response(
     >>> response.semi_axes("left")[0].round(6)  # m e Ω² / |k − mΩ² + icΩ|
     array([1.7e-05, 1.0e-03, 9.0e-05])
     """
-    values = checked_speeds(speeds, allow_negative)
+    values = checks.spin_speeds(speeds, allow_negative)
     unbalances = checks.instances(unbalances, "unbalances", Unbalance)
     checks.flag(own, "own")
     _check(frame, tolerance, refine, accuracy, progress)
@@ -227,7 +224,7 @@ def harmonic_response(
     >>> np.abs(response.phasor("left", "n1")).round(6)
     array([6.7e-05, 1.0e-03])
     """
-    values = ascending_from_zero(
+    values = checks.ascending_from_zero(
         frequencies, "frequencies", "conjugate the loads: a negative frequency is that"
     )
     speed = checks.number(speed, "speed", "rad/s")
@@ -444,7 +441,7 @@ def _check(
     frame: str, tolerance: float, refine: bool, accuracy: float | None, progress: bool
 ) -> None:
     checks.choice(frame, "frame", FRAMES)
-    options.accuracy(tolerance, "tolerance")
+    checks.tolerance(tolerance)
     checks.flag(refine, "refine")
     checks.flag(progress, "progress")
-    options.check_basis_accuracy(accuracy)
+    checks.accuracy(accuracy)

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.linear import options
 
 
 def permissible_unbalance(grade: float, mass: float, speed: float) -> float:
@@ -77,7 +76,7 @@ class Unbalance:
     angle: float = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "at", options.place(self.at, "at"))
+        object.__setattr__(self, "at", checks.place(self.at, "at"))
         where = f"unbalance at {self.at!r}"
         amount = checks.number(self.amount, f"{where}: amount", "kg m")
         if amount <= 0.0:

@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
-from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal import basis_error
 from exudyn_rotor.linear.modal.tracking import track
 from exudyn_rotor.linear.modal.whirl import Content, Named, rounded
@@ -29,7 +28,6 @@ from exudyn_rotor.linear.over import motions_over
 from exudyn_rotor.linear.solve.motions import METHODS, Motions
 from exudyn_rotor.linear.stability.stability_result import Stability
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.sweep import ascending_from_zero
 from exudyn_rotor.units import Units
 
 WHAT = "stability finds exponents"  # of structural damping, for the warning
@@ -101,7 +99,7 @@ def stability(
     >>> result.stable.tolist()
     [True, False]
     """
-    values = ascending_from_zero(speeds, "speeds")
+    values = checks.ascending_from_zero(speeds, "speeds")
     check_options(method, tolerance, accuracy)
     checks.flag(progress, "progress")
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening, axes=axes)
@@ -119,8 +117,8 @@ def stability(
 def check_options(method: str, tolerance: float, accuracy: float | None) -> None:
     """Check the options that all analyses of stability have."""
     checks.choice(method, "method", METHODS)
-    options.accuracy(tolerance, "tolerance")
-    options.check_basis_accuracy(accuracy)
+    checks.tolerance(tolerance)
+    checks.accuracy(accuracy)
 
 
 def least_stable_of(motions: Motions) -> np.ndarray:

@@ -37,7 +37,6 @@ from exudyn_rotor.linear.stability.stability import (
 )
 from exudyn_rotor.linear.stability.threshold_result import StabilityThresholds, limit_errors
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.sweep import ascending_from_zero
 
 Supports = Sequence[Given] | Given
 _ROOT = 1e-8  # of the largest parameter: error of a limit
@@ -276,7 +275,7 @@ def unstable_ranges(
     >>> unstable_ranges(rotor, [100.0, 250.0, 400.0], supports=supports + inner).round(3)
     array([[300., 400.]])
     """
-    values = ascending_from_zero(speeds, "speeds")
+    values = checks.ascending_from_zero(speeds, "speeds")
     check_options(method, tolerance, accuracy)
     model = _checked_model(
         target, values[-1], supports=supports, body=body, stiffening=stiffening, axes=axes

@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
-from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.basis_error import is_known, warn
 from exudyn_rotor.linear.model.build import warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import LinearModel
@@ -112,7 +111,7 @@ def static_response(
     checks.choice(frame, "frame", FRAMES)
     checks.choice(stiffening, "stiffening", CHOICES)
     checks.flag(stress, "stress")
-    options.check_basis_accuracy(accuracy)
+    checks.accuracy(accuracy)
     named = _checked_loads(loads)
     g = np.zeros(3) if gravity is None else checks.vector(gravity, "gravity", "m/s²")
     at = checked_places(at)
@@ -153,7 +152,7 @@ def _checked_loads(loads: Loads | None) -> dict[At, np.ndarray]:
         vector = checks.vector(value, name, "N", size=None)
         if len(vector) not in (3, 6):
             raise ValueError(f"{name}: needs 3 or 6 numbers [N], [N m], got {checks.shown(value)}")
-        found[options.place(key, "loads")] = np.r_[vector, np.zeros(6 - len(vector))]
+        found[checks.place(key, "loads")] = np.r_[vector, np.zeros(6 - len(vector))]
     return found
 
 
