@@ -24,8 +24,7 @@ from exudyn_rotor.calls import one_thread
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.build import Target
-from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
-from exudyn_rotor.linear.response.places import At, checked_places
+from exudyn_rotor.linear.response.loads import At, HarmonicForce, checked_places
 from exudyn_rotor.linear.stability.threshold_result import StabilityThresholds
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.nonlinear.balance import Balance, orders_of

@@ -19,7 +19,7 @@ from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.model.build import Target
 from exudyn_rotor.linear.model.scene.scene_checks import check_scene
 from exudyn_rotor.linear.model.scene.scene_train import scene_train
-from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
+from exudyn_rotor.linear.response.loads import HarmonicForce
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation
