@@ -20,7 +20,6 @@ from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import motions_over
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
-NOT_KNOWN = "error of the basis: not known"
 _DAMPED = 0.01  # share of the frequency that growth counts as at least
 _SLOW = 0.1  # share of the spin speed that a frequency counts as at least
 _RANGE, _LOWEST = 2.0, 6  # times the fastest speed, and lowest modes: what is judged in any case
@@ -143,11 +142,6 @@ def judged(
     limit = np.maximum(lowest, _RANGE * np.abs(speeds).max(initial=0.0))
     overdamped = (frequencies == 0.0) & (-growth > limit)
     return ((frequencies <= limit) | every) & ~overdamped
-
-
-def in_table(error: float, digits: int = 1) -> str:
-    """Return an error as tables show it: '-' where it was not estimated."""
-    return "-" if np.isnan(error) else f"{error:.{digits}e}"
 
 
 def warn(errors: np.ndarray, what: str, model: LinearModel, accuracy: float) -> None:

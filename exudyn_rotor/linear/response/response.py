@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.linear.modal.basis_error import NOT_KNOWN, in_table
+from exudyn_rotor.linear.over import NOT_KNOWN, in_table
 from exudyn_rotor.linear.response import bode
 from exudyn_rotor.linear.response.refinement import resolved_peak, warn_of_coarse_peaks
 from exudyn_rotor.linear.response.run_start import RunStart
