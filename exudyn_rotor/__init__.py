@@ -73,20 +73,20 @@ if TYPE_CHECKING:
     from exudyn_rotor.linear.model.rotor_train import RotorTrain as RotorTrain
     from exudyn_rotor.linear.response.base_response import BaseResponse as BaseResponse
     from exudyn_rotor.linear.response.base_response import base_response as base_response
-    from exudyn_rotor.linear.response.harmonic_loads import BaseAcceleration as BaseAcceleration
-    from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce as HarmonicForce
-    from exudyn_rotor.linear.response.responses import HarmonicResponse as HarmonicResponse
-    from exudyn_rotor.linear.response.responses import UnbalanceResponse as UnbalanceResponse
+    from exudyn_rotor.linear.response.loads import BaseAcceleration as BaseAcceleration
+    from exudyn_rotor.linear.response.loads import HarmonicForce as HarmonicForce
+    from exudyn_rotor.linear.response.loads import Unbalance as Unbalance
+    from exudyn_rotor.linear.response.loads import (
+        permissible_unbalance as permissible_unbalance,
+    )
+    from exudyn_rotor.linear.response.response import HarmonicResponse as HarmonicResponse
+    from exudyn_rotor.linear.response.response import UnbalanceResponse as UnbalanceResponse
     from exudyn_rotor.linear.response.steady_response import harmonic_response as harmonic_response
     from exudyn_rotor.linear.response.steady_response import (
         unbalance_response as unbalance_response,
     )
     from exudyn_rotor.linear.response.steady_state import SteadyState as SteadyState
     from exudyn_rotor.linear.response.steady_state import steady_state as steady_state
-    from exudyn_rotor.linear.response.unbalance import Unbalance as Unbalance
-    from exudyn_rotor.linear.response.unbalance import (
-        permissible_unbalance as permissible_unbalance,
-    )
     from exudyn_rotor.linear.stability.sensitivity import Sensitivity as Sensitivity
     from exudyn_rotor.linear.stability.sensitivity import sensitivity as sensitivity
     from exudyn_rotor.linear.stability.stability import Stability as Stability
@@ -196,11 +196,10 @@ _NAMES = {
     "linear.model.linear_model": "LinearModel",
     "linear.model.rotor_train": "Link RotorTrain",
     "linear.response.base_response": "BaseResponse base_response",
-    "linear.response.harmonic_loads": "BaseAcceleration HarmonicForce",
-    "linear.response.responses": "HarmonicResponse UnbalanceResponse",
+    "linear.response.loads": "BaseAcceleration HarmonicForce Unbalance permissible_unbalance",
+    "linear.response.response": "HarmonicResponse UnbalanceResponse",
     "linear.response.steady_response": "harmonic_response unbalance_response",
     "linear.response.steady_state": "SteadyState steady_state",
-    "linear.response.unbalance": "Unbalance permissible_unbalance",
     "linear.stability.sensitivity": "Sensitivity sensitivity",
     "linear.stability.stability": "Stability stability",
     "linear.stability.stability_map": "StabilityMap stability_map",

@@ -9,7 +9,7 @@ import numpy as np
 from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.linear.model.assembly import rotors_of
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.response.places import At, Place, places
+from exudyn_rotor.linear.response.loads import At, Place, places
 from exudyn_rotor.nonlinear.continuation import Point
 from exudyn_rotor.nonlinear.periodic_result import PeriodicResponse
 

@@ -23,8 +23,7 @@ from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.calls import one_thread
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import UnconvergedError
-from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
-from exudyn_rotor.linear.response.places import At, checked_places
+from exudyn_rotor.linear.response.loads import At, HarmonicForce, checked_places
 from exudyn_rotor.linear.stability.thresholds import StabilityThresholds
 from exudyn_rotor.nonlinear.balance import Balance, orders_of
 from exudyn_rotor.nonlinear.beside import Beside

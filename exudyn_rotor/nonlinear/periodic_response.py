@@ -17,9 +17,7 @@ from exudyn_rotor.calls import one_thread, user_level
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.build import warn_of_left_out_stiffening
-from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
-from exudyn_rotor.linear.response.places import At, checked_places
-from exudyn_rotor.linear.response.unbalance import Unbalance
+from exudyn_rotor.linear.response.loads import At, HarmonicForce, Unbalance, checked_places
 from exudyn_rotor.nonlinear.balance import Balance
 from exudyn_rotor.nonlinear.beside import Beside
 from exudyn_rotor.nonlinear.collect import collected

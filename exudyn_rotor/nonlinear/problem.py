@@ -18,13 +18,13 @@ from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.response.harmonic_loads import (
+from exudyn_rotor.linear.response.loads import (
     BaseAcceleration,
     HarmonicForce,
+    Unbalance,
     total,
     unbalance_load,
 )
-from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.nonlinear.balance import Balance, Laws, real_part_of
 from exudyn_rotor.nonlinear.rest import Rest, Unloaded, of_both_signs
 from exudyn_rotor.reduction.mode_kind import ModeKind
