@@ -25,7 +25,7 @@ from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.build import Target
 from exudyn_rotor.linear.response.loads import At, HarmonicForce, checked_places
-from exudyn_rotor.linear.stability.threshold_result import StabilityThresholds
+from exudyn_rotor.linear.stability.thresholds import StabilityThresholds
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.nonlinear.balance import Balance, orders_of
 from exudyn_rotor.nonlinear.beside import Beside

@@ -21,7 +21,6 @@ from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import motions_over
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
-NOT_KNOWN = "error of the basis: not known"
 _DAMPED = 0.01  # share of the frequency that growth counts as at least
 _SLOW = 0.1  # share of the spin speed that a frequency counts as at least
 _RANGE, _LOWEST = 2.0, 6  # times the fastest speed, and lowest modes: what is judged in any case
@@ -222,14 +221,6 @@ def motion_error(given: Mapping[int, np.ndarray], finer: Mapping[int, np.ndarray
 def _size(amplitudes: np.ndarray) -> np.ndarray:
     """Return sizes (…) of displacements, of motions (…, 6)."""
     return np.linalg.norm(amplitudes[..., :3], axis=-1)
-
-
-# ------------------------------------------------------------------ words
-
-
-def in_table(error: float, digits: int = 1) -> str:
-    """Return an error as tables show it: '-' where it was not estimated."""
-    return "-" if np.isnan(error) else f"{error:.{digits}e}"
 
 
 def warn(errors: np.ndarray, what: str, model: LinearModel, accuracy: float) -> None:

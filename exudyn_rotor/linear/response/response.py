@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.calls import user_level
-from exudyn_rotor.linear.modal.basis_error import NOT_KNOWN, in_table
+from exudyn_rotor.linear.over import NOT_KNOWN, in_table
 from exudyn_rotor.linear.response.run_start import RunStart
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import StartState
