@@ -45,15 +45,14 @@ def motions_over(
     progress : bool, optional
         Show a progress bar with the `label`.
     """
-    stack, basis, neutral = model.at_all(speeds), model.moving_basis, model.neutral_motions
+    stack, neutral = model.at_all(speeds, "moving"), model.neutral_motions
     if held:
         neutral = neutral[:, : neutral.shape[1] - model.free_spins.shape[1]]
-    if basis is not None:
-        stack = stack.projected(basis)
     with tqdm(total=len(stack.speed), desc=label or None, disable=not progress) as bar:
         given = {"least_stable": least_stable, "told": bar.update}
         found = motions_of(stack, method, tolerance, **given)
     _warn_of_lost(found)
+    basis = model.moving_basis
     return found if basis is None else found.in_all(basis, neutral)
 
 
@@ -69,8 +68,7 @@ def margins_over(
 
     Free spins are held; neutral motions do not count; NaN where the model has no equations.
     """
-    stack, basis = model.at_all(speeds), model.moving_basis
-    return margins_of(stack if basis is None else stack.projected(basis), method, tolerance)
+    return margins_of(model.at_all(speeds, "moving"), method, tolerance)
 
 
 def _warn_of_lost(found: Motions) -> None:

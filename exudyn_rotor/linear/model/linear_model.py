@@ -253,10 +253,11 @@ class LinearModel:
         """
         return self.assembly(speed).system(speed)
 
-    def at_all(self, speeds: Sequence[float]) -> PeriodicSystem:
+    def at_all(self, speeds: Sequence[float], within: str = "") -> PeriodicSystem:
         """Return the equations at spin speeds (s,) [rad/s] as one stack.
 
-        NaN at speeds where there are none, of which one warning tells.
+        NaN at speeds where there are none, of which one warning tells. Of motions `within`
+        :attr:`held_basis`, 'held', or :attr:`moving_basis`, 'moving'; of all by default.
 
         Raises
         ------
@@ -267,7 +268,7 @@ class LinearModel:
         parts, refused = [], {}
         for places in (np.flatnonzero(speeds), np.flatnonzero(speeds == 0.0)):
             if places.size:
-                part, errors = self._systems(speeds[places])
+                part, errors = self._systems(speeds[places], within)
                 refused |= {int(places[i]): error for i, error in errors.items()}
                 if part is not None:
                     parts.append((np.delete(places, list(errors)), part))
@@ -276,9 +277,22 @@ class LinearModel:
         _warn_of_refused(speeds, refused)
         return spread(speeds, parts)
 
-    def _systems(self, speeds: np.ndarray) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
+    def _systems(
+        self, speeds: np.ndarray, within: str = ""
+    ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         """Return the stack at speeds (s,), all zero or none, and why there are none at some."""
-        return self.assembly(speeds[0]).systems(speeds)
+        basis = getattr(self, f"{within}_basis") if within else None
+        if basis is None:
+            return self.assembly(speeds[0]).systems(speeds)
+        key = within, bool(speeds[0])
+        if key not in self._projected:
+            self._projected[key] = self.assembly(speeds[0]).projected(basis)
+        return self._projected[key].systems(speeds)
+
+    @cached_property
+    def _projected(self) -> dict[tuple[str, bool], Assembly]:
+        """What gives the equations of motions in a basis, running or at rest, once made."""
+        return {}
 
     def matrices(self, speed: float) -> Matrices:
         """Return mass, damping and stiffness at a spin speed [rad/s].

@@ -201,7 +201,9 @@ class SceneModel(LinearModel):
             add(terms, {n: np.pad(Y, (0, self.size - k)) for n, Y in found.items()})
         return replace(system, M=own)
 
-    def _systems(self, speeds: np.ndarray) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
+    def _systems(
+        self, speeds: np.ndarray, within: str = ""
+    ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         found, refused = [], {}
         for place, speed in enumerate(speeds.tolist()):
             try:
