@@ -26,7 +26,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, spread, turned
-from exudyn_rotor.linear.model.assembly import Assembly, rotors_of
+from exudyn_rotor.linear.model.assembly import Assembly, Element, elements_of, rotors_of
 from exudyn_rotor.linear.model.body import (
     EVEN,
     RotorAlone,
@@ -38,8 +38,7 @@ from exudyn_rotor.linear.model.body import (
     rotor_alone,
     rotor_body,
 )
-from exudyn_rotor.linear.model.element import Element, elements_of
-from exudyn_rotor.linear.model.links import Link
+from exudyn_rotor.linear.model.rotor_train import Link
 from exudyn_rotor.linear.model.spin import ARM
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor

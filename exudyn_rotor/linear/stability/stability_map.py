@@ -16,7 +16,6 @@ from exudyn_rotor.calls import one_thread
 from exudyn_rotor.checks import ascending
 from exudyn_rotor.linear.equations import PeriodicSystem, joined
 from exudyn_rotor.linear.modal import basis_error
-from exudyn_rotor.linear.modal.basis_error import NOT_KNOWN
 from exudyn_rotor.linear.modal.whirl import (
     UNKNOWN,
     WHIRLS,
@@ -27,7 +26,7 @@ from exudyn_rotor.linear.modal.whirl import (
 )
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_structural_damping
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.over import warn_of_refused
+from exudyn_rotor.linear.over import NOT_KNOWN, warn_of_refused
 from exudyn_rotor.linear.solve.motions import Motions, motions_of
 from exudyn_rotor.linear.stability.stability import (
     WHAT,

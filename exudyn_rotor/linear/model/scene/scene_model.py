@@ -21,15 +21,14 @@ import scipy.linalg as la
 
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, add, joined, turned
-from exudyn_rotor.linear.model.assembly import NO_EQUATIONS, Assembly
+from exudyn_rotor.linear.model.assembly import NO_EQUATIONS, Assembly, is_isotropic_matrix
 from exudyn_rotor.linear.model.body import RotorAlone, RotorBody, StandingBody, rotor_body
-from exudyn_rotor.linear.model.element import is_isotropic_matrix
 from exudyn_rotor.linear.model.linear_model import LinearModel, beside
-from exudyn_rotor.linear.model.points import interface_motion
 from exudyn_rotor.linear.model.scene.films import film_bodies, film_elements
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.linear.model.scene.probe import Rest
 from exudyn_rotor.linear.model.scene.sampled_terms import terms_of
+from exudyn_rotor.linear.model.turning import interface_motion
 from exudyn_rotor.theory.rotating_axes import axial_skew
 
 _HELD = 1e-8  # share of a motion of the rotor that is none of the scene
