@@ -8,7 +8,7 @@ coordinates of the bodies, ``u = U(θ) y``, is all that depends on the axes of t
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -201,7 +201,7 @@ def support_element(
             ) from None
         return support.matrices(rate * speed)
 
-    speeds = support.table_speeds / rate if rate else np.zeros(0)
+    speeds = support.table_speeds / rate if rate and support.varies else np.zeros(0)
     return Element(
         (end,) if base is None else (end, base),
         matrices,
@@ -446,8 +446,15 @@ class Assembly:
                 refused[place] = error
         if not found:
             return None, refused
-        stacks = [tuple(map(np.stack, zip(*each, strict=True))) for each in zip(*found)]  # noqa: B905
-        return self._system(np.delete(speeds, list(refused)), stacks), refused
+        return self._system(np.delete(speeds, list(refused)), stacked_coefficients(found)), refused
+
+    def at_points(self, speeds: np.ndarray, coefficients: Sequence) -> PeriodicSystem:
+        """Return the equations at points, stacked, each with coefficients of its elements.
+
+        `coefficients` are stiffness and damping of each element, as stacks over the points.
+        """
+        varying = tuple(replace(element, varies=True) for element in self.elements)
+        return replace(self, elements=varying)._system(speeds, coefficients)
 
     @cached_property
     def _varying(self) -> list[Element]:
@@ -537,6 +544,11 @@ def _without_rounding(powers: list[dict[int, np.ndarray]]) -> list[dict[int, np.
         for each in powers[1:]
     ]
     return [first, *kept]
+
+
+def stacked_coefficients(found: Sequence[Sequence]) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return stiffness and damping of elements, known at points, as stacks over the points."""
+    return [tuple(map(np.stack, zip(*each, strict=True))) for each in zip(*found, strict=True)]
 
 
 def rotors_of(bodies: Sequence[Body]) -> list[RotorBody]:
