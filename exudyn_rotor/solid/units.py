@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.callers import user_level
+from exudyn_rotor.calls import user_level
 
 Material = Mapping[str, float]
 MATERIAL_KEYS = ("youngsModulus", "poissonsRatio", "density")

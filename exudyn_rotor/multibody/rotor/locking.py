@@ -3,12 +3,15 @@
 Two ways, of which ``'auto'`` is the first:
 
 ``'constraints'``
-    One ``ObjectConnectorCoordinateVector`` at velocity level holds all of them, a constant spin at
-    its speed; a motion that varies with time has a ``CoordinateConstraint`` of its own. Implicit
-    and static solvers take these, and Exudyn's own analyses of an ``mbs``
-    (``ComputeODE2Eigenvalues``, ``ComputeLinearizedSystem``) project them out.
+    Coordinates that stand still have a ``CoordinateConstraint`` each, and a large mass: implicit
+    and static solvers take these, explicit solvers eliminate them, which sets the coordinates to
+    zero after each step, and Exudyn's own analyses of an ``mbs`` (``ComputeODE2Eigenvalues``,
+    ``ComputeLinearizedSystem``) project them out. Explicit solvers would set a prescribed
+    motion to zero as well, in silence. With one, therefore, an ``ObjectConnectorCoordinateVector``
+    at velocity level holds all that stands still or moves at a constant speed, which explicit
+    solvers refuse; a motion that varies with time has a ``CoordinateConstraint`` beside it.
 ``'mass'``
-    A huge mass on the diagonal, for explicit solvers, which refuse the constraints. A motion that
+    A huge mass on the diagonal, for explicit solvers and a prescribed motion. A motion that
     varies with time is driven by its acceleration. Exudyn's analyses show a false zero for each of
     these coordinates, and static solvers do not take them.
 
@@ -19,6 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import exudyn
 import numpy as np
@@ -28,6 +32,7 @@ from exudyn.itemInterface import (
     MarkerNodeCoordinates,
     NodePointGround,
     ObjectConnectorCoordinateVector,
+    VCoordinateConstraint,
 )
 
 from exudyn_rotor.multibody.rotor.frame import THIRD
@@ -38,6 +43,8 @@ MODES = 6  # the first coordinate after those of the rigid-body node
 LOCKS = "locks"  # name of the constraint of all that stand still or turn at constant speed
 
 LOCK_RATIO = 1e18  # of the rotor's own inertia
+# beside a constraint that explicit solvers eliminate: of what moves within one of their steps
+ELIMINATED_RATIO = 1e9
 # of coordinates that are driven: rounding of the driving force is seen in the external one
 DRIVEN_RATIO = 1e9
 
@@ -110,6 +117,14 @@ class Locks:
         return tuple(self.names[i] for i in (*self.fixed, *self.prescribed))
 
     @property
+    def stand_still(self) -> bool:
+        """True where the locked coordinates stand still, one by one, so that explicit solvers run.
+
+        Their constraints are eliminated there.
+        """
+        return not self.prescribed and self.normal is None
+
+    @property
     def rows(self) -> tuple[np.ndarray, np.ndarray]:
         """Rows (c, 6) over the coordinates, and the rates (c,) at which one constraint holds them.
 
@@ -158,8 +173,11 @@ def lock_masses(locks: Locks, size: int, inertia: np.ndarray, by_mass: bool) -> 
     """
     mass = np.zeros(size)
     for index in (*locks.fixed, *locks.prescribed):
-        ratio = DRIVEN_RATIO if index in locks.varying else LOCK_RATIO
-        mass[index] = inertia[index] * (ratio if by_mass else 1.0)
+        if by_mass:
+            ratio = DRIVEN_RATIO if index in locks.varying else LOCK_RATIO
+        else:
+            ratio = ELIMINATED_RATIO if locks.stand_still else 1.0
+        mass[index] = inertia[index] * ratio
     return mass
 
 
@@ -183,6 +201,18 @@ def add_constraints(
 ) -> dict[str, exudyn.ObjectIndex]:
     """Hold the locked coordinates of the frame's node by constraints; return them by name."""
     ground = mbs.AddNode(NodePointGround())
+
+    def one(index: int, **motion: Any) -> exudyn.ObjectIndex:
+        ends = [
+            mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=number, coordinate=coordinate))
+            for number, coordinate in ((ground, 0), (node, index))
+        ]
+        hidden = VCoordinateConstraint(show=False)
+        item = CoordinateConstraint(markerNumbers=ends, visualization=hidden, **motion)
+        return mbs.AddObject(item)
+
+    if locks.stand_still:
+        return {locks.names[index]: one(index) for index in locks.fixed}
     ends = [mbs.AddMarker(MarkerNodeCoordinates(nodeNumber=number)) for number in (ground, node)]
     rows, rates = locks.rows
     # at velocity level: drift is round-off, and a constant speed needs no function of time
@@ -196,10 +226,7 @@ def add_constraints(
     )
     constraints = {LOCKS: mbs.AddObject(held)}
     for index, motion in locks.varying.items():
-        origin = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
-        moved = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=index))
-        item = CoordinateConstraint(markerNumbers=[origin, moved], **_offset(motion))
-        constraints[locks.names[index]] = mbs.AddObject(item)
+        constraints[locks.names[index]] = one(index, **_offset(motion))
     return constraints
 
 

@@ -86,7 +86,8 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
             rotor, at half the Python calls of a step; see exudyn_rotor.add_rotor
         stiffening: centrifugal stiffening, 'tilt' or 'none' (the paper's equations); 'full' needs
             prestress; 'auto' is 'full' with prestress, else 'tilt'
-        locking: 'auto', 'constraints', or 'mass' for explicit solvers; see exudyn_rotor.add_rotor
+        locking: 'auto', 'constraints', or 'mass' for explicit solvers and a prescribed spin; see
+            exudyn_rotor.add_rotor
         markers: kind of the markers, 'rigid' or 'position'; the latter serves springs and forces
             at a fraction of the cost
         condense_markers: whether mbs.Assemble() moves the script's own markers on many mesh nodes
