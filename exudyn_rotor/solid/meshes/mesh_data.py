@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from exudyn_rotor.callers import user_level
+from exudyn_rotor.calls import user_level
 
 
 @dataclass(eq=False)
