@@ -11,6 +11,7 @@ from tqdm import tqdm
 
 from exudyn_rotor import checks
 from exudyn_rotor.calls import one_thread, user_level
+from exudyn_rotor.linear.equations import PeriodicSystem
 from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
 from exudyn_rotor.linear.solve.motions import Motions, margins_of, motions_of
 from exudyn_rotor.results import Result
@@ -45,15 +46,29 @@ def motions_over(
     progress : bool, optional
         Show a progress bar with the `label`.
     """
-    stack, basis, neutral = model.at_all(speeds), model.moving_basis, model.neutral_motions
+    with tqdm(total=len(speeds), desc=label or None, disable=not progress) as bar:
+        given = {"held": held, "least_stable": least_stable, "told": bar.update}
+        found = motions_in(model, model.at_all(speeds), method, tolerance, **given)
+    _warn_of_lost(found)
+    return found
+
+
+def motions_in(
+    model: LinearModel,
+    stack: PeriodicSystem,
+    method: str,
+    tolerance: float,
+    *,
+    held: bool = False,
+    **given,
+) -> Motions:
+    """Return the motions of a stack of equations of a model, see :func:`motions_over`."""
+    basis, neutral = model.moving_basis, model.neutral_motions
     if held:
         neutral = neutral[:, : neutral.shape[1] - model.free_spins.shape[1]]
     if basis is not None:
         stack = stack.projected(basis)
-    with tqdm(total=len(stack.speed), desc=label or None, disable=not progress) as bar:
-        given = {"least_stable": least_stable, "told": bar.update}
-        found = motions_of(stack, method, tolerance, **given)
-    _warn_of_lost(found)
+    found = motions_of(stack, method, tolerance, **given)
     return found if basis is None else found.in_all(basis, neutral)
 
 

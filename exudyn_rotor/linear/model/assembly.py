@@ -8,7 +8,7 @@ coordinates of the bodies, ``u = U(θ) y``, is all that depends on the axes of t
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -22,6 +22,7 @@ from exudyn_rotor.bearings.controlled_support import (
 )
 from exudyn_rotor.bearings.given import linear_supports
 from exudyn_rotor.bearings.support import NoCoefficientsError, OutsideTableError, Support, acts
+from exudyn_rotor.calls import kept
 from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.linear.equations import (
     PeriodicSystem,
@@ -200,7 +201,7 @@ def support_element(
             ) from None
         return support.matrices(rate * speed)
 
-    speeds = support.table_speeds / rate if rate else np.zeros(0)
+    speeds = support.table_speeds / rate if rate and support.varies else np.zeros(0)
     return Element(
         (end,) if base is None else (end, base),
         matrices,
@@ -400,6 +401,34 @@ class Assembly:
                 add(powers_K[1], K, -1.0)
         return _without_rounding(powers_D), _without_rounding(powers_K)
 
+    @cached_property
+    def _powers(self) -> tuple[dict[int, tuple[list[int], np.ndarray]], ...]:
+        """Coefficients of :attr:`_steady` by multiples of θ: powers (p,) of Ω, and (p, k, k)."""
+        found = []
+        for given in self._steady:
+            orders = {n for terms in given for n in terms}
+            which = {n: [p for p, X in enumerate(given) if n in X and np.any(X[n])] for n in orders}
+            which[0] = which.get(0) or [0]
+            found.append(
+                {n: (p, np.stack([given[i][n] for i in p])) for n, p in which.items() if p}
+            )
+        return tuple(found)
+
+    def projected(self, basis: np.ndarray) -> Assembly:
+        """Return what gives the equations of motions in a real basis (k, r)."""
+
+        def within(terms: Terms) -> dict[int, np.ndarray]:
+            return {n: basis.T @ X @ basis for n, X in terms.items()}
+
+        other = Assembly(self.bodies, self.elements, self.turns)
+        vars(other).update(
+            M=basis.T @ self.M @ basis,
+            motions=[{n: U @ basis for n, U in terms.items()} for terms in self.motions],
+            _steady=tuple([within(terms) for terms in given] for given in self._steady),
+            _H=[(n, basis.T @ X @ basis) for n, X in self._H],
+        )
+        return other
+
     def system(self, speed: float) -> PeriodicSystem:
         """Return the equations at a spin speed [rad/s]."""
         return self._system(float(speed), [one.matrices(speed) for one in self._varying])
@@ -417,8 +446,15 @@ class Assembly:
                 refused[place] = error
         if not found:
             return None, refused
-        stacks = [tuple(map(np.stack, zip(*each, strict=True))) for each in zip(*found)]  # noqa: B905
-        return self._system(np.delete(speeds, list(refused)), stacks), refused
+        return self._system(np.delete(speeds, list(refused)), stacked_coefficients(found)), refused
+
+    def at_points(self, speeds: np.ndarray, coefficients: Sequence) -> PeriodicSystem:
+        """Return the equations at points, stacked, each with coefficients of its elements.
+
+        `coefficients` are stiffness and damping of each element, as stacks over the points.
+        """
+        varying = tuple(replace(element, varies=True) for element in self.elements)
+        return replace(self, elements=varying)._system(speeds, coefficients)
 
     @cached_property
     def _varying(self) -> list[Element]:
@@ -427,10 +463,10 @@ class Assembly:
     def _system(self, speed: float | np.ndarray, coefficients: Sequence) -> PeriodicSystem:
         """Return the equations at a speed, or a stack, by the `coefficients` of what varies."""
         factor = np.asarray(speed)[..., None, None] if np.ndim(speed) else speed
-        D, K = {}, {}
-        for terms, powers in zip((D, K), self._steady, strict=True):
-            for power, given in enumerate(powers):
-                add(terms, given, factor**power)
+        D, K = (
+            {n: np.tensordot(np.power.outer(speed, powers), X, 1) for n, (powers, X) in each}
+            for each in map(dict.items, self._powers)
+        )
         rest = iter(coefficients)
         for element, U in zip(self.elements, self.motions, strict=True):
             if element.varies:
@@ -475,6 +511,7 @@ class Assembly:
             for n, X in body.H
         ]
 
+    @kept
     def seen(self, body: Body, interface: str) -> dict[int, np.ndarray]:
         """Return the motion (6, k) of an interface, seen from outside, for loads and results."""
         return self.wide(body.seen(interface), self.slices[self.bodies.index(body)])
@@ -507,6 +544,11 @@ def _without_rounding(powers: list[dict[int, np.ndarray]]) -> list[dict[int, np.
         for each in powers[1:]
     ]
     return [first, *kept]
+
+
+def stacked_coefficients(found: Sequence[Sequence]) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return stiffness and damping of elements, known at points, as stacks over the points."""
+    return [tuple(map(np.stack, zip(*each, strict=True))) for each in zip(*found, strict=True)]
 
 
 def rotors_of(bodies: Sequence[Body]) -> list[RotorBody]:

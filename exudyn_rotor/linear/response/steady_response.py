@@ -147,7 +147,7 @@ def unbalance_response(
         moving = np.flatnonzero(speeds)  # at rest there is no load
         if not moving.size:
             return {0: np.zeros((len(speeds), model.size), dtype=complex)}
-        stack = model.at_all(speeds[moving])
+        stack = model.at_all(speeds[moving], "held")
         known = moving[stack.known]
         if len(known) < len(moving):
             stack = stack[np.flatnonzero(stack.known)]

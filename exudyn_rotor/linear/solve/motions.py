@@ -24,7 +24,7 @@ from exudyn_rotor.linear.solve.floquet import floquet_motions
 from exudyn_rotor.linear.solve.hill import Exponents, hill_motions
 
 METHODS = ("auto", "hill", "floquet")
-_ROUNDING = 20.0 * EPSILON  # of the size of a state matrix: what a real part may be off by
+_ROUNDING = 100.0 * EPSILON  # of the size of a state matrix: what a real part may be off by
 _REAL = 1e-9  # share of |λ|: a frequency that is rounding
 _AT_ONCE = 2_000_000  # entries of matrices that are solved at once
 

@@ -276,6 +276,8 @@ def _of_axis(
     stiffness, damping = (X[:, _SENSOR] @ np.append(axis, 0.0) for X in matrices)
     rates = frequencies[:, None]
     loads = {n: -(stiffness + 1j * rates * damping) @ U for n, U in motion.items()}
-    found = forced_motions(model.at(speed), loads, frequencies, held=model.held_basis)
+    system, held = model.at(speed), model.held_basis
+    system = system if held is None else system.projected(held)
+    found = forced_motions(system, loads, frequencies, held=held)
     place = sum(found[-n] @ U[_SENSOR].T for n, U in motion.items() if -n in found)
     return 1.0 + place[:, :2] @ axis

@@ -12,7 +12,7 @@ second term is the unevenness that is averaged, so that connectors see the same 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -201,7 +201,9 @@ class SceneModel(LinearModel):
             add(terms, {n: np.pad(Y, (0, self.size - k)) for n, Y in found.items()})
         return replace(system, M=own)
 
-    def _systems(self, speeds: np.ndarray) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
+    def _systems(
+        self, speeds: np.ndarray, within: str = ""
+    ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         found, refused = [], {}
         for place, speed in enumerate(speeds.tolist()):
             try:
@@ -209,6 +211,21 @@ class SceneModel(LinearModel):
             except NO_EQUATIONS as error:
                 refused[place] = error
         return joined(found) if found else None, refused
+
+    @property
+    def pattern(self) -> tuple:
+        """The model: another scene may have any forces."""
+        return (id(self),)
+
+    def coefficients(self, speed: float) -> PeriodicSystem:
+        """Return the equations at a speed [rad/s], which stand for coefficients."""
+        return self.at(speed)
+
+    def at_points(
+        self, speeds: np.ndarray, coefficients: Sequence[PeriodicSystem]
+    ) -> PeriodicSystem:
+        """Return equations at speeds as one stack."""
+        return joined(coefficients)
 
     @property
     def _running_size(self) -> int:
