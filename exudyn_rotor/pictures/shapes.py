@@ -14,8 +14,7 @@ from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, rounded
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_structural_damping
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import motions_over
-from exudyn_rotor.linear.response.harmonic_loads import unbalance_load
-from exudyn_rotor.linear.response.unbalance import Unbalance
+from exudyn_rotor.linear.response.loads import Unbalance, unbalance_load
 from exudyn_rotor.linear.solve.forced import forced_motions
 from exudyn_rotor.pictures.motion_shapes import MotionShapes
 
@@ -148,7 +147,8 @@ def response_shapes(
     load, held = unbalance_load(model, unbalances, own), model.held_basis
     loads = {n: values[:, None] ** 2 * F for n, F in load.items()}
     none = np.zeros(len(values))
-    found = forced_motions(model.at_all(values), loads, none, held=held, tolerance=tolerance)
+    stack = model.at_all(values, "held")
+    found = forced_motions(stack, loads, none, held=held, tolerance=tolerance)
     seen = _of_nodes(model, {n: X.T for n, X in found.items()}, 1.0)
     if any(np.any(np.isnan(x)) for x in seen.values()):
         raise UnconvergedError("response_shapes: there is no steady motion at one of the speeds")

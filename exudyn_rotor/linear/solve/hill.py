@@ -12,8 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from exudyn_rotor.linear.equations import PeriodicSystem
-from exudyn_rotor.linear.solve.state import States
+from exudyn_rotor.linear.equations import PeriodicSystem, States
 
 _SIZES = (2, 3, 4, 6)  # harmonics on either side, in steps of the coefficients
 _LARGEST = 300  # unknowns, beyond which harmonics are not added
