@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 _SEEN = 1e-3  # singular values below this share of the largest tell nothing about loads
 _MOST = 60  # instants at which nodes are looked at
 _SAME = 1e-6  # relative difference of masses and places of one rotor
-_STILL = 1e-6  # of the rotor's size: motion that counts as none
+_STILL = 1e-5  # of the rotor's size: motion that counts as none
 _TOLERANCE = 1e-8  # what iteration may leave of a load
 
 

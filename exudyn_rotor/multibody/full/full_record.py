@@ -1,7 +1,8 @@
 """Displacements of a full body at chosen instants of a run, for its stress and checks of the run.
 
 All displacements at all steps would fill the memory; a sensor keeps those of the instants, their
-rates and accelerations. Exudyn calls it whenever sensors are stored, and at all other times it reads nothing.
+rates and accelerations. Exudyn calls it whenever sensors are stored, and at all other times it
+reads nothing.
 """
 
 from __future__ import annotations
