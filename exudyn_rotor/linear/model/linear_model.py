@@ -41,7 +41,7 @@ from exudyn_rotor.linear.model.body import (
 from exudyn_rotor.linear.model.element import Element, elements_of
 from exudyn_rotor.linear.model.links import Link
 from exudyn_rotor.linear.model.spin import ARM
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.stiffening import LEVELS
 

@@ -27,7 +27,7 @@ from exudyn_rotor.cached import kept
 from exudyn_rotor.linear.equations import without_rounding
 from exudyn_rotor.linear.model.points import interface_motion, rotor_points
 from exudyn_rotor.linear.model.waves import HIGHEST, wave_amplitudes
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.rotating_axes import turning_harmonics
 

@@ -23,7 +23,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.foundations.record import BaseRecord
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.full.ties import container, no_jacobian
-from exudyn_rotor.multibody.rotor.inputs import main_system
+from exudyn_rotor.multibody.rotor.plan import main_system
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation
