@@ -18,7 +18,17 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
+Kind = TypeVar("Kind")
+Shape = tuple[int | None, ...]
+
+LARGEST = 1e150  # squares of numbers stay finite
+MOST = 2**31 - 1  # nodes, modes or points: more than any machine holds
+_SIGNS = {">": operator.gt, "≥": operator.ge, "<": operator.lt, "≤": operator.le}
+_SYMMETRY = 1e-8  # of the largest entry: above the rounding of sums, far below a wrong matrix
 _LONGEST = 80  # characters of a value in a message
+
+
+# ------------------------------------------------------------------ messages
 
 
 def shown(value: object) -> str:
@@ -50,9 +60,7 @@ def of_unit(unit: str) -> str:
     return f" [{unit}]" if unit else ""
 
 
-LARGEST = 1e150  # squares of numbers stay finite
-MOST = 2**31 - 1  # nodes, modes or points: more than any machine holds
-_SIGNS = {">": operator.gt, "≥": operator.ge, "<": operator.lt, "≤": operator.le}
+# ------------------------------------------------------------------ single numbers and flags
 
 
 def number(
@@ -105,6 +113,12 @@ def tolerance(value: float, name: str = "tolerance") -> float:
     return number(value, name, above=0.0, below=1.0)
 
 
+def accuracy(value: float | None) -> None:
+    """Check the largest error by the basis of a reduced rotor, `accuracy`; None for no estimate."""
+    if value is not None:
+        tolerance(value, "accuracy")
+
+
 def count(value: int, name: str, *, least: int = 0, most: int = MOST) -> int:
     """Return a whole number within limits, both included."""
     limits = f" ≥ {least}" + (f" and ≤ {most}" if most < MOST else "")
@@ -135,7 +149,7 @@ def flag(value: bool, name: str) -> bool:
     return bool(value)
 
 
-Kind = TypeVar("Kind")
+# ------------------------------------------------------------------ objects, functions, paths
 
 
 def instance(value: object, name: str, kinds: type[Kind] | tuple[type, ...], how: str = "") -> Kind:
@@ -151,6 +165,8 @@ def instances(
     """Return objects of some kinds, given as one or as a sequence."""
     if isinstance(values, kinds):
         return (values,)
+    if isinstance(values, list | tuple) and all(isinstance(value, kinds) for value in values):
+        return tuple(values)
     needed = f"a {_named(kinds)} or a sequence of them" + (f" ({how})" if how else "")
     return tuple(
         instance(value, f"{name}[{index}]", kinds, how)
@@ -208,7 +224,7 @@ def read_only_mapping(values: Mapping[str, Kind]) -> Mapping[str, Kind]:
 copyreg.pickle(MappingProxyType, lambda view: (read_only_mapping, (dict(view),)))
 
 
-Kind = TypeVar("Kind")
+# ------------------------------------------------------------------ words and names
 
 
 def choice(value: str, name: str, options: Iterable[str]) -> str:
@@ -263,8 +279,7 @@ def mapping(
     return value
 
 
-Shape = tuple[int | None, ...]
-_SYMMETRY = 1e-8  # of the largest entry: above the rounding of sums, far below a wrong matrix
+# ------------------------------------------------------------------ arrays and matrices
 
 
 def array(
@@ -368,6 +383,24 @@ def ascending(
     return result
 
 
+def ascending_from_zero(
+    values: ArrayLike, name: str, otherwise: str = "turn the spin axis round for the other sense"
+) -> np.ndarray:
+    """Return ascending values, none of them negative; `otherwise` says what else to do."""
+    result = ascending(values, name)
+    if result[0] < 0.0:
+        raise ValueError(f"{name}: {result[0]:g} is negative; give values ≥ 0, or {otherwise}")
+    return result
+
+
+def spin_speeds(speeds: ArrayLike, allow_negative: bool) -> np.ndarray:
+    """Return ascending spin speeds, none of them negative unless that is allowed."""
+    if flag(allow_negative, "allow_negative"):
+        return ascending(speeds, "speeds")
+    turn = "pass allow_negative=True if the rotor is meant to spin the other way round"
+    return ascending_from_zero(speeds, "speeds", turn)
+
+
 def read_only(values: ArrayLike, dtype: type = float) -> np.ndarray:
     """Return an array that cannot be written to: as it is if so already, else a copy."""
     shared = type(values) is np.ndarray and values.dtype == dtype
@@ -424,3 +457,24 @@ def _has_shape(found: tuple[int, ...], wanted: Shape) -> bool:
     return len(found) == len(wanted) and all(
         size is None or size == there for there, size in zip(found, wanted, strict=True)
     )
+
+
+def place(value: str | int | Sequence[float], name: str) -> str | int | tuple[float, float, float]:
+    """Return a place of the rotor: an interface's name, a node's number or a position [m].
+
+    Raises
+    ------
+    TypeError, ValueError
+        For anything else.
+    """
+    if isinstance(value, str):
+        return label(value, name)
+    if isinstance(value, int | np.integer):
+        return count(value, name)
+    try:
+        return tuple(vector(value, name, "m").tolist())
+    except (TypeError, ValueError) as error:
+        raise type(error)(
+            f"{name}: needs the name of an interface, a node number or a position of three finite "
+            f"numbers [m], got {shown(value)}"
+        ) from error

@@ -11,6 +11,7 @@ import scipy.sparse as sp
 from exudyn.FEM import FEMinterface
 
 from exudyn_rotor import checks
+from exudyn_rotor.calls import one_thread
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.prestress.estimate import estimated_stiffness
 from exudyn_rotor.prestress.static_solution import relief_rotations
@@ -34,7 +35,6 @@ from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.nodal import rotations, translations
 from exudyn_rotor.theory.stiffening import with_prestress
-from exudyn_rotor.threads import one_thread
 
 _UNRESISTED = (ModeKind.TRANSLATION_1, ModeKind.TRANSLATION_2, ModeKind.AXIAL)
 _NO_TURN = 1e-9  # of the largest: what rounding leaves of the rotation of a translation

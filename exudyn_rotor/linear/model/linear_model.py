@@ -23,10 +23,16 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor import checks
-from exudyn_rotor.callers import user_level
+from exudyn_rotor.calls import user_level
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, spread, turned
-from exudyn_rotor.linear.model.assembly import Assembly, rotors_of
+from exudyn_rotor.linear.model.assembly import (
+    Assembly,
+    Element,
+    elements_of,
+    rotors_of,
+    stacked_coefficients,
+)
 from exudyn_rotor.linear.model.body import (
     EVEN,
     RotorAlone,
@@ -38,8 +44,7 @@ from exudyn_rotor.linear.model.body import (
     rotor_alone,
     rotor_body,
 )
-from exudyn_rotor.linear.model.element import Element, elements_of
-from exudyn_rotor.linear.model.links import Link
+from exudyn_rotor.linear.model.rotor_train import Link
 from exudyn_rotor.linear.model.spin import ARM
 from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -254,10 +259,11 @@ class LinearModel:
         """
         return self.assembly(speed).system(speed)
 
-    def at_all(self, speeds: Sequence[float]) -> PeriodicSystem:
+    def at_all(self, speeds: Sequence[float], within: str = "") -> PeriodicSystem:
         """Return the equations at spin speeds (s,) [rad/s] as one stack.
 
-        NaN at speeds where there are none, of which one warning tells.
+        NaN at speeds where there are none, of which one warning tells. Of motions `within`
+        :attr:`held_basis`, 'held', or :attr:`moving_basis`, 'moving'; of all by default.
 
         Raises
         ------
@@ -268,7 +274,7 @@ class LinearModel:
         parts, refused = [], {}
         for places in (np.flatnonzero(speeds), np.flatnonzero(speeds == 0.0)):
             if places.size:
-                part, errors = self._systems(speeds[places])
+                part, errors = self._systems(speeds[places], within)
                 refused |= {int(places[i]): error for i, error in errors.items()}
                 if part is not None:
                     parts.append((np.delete(places, list(errors)), part))
@@ -277,9 +283,52 @@ class LinearModel:
         _warn_of_refused(speeds, refused)
         return spread(speeds, parts)
 
-    def _systems(self, speeds: np.ndarray) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
+    def _systems(
+        self, speeds: np.ndarray, within: str = ""
+    ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         """Return the stack at speeds (s,), all zero or none, and why there are none at some."""
-        return self.assembly(speeds[0]).systems(speeds)
+        basis = getattr(self, f"{within}_basis") if within else None
+        if basis is None:
+            return self.assembly(speeds[0]).systems(speeds)
+        key = within, bool(speeds[0])
+        if key not in self._projected:
+            self._projected[key] = self.assembly(speeds[0]).projected(basis)
+        return self._projected[key].systems(speeds)
+
+    @cached_property
+    def _projected(self) -> dict[tuple[str, bool], Assembly]:
+        """What gives the equations of motions in a basis, running or at rest, once made."""
+        return {}
+
+    @property
+    def pattern(self) -> tuple:
+        """What models have in common whose equations differ in numbers of their supports alone."""
+        given = [
+            (getattr(one, "pattern", None) or id(one))
+            for each in self.supports.values()
+            for one in each
+        ]
+        parts = (*self.rotors.values(), *self.links, self.foundation)
+        rest = self.ratios.values(), self.driven, (self.stiffening_asked, self.wanted_axes)
+        kind = self.largest_unevenness, self.is_undamped, self.is_richer, self.is_full
+        return *given, *map(id, parts), *map(tuple, rest), kind
+
+    def coefficients(self, speed: float) -> list:
+        """Return what :meth:`at_points` needs of a model and a speed [rad/s].
+
+        Raises
+        ------
+        NoCoefficientsError
+            As :meth:`at`.
+        """
+        return [element.matrices(speed) for element in self._elements[0]]
+
+    def at_points(self, speeds: np.ndarray, coefficients: Sequence) -> PeriodicSystem:
+        """Return the equations of models of one :attr:`pattern` at points, as one stack.
+
+        `speeds` (s,) [rad/s] are all zero or none; `coefficients` are those of each point.
+        """
+        return self.assembly(speeds[0]).at_points(speeds, stacked_coefficients(coefficients))
 
     def matrices(self, speed: float) -> Matrices:
         """Return mass, damping and stiffness at a spin speed [rad/s].
