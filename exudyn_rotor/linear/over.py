@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from tqdm import tqdm
 
 from exudyn_rotor.calls import one_thread, user_level
+from exudyn_rotor.linear.equations import Terms
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.solve.motions import Motions, margins_of, motions_of
+from exudyn_rotor.linear.own_frequency import met, own_motions
+from exudyn_rotor.linear.solve.forced import forced_motions
+from exudyn_rotor.linear.solve.motions import Motions, margins, margins_of, motions_of
 
 
 @one_thread()
@@ -41,6 +45,10 @@ def motions_over(
     stack, basis, neutral = model.at_all(speeds), model.moving_basis, model.neutral_motions
     if held:
         neutral = neutral[:, : neutral.shape[1] - model.free_spins.shape[1]]
+    if model.over_frequency:
+        found = own_motions(model, stack)
+        model.warn_beyond(met(model, found))
+        return found if basis is None else found.in_all(basis, neutral)
     if basis is not None:
         stack = stack.projected(basis)
     with tqdm(total=len(stack.speed), desc=label or None, disable=not progress) as bar:
@@ -63,7 +71,39 @@ def margins_over(
     Free spins are held; neutral motions do not count; NaN where the model has no equations.
     """
     stack, basis = model.at_all(speeds), model.moving_basis
+    if model.over_frequency:
+        found = own_motions(model, stack)
+        return margins(found.values, found.bounds)
     return margins_of(stack if basis is None else stack.projected(basis), method, tolerance)
+
+
+def forced_over(
+    model: LinearModel, speed: float, loads: Terms, frequencies: np.ndarray, **options: Any
+) -> dict[int, np.ndarray]:
+    """Return the harmonics (s, k) of steady motions under loads of frequencies (s,), at one speed.
+
+    Each harmonic has the coefficients of its own frequency.
+
+    Parameters
+    ----------
+    model : LinearModel
+    speed : float
+        Spin speed [rad/s].
+    loads : mapping of int to ndarray, shape (k,)
+        At the frequencies plus multiples of the speed.
+    frequencies : ndarray, shape (s,)
+        [rad/s]
+    **options
+        Of :func:`forced_motions`.
+    """
+    if not model.over_frequency:
+        return forced_motions(model.at(speed), loads, frequencies, **options)
+    found = {}
+    for n, load in loads.items():
+        rates = np.abs(frequencies + n * speed)
+        stack = model.at_all(np.full(len(rates), speed), rates)
+        found |= forced_motions(stack, {n: load}, frequencies, **options)
+    return found
 
 
 def _warn_of_lost(found: Motions) -> None:

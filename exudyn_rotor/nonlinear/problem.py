@@ -310,6 +310,7 @@ def _resting(one: Bearing, speed: float, load: np.ndarray) -> np.ndarray:
 
 def _constant(model: LinearModel, speed: float) -> tuple[LinearModel, LinearModel | None]:
     """Return a model whose equations are constant, and one in axes that stand still."""
+    model.check_without_frequency("a periodic motion")
     constant = model.at(speed).is_constant
     standing = model if constant and not model.turns else None
     turning = model.for_responses

@@ -106,25 +106,36 @@ class Assembly:
                 add(powers_K[1], K, -1.0)
         return _without_rounding(powers_D), _without_rounding(powers_K)
 
-    def system(self, speed: float) -> PeriodicSystem:
-        """Return the equations at a spin speed [rad/s]."""
-        return self._system(float(speed), [one.matrices(speed) for one in self._varying])
+    def system(self, speed: float, frequency: float | None = None) -> PeriodicSystem:
+        """Return the equations at a spin speed, and a frequency of motions [rad/s]."""
+        given = [self._given(one, speed, frequency) for one in self._varying]
+        return self._system(float(speed), given)
 
-    def systems(self, speeds: np.ndarray) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
+    def systems(
+        self, speeds: np.ndarray, frequencies: np.ndarray | None = None
+    ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         """Return the equations at spin speeds (s,), stacked, and why there are none at some.
 
-        Speeds at which there are none are left out of the stack.
+        Speeds at which there are none are left out of the stack. Frequencies of motions (s,) are
+        those of the speeds by default.
         """
         found, refused = [], {}
-        for place, speed in enumerate(speeds.tolist()):
+        rates = [None] * len(speeds) if frequencies is None else frequencies.tolist()
+        for place, pair in enumerate(zip(speeds.tolist(), rates, strict=True)):
             try:
-                found.append([one.matrices(speed) for one in self._varying])
+                found.append([self._given(one, *pair) for one in self._varying])
             except NO_EQUATIONS as error:
                 refused[place] = error
         if not found:
             return None, refused
         stacks = [tuple(map(np.stack, zip(*each, strict=True))) for each in zip(*found)]  # noqa: B905
         return self._system(np.delete(speeds, list(refused)), stacks), refused
+
+    @staticmethod
+    def _given(one: Element, speed: float, frequency: float | None) -> tuple[np.ndarray, ...]:
+        """Return stiffness, damping and, where there is one, the mass of what varies."""
+        found = one.matrices(speed, frequency)
+        return found if one.mass is None else (*found, one.mass(speed, frequency))
 
     @cached_property
     def _varying(self) -> list[Element]:
@@ -137,40 +148,31 @@ class Assembly:
         for terms, powers in zip((D, K), self._steady, strict=True):
             for power, given in enumerate(powers):
                 add(terms, given, factor**power)
-        rest = iter(coefficients)
+        M, rest = self.M, iter(coefficients)
         for element, U in zip(self.elements, self.motions, strict=True):
+            given = next(rest) if element.varies else (None, None)
             if element.varies:
-                damping, stiffness = element.terms(next(rest), factor, U, self.turns)
+                damping, stiffness = element.terms(given[:2], factor, U, self.turns)
                 add(D, damping)
                 add(K, stiffness)
-        M = self.M
-        for (element, _), parts in zip(self._massive, self._inertia, strict=True):
-            m = factor * 0.0 + np.vectorize(element.mass, otypes=[float])(factor)
-            M = M + m * parts[0]
-            add(D, {n: 2.0 * factor * m * X for n, X in parts[1].items()})
-            add(K, {n: factor**2 * m * X for n, X in parts[2].items()})
+            if element.mass is not None:
+                mass = given[2] if element.varies else element.mass(0.0)
+                M = M + self._inertia(mass, U, factor, D, K)
         return PeriodicSystem(speed, M, without_rounding(D), without_rounding(K), self._H)
 
-    @property
-    def _massive(self) -> list[tuple[Element, Terms]]:
-        """Elements with a mass, and their motions."""
-        pairs = zip(self.elements, self.motions, strict=True)
-        return [(element, U) for element, U in pairs if element.mass is not None]
+    @staticmethod
+    def _inertia(
+        mass: np.ndarray, U: Terms, factor: float | np.ndarray, D: dict, K: dict
+    ) -> np.ndarray:
+        """Return the mass matrix of a mass; add what follows as axes turn: ü = d²(U y)/dt².
 
-    @cached_property
-    def _inertia(self) -> list[tuple[np.ndarray, Terms, Terms]]:
-        """M, D over 2 Ω and K over Ω² of a kilogram of each, as the axes turn: ü = d²(U y)/dt².
-
-        Of M the mean: a mass is alike in all directions.
+        Of the mass matrix the mean: in axes that turn, a mass is alike in all directions.
         """
-        found = []
-        for _, U in self._massive:
-            size = len(next(iter(U.values())))
-            across = np.diag((np.arange(size) < 2).astype(float))
-            first = rate_of(U)
-            parts = [congruent(U, across, each) for each in (U, first, rate_of(first))]
-            found.append((parts[0][0].real, parts[1], parts[2]))
-        return found
+        first = rate_of(U)
+        if first:
+            add(D, congruent(U, mass, first), 2.0 * factor)
+            add(K, congruent(U, mass, rate_of(first)), factor**2)
+        return congruent(U, mass)[0].real
 
     @cached_property
     def _H(self) -> list[tuple[float, np.ndarray]]:

@@ -50,7 +50,8 @@ class Element:
     ends : tuple of (str, str)
         Bodies and their interfaces.
     matrices : callable
-        Takes the speed Ω [rad/s], gives stiffness and damping, each (p, p), p a multiple of 3.
+        Takes the speed Ω, and the frequency of the motion, that of Ω without it [rad/s]; gives
+        stiffness and damping, each (p, p), p a multiple of 3.
     motion : callable
         Takes a function that gives the motion (6, k) of an end, gives u as Fourier terms (p, k).
     turns : float
@@ -64,11 +65,15 @@ class Element:
     law : ControlledSupport or another with coordinates of its own, optional
         What it was made from.
     mass : callable, optional
-        Takes the speed, gives a mass [kg] that goes with u across the axis, in axes that stand.
+        As `matrices`, gives a mass (p, p) [kg] that goes with u, in axes that stand.
+    table_frequencies : ndarray
+        Frequencies of its tables [rad/s]; none where it does not depend on the frequency.
+    held_beyond : bool
+        Whether it may keep the ends of its tables beyond them.
     """
 
     ends: tuple[End, ...]
-    matrices: Callable[[float], tuple[np.ndarray, np.ndarray]]
+    matrices: Callable[..., tuple[np.ndarray, np.ndarray]]
     motion: Callable[[Seen], Terms]
     turns: float = 0.0
     varies: bool = False
@@ -76,7 +81,9 @@ class Element:
     table_speeds: np.ndarray = field(default_factory=lambda: np.zeros(0))
     holding: Callable[[], np.ndarray] | None = None
     law: Controlled | None = None
-    mass: Callable[[float], float] | None = None
+    mass: Callable[..., np.ndarray] | None = None
+    table_frequencies: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    held_beyond: bool = False
 
     @property
     def what(self) -> str:
@@ -118,7 +125,18 @@ class Element:
         return damping, stiffness
 
     def check_axes(self, turns: int) -> None:
-        """Refuse an anisotropic element that turns otherwise than the axes do."""
+        """Refuse an anisotropic element that turns otherwise than the axes do, and such a mass."""
+        if turns and self.table_frequencies.size:
+            raise ValueError(
+                f"supports: {self.what} has coefficients over the frequency, which need a rotor "
+                "that is round, and axes that stand still; give support.at_frequency(…), or leave "
+                "axes='rotor' out"
+            )
+        if turns and self.mass is not None and not is_isotropic_matrix(self.mass(0.0)):
+            raise ValueError(
+                f"supports: {self.what} has a mass that is not the same in all directions, which "
+                "needs a rotor that is round, and axes that stand still"
+            )
         if self.turns and self.turns != turns and not self.is_isotropic(0.0):
             raise ValueError(
                 f"supports: {self.what} is not the same in all directions and turns with "
@@ -182,7 +200,10 @@ def support_element(
     Its tables are over `rate` times Ω; one in the rotor's frame turns with `ratio` times Ω.
     """
 
-    def matrices(speed: float) -> tuple[np.ndarray, np.ndarray]:
+    def pair(speed: float, frequency: float | None) -> tuple[float, float]:
+        return rate * speed, abs(speed) if frequency is None else frequency
+
+    def matrices(speed: float, frequency: float | None = None) -> tuple[np.ndarray, np.ndarray]:
         try:
             support.check_range(rate * speed)
         except OutsideTableError as error:
@@ -191,7 +212,10 @@ def support_element(
             raise OutsideTableError(
                 f"{error}; it turns with {rate:g} times the speed of the analysis, {speed:g} rad/s"
             ) from None
-        return support.matrices(rate * speed)
+        return support.matrices(*pair(speed, frequency))
+
+    def mass(speed: float, frequency: float | None = None) -> np.ndarray:
+        return support.mass_matrix(*pair(speed, frequency))
 
     speeds = support.table_speeds / rate if rate else np.zeros(0)
     return Element(
@@ -203,12 +227,14 @@ def support_element(
         support.stiffness_varies,
         speeds,
         lambda: support.matrices(0.0)[0],
-        mass=(lambda speed: support.mass_at(rate * speed)) if acts(support.mass) else None,
+        mass=mass if acts(support.mass) else None,
+        table_frequencies=support.table_frequencies,
+        held_beyond=support.extrapolate,
     )
 
 
 def _gear_element(gears: GearMesh, ends: tuple[End, End]) -> Element:
-    return Element(ends, lambda _: gears.matrices(), lambda seen: stacked([*map(seen, ends)]))
+    return Element(ends, lambda *_: gears.matrices(), lambda seen: stacked([*map(seen, ends)]))
 
 
 def with_own(
@@ -224,11 +250,11 @@ def with_own(
         ports.append(_part(sensed, slice(0, 3)))
     lifted = np.kron(np.eye(len(ports) + own.size // 2), ACROSS)
 
-    def matrices(speed: float) -> tuple[np.ndarray, np.ndarray]:
+    def matrices(*_: float) -> tuple[np.ndarray, np.ndarray]:
         K, D = one.stiffness, one.damping
         return lifted @ K @ lifted.T, lifted @ D @ lifted.T
 
-    def of_film(speed: float) -> tuple[np.ndarray, np.ndarray]:
+    def of_film(speed: float, *_: float) -> tuple[np.ndarray, np.ndarray]:
         D, K = one.matrices(rate * speed)
         return lifted @ K @ lifted.T, lifted @ D @ lifted.T
 
@@ -247,7 +273,7 @@ def _pad_element(
     """Return the film of a pad, which acts on ``x − s t``."""
     film, tangent = one.films[place], np.append(one.tangents[place], 0.0)
 
-    def matrices(speed: float) -> tuple[np.ndarray, np.ndarray]:
+    def matrices(speed: float, *_: float) -> tuple[np.ndarray, np.ndarray]:
         film.check_range(rate * speed)
         return tuple(X[:3, :3] for X in film.matrices(rate * speed))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import reduce
 from operator import itemgetter
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -28,6 +29,7 @@ from exudyn_rotor.linear.modal.whirl import (
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_structural_damping
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import warn_of_refused
+from exudyn_rotor.linear.own_frequency import after, own_motions
 from exudyn_rotor.linear.solve.motions import Motions, motions_of
 from exudyn_rotor.linear.stability.stability import (
     WHAT,
@@ -372,6 +374,7 @@ class _Point(NamedTuple):
         else:
             system = system.projected(basis)
         same = *map(id, model.rotors.values()), *model.ratios.values(), id(model.foundation)
+        same = *same, model.over_frequency
         kind = *same, model.axes, model.coordinates, basis.shape, neutral.shape[1], system.step
         return cls(at, shown, model, system, basis, neutral, kind)
 
@@ -379,7 +382,11 @@ class _Point(NamedTuple):
 def _motions(points: Sequence[_Point], method: str, tolerance: float) -> Motions:
     """Return the motions at points of one kind."""
     stack = joined([one.system for one in points])
-    found = motions_of(stack, method, tolerance, least_stable=True)
+    if points[0].model is not None and points[0].model.over_frequency:
+        parts = (own_motions(one.model, stack[[i]]) for i, one in enumerate(points))
+        found = reduce(after, parts)
+    else:
+        found = motions_of(stack, method, tolerance, least_stable=True)
     bases, neutral = (np.array([each[i] for each in points]) for i in (4, 5))
     return found.in_all(bases, neutral)
 
