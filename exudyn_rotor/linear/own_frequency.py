@@ -101,7 +101,7 @@ def _at_speed(model: LinearModel, speed: float, basis: np.ndarray | None) -> Mot
     first = np.where(open_, np.argmin(np.abs(gap), axis=0), np.argmax(done, axis=0))
     columns = np.arange(len(first))
     lost = np.abs(gap[first, columns]) > _ENOUGH * samples[first]
-    values = np.where(lost, np.nan, solved.values[first, columns])
+    values = np.where(lost, complex(np.nan, np.nan), solved.values[first, columns])
     vectors = solved.vectors[first, :, :, columns]  # (k, h, c)
     vectors = np.moveaxis(vectors, 0, -1)[None]
     bound = solved.bounds.max(keepdims=True)
