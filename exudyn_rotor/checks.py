@@ -165,6 +165,8 @@ def instances(
     """Return objects of some kinds, given as one or as a sequence."""
     if isinstance(values, kinds):
         return (values,)
+    if isinstance(values, list | tuple) and all(isinstance(value, kinds) for value in values):
+        return tuple(values)
     needed = f"a {_named(kinds)} or a sequence of them" + (f" ({how})" if how else "")
     return tuple(
         instance(value, f"{name}[{index}]", kinds, how)

@@ -1,4 +1,4 @@
-"""List the scripts of this folder, or run one: ``python -m validation NAME …``."""
+"""Run a script of this folder, a folder of them, or list all: ``python -m validation NAME …``."""
 
 from __future__ import annotations
 
@@ -59,10 +59,15 @@ def main() -> object:
     if name in ("-h", "--help"):
         print(listing())
         return 0
-    if name not in SCRIPTS:
+    chosen = [one for one in SCRIPTS if SCRIPTS[one].module.startswith(f"{name}.")]
+    chosen = [name] if name in SCRIPTS else chosen
+    if not chosen:
         return f"{name!r} is unknown; there are: {', '.join(SCRIPTS)}"
-    sys.argv[:] = [f"python -m validation {name}", *options]
-    return importlib.import_module(f"validation.{SCRIPTS[name].module}").main()
+    ends = []
+    for one in chosen:
+        sys.argv[:] = [f"python -m validation {one}", *options]
+        ends.append(importlib.import_module(f"validation.{SCRIPTS[one].module}").main())
+    return next((end for end in ends if end), 0)
 
 
 if __name__ == "__main__":

@@ -298,6 +298,22 @@ class Support:
         given = (getattr(self, name) for name in _GIVEN)
         return [each for each in given if isinstance(each, CoefficientTable)]
 
+    def pattern(self) -> tuple | None:
+        """What supports have in common that differ in their numbers alone; None of others.
+
+        Interface, frame, and which of their constant coefficients are zero, or the same in all
+        directions.
+        """
+        if self.varies or acts(self.mass):
+            return None
+        told = [self.interface, self.frame]
+        for X in self.matrices(0.0):
+            told.append((X != 0.0).tobytes())
+            for i in (0, 3):
+                alike = X[i, i] == X[i + 1, i + 1] and X[i, i + 1] == -X[i + 1, i]
+                told.append(bool(alike))
+        return tuple(told)
+
     @property
     def table_speeds(self) -> np.ndarray:
         """Spin speeds of its tables [rad/s], at which the curvature of coefficients jumps."""
@@ -403,6 +419,8 @@ def _coefficient(
     value: ArrayLike, name: str, other: str = "", shapes: tuple = (*_SHAPES, _WHOLE)
 ) -> float | np.ndarray:
     """Return a number, or a matrix as a read-only array; refusals name what `other` there is."""
+    if type(value) is float:
+        return checks.number(value, name)
     try:
         array = checks.array(value, name)
     except TypeError as error:  # of lists that are no array, the speeds and values of a table
@@ -432,6 +450,8 @@ def _size(value: Coefficient) -> int:
 
 def acts(value: Coefficient) -> bool:
     """Return whether a coefficient is not zero; a function is taken for one that is not."""
+    if isinstance(value, float):
+        return value != 0.0
     given = value.values if isinstance(value, CoefficientTable) else value
     return callable(value) or bool(np.any(given))
 

@@ -14,8 +14,7 @@ from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, rounded
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_structural_damping
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import motions_over
-from exudyn_rotor.linear.response.harmonic_loads import unbalance_load
-from exudyn_rotor.linear.response.unbalance import Unbalance
+from exudyn_rotor.linear.response.loads import Unbalance, unbalance_load
 from exudyn_rotor.linear.solve.forced import forced_motions
 from exudyn_rotor.pictures.motion_shapes import MotionShapes
 

@@ -312,7 +312,7 @@ PLACES = {
         small_rotor_in_millimetres, UserWarning, "few rotors are that heavy; lengths in mm"),
     "solid/ngsolve_model.py:_prepare_mesh": (
         curved_elements, UserWarning, "are replaced by mid nodes"),
-    "linear/response/refinement.py:warn_of_coarse_peaks": (
+    "linear/response/response.py:warn_of_coarse_peaks": (
         peak_between_few_speeds, UserWarning, "too far apart to give its size and width"),
     "nonlinear/periodic_response.py:warn_of": (
         unstable_motion_on_rolling_bearings, UserWarning, "values .* the motion is unstable"),

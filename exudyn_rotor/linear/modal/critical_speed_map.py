@@ -16,19 +16,18 @@ from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear.modal.basis_error import in_table, is_known, points
+from exudyn_rotor.linear.modal.basis_error import is_known, points
 from exudyn_rotor.linear.modal.critical_speeds import (
     CriticalSpeeds,
     checked,
     collected,
     warn_of_critical,
 )
-from exudyn_rotor.linear.modal.model_result import ModelResult
 from exudyn_rotor.linear.modal.resonance import NO_EQUATIONS, Search, Stiffness
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, Content
 from exudyn_rotor.linear.model.build import linear_model, warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
-from exudyn_rotor.linear.over import warn_of_refused
+from exudyn_rotor.linear.over import ModelResult, in_table, warn_of_refused
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import numbers, storable
 from exudyn_rotor.solid_rotor import SolidRotor
@@ -149,11 +148,11 @@ class CriticalSpeedMap(ModelResult):
             Shaded; see :meth:`Campbell.plot`.
         """
         from exudyn_rotor import plotting
-        from exudyn_rotor.linear.modal import excitation
+        from exudyn_rotor.linear.modal import campbell_diagram as diagram
 
         shown = Units.of(units)
-        limits = excitation.checked_range(operating_range)
-        shares = excitation.checked_margins(margins, limits is not None)
+        limits = diagram.checked_range(operating_range)
+        shares = diagram.checked_margins(margins, limits is not None)
         ax = plotting.axes_or_new(ax)
         styles = {FORWARD: (plotting.COLORS[0], "o"), BACKWARD: (plotting.COLORS[1], "v")}
         for code in np.unique(self.whirl_codes[self.whirl_codes >= 0]):
@@ -173,7 +172,7 @@ class CriticalSpeedMap(ModelResult):
             room = (ends[1] / ends[0]) ** 0.05
             ax.set_xlim(ends[0] / room, ends[1] * room)
         if limits is not None:
-            excitation.shade_range(ax, limits, shares, shown, across=True)
+            diagram.shade_range(ax, limits, shares, shown, across=True)
         ax.set_xlabel("support stiffness [N/m]")
         ax.set_ylabel(f"undamped critical speed of order {self.order:g} [{shown.speed}]")
         ax.grid(alpha=0.3, which="both")

@@ -12,8 +12,6 @@ from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.calls import one_thread
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.modal import basis_error
-from exudyn_rotor.linear.modal.basis_error import in_table
-from exudyn_rotor.linear.modal.model_result import ModelResult
 from exudyn_rotor.linear.modal.resonance import (
     NO_EQUATIONS,
     Resonance,
@@ -24,6 +22,7 @@ from exudyn_rotor.linear.modal.resonance import (
 from exudyn_rotor.linear.modal.whirl import WHIRLS, Content
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.over import ModelResult, in_table
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.results import numbers, storable, words
 from exudyn_rotor.units import Units

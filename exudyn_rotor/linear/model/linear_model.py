@@ -26,7 +26,13 @@ from exudyn_rotor import checks
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, spread, turned
-from exudyn_rotor.linear.model.assembly import Assembly, rotors_of
+from exudyn_rotor.linear.model.assembly import (
+    Assembly,
+    Element,
+    elements_of,
+    rotors_of,
+    stacked_coefficients,
+)
 from exudyn_rotor.linear.model.body import (
     EVEN,
     RotorAlone,
@@ -38,8 +44,7 @@ from exudyn_rotor.linear.model.body import (
     rotor_alone,
     rotor_body,
 )
-from exudyn_rotor.linear.model.element import Element, elements_of
-from exudyn_rotor.linear.model.links import Link
+from exudyn_rotor.linear.model.rotor_train import Link
 from exudyn_rotor.linear.model.spin import ARM
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -288,6 +293,36 @@ class LinearModel:
     ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         """Return the stack at speeds (s,), all zero or none, and why there are none at some."""
         return self.assembly(speeds[0]).systems(speeds, frequencies)
+
+    @property
+    def pattern(self) -> tuple:
+        """What models have in common whose equations differ in numbers of their supports alone."""
+        given = [
+            (getattr(one, "pattern", None) or id(one))
+            for each in self.supports.values()
+            for one in each
+        ]
+        parts = (*self.rotors.values(), *self.links, self.foundation)
+        rest = self.ratios.values(), self.driven, (self.stiffening_asked, self.wanted_axes)
+        kind = self.largest_unevenness, self.is_undamped, self.is_richer, self.is_full
+        return *given, *map(id, parts), *map(tuple, rest), kind
+
+    def coefficients(self, speed: float) -> list:
+        """Return what :meth:`at_points` needs of a model and a speed [rad/s].
+
+        Raises
+        ------
+        NoCoefficientsError
+            As :meth:`at`.
+        """
+        return [element.coefficients(speed) for element in self._elements[0]]
+
+    def at_points(self, speeds: np.ndarray, coefficients: Sequence) -> PeriodicSystem:
+        """Return the equations of models of one :attr:`pattern` at points, as one stack.
+
+        `speeds` (s,) [rad/s] are all zero or none; `coefficients` are those of each point.
+        """
+        return self.assembly(speeds[0]).at_points(speeds, stacked_coefficients(coefficients))
 
     def matrices(self, speed: float, frequency: float | None = None) -> Matrices:
         """Return mass, damping and stiffness at a spin speed [rad/s].

@@ -18,7 +18,7 @@ from exudyn_rotor.linear.model.build import (
     warn_of_left_out_stiffening,
     warn_of_structural_damping,
 )
-from exudyn_rotor.linear.response.places import At, checked_places, places
+from exudyn_rotor.linear.response.loads import At, checked_places, places
 from exudyn_rotor.linear.response.response import DIRECTIONS
 from exudyn_rotor.linear.response.shaken_rotor import ShakenRotor
 from exudyn_rotor.results import Result, numbers, storable, words

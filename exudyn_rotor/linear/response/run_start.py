@@ -19,7 +19,7 @@ from exudyn_rotor.bearings.film.void_states import COUNT
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
-from exudyn_rotor.linear.model.element import WORDS
+from exudyn_rotor.linear.model.assembly import WORDS
 from exudyn_rotor.linear.model.linear_model import ON_FOUNDATION, LinearModel
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates

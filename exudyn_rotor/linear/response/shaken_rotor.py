@@ -23,10 +23,9 @@ import scipy.linalg
 
 from exudyn_rotor.calls import one_thread
 from exudyn_rotor.foundations.record import BaseRecord
-from exudyn_rotor.linear.equations import Terms, UnconvergedError, at_angle
+from exudyn_rotor.linear.equations import Terms, UnconvergedError, at_angle, states_of
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.response.places import Place
-from exudyn_rotor.linear.solve.state import states_of
+from exudyn_rotor.linear.response.loads import Place
 from exudyn_rotor.theory.rotating_axes import axes_of
 
 _PER_TURN, _IN_ALL = 24, 200  # least numbers of steps in a revolution and in a record

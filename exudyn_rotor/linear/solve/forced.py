@@ -16,8 +16,7 @@ from itertools import product
 
 import numpy as np
 
-from exudyn_rotor.linear.equations import PeriodicSystem
-from exudyn_rotor.linear.solve.state import others
+from exudyn_rotor.linear.equations import PeriodicSystem, others
 
 Harmonics = Mapping[int, np.ndarray]
 _STILL = 1e-12  # share of ω and Ω: a frequency that is zero but for rounding

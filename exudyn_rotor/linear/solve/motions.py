@@ -12,13 +12,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_rotor.linear.equations import PeriodicSystem
+from exudyn_rotor.linear.equations import (
+    EPSILON,
+    PeriodicSystem,
+    States,
+    free_directions,
+    others,
+    states_of,
+)
 from exudyn_rotor.linear.solve.floquet import floquet_motions
 from exudyn_rotor.linear.solve.hill import Exponents, hill_motions
-from exudyn_rotor.linear.solve.state import EPSILON, States, free_directions, others, states_of
 
 METHODS = ("auto", "hill", "floquet")
-_ROUNDING = 20.0 * EPSILON  # of the size of a state matrix: what a real part may be off by
+_ROUNDING = 100.0 * EPSILON  # of the size of a state matrix: what a real part may be off by
 _REAL = 1e-9  # share of |λ|: a frequency that is rounding
 _AT_ONCE = 2_000_000  # entries of matrices that are solved at once
 

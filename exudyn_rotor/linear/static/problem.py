@@ -19,12 +19,12 @@ from exudyn_rotor.bearings.given import Given, check_interfaces
 from exudyn_rotor.bearings.resting import Nonlinear
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.equations import Terms, turned
+from exudyn_rotor.linear.model.assembly import Element
 from exudyn_rotor.linear.model.body import RotorBody, rigid_columns_of
 from exudyn_rotor.linear.model.build import linear_model
-from exudyn_rotor.linear.model.element import Element
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
-from exudyn_rotor.linear.response.places import At, place, places
+from exudyn_rotor.linear.response.loads import At, place, places
 from exudyn_rotor.linear.static.equilibrium import Journal, equilibrium
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_skew

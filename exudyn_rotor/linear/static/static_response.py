@@ -10,12 +10,11 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
-from exudyn_rotor.linear.modal.basis_error import is_known, warn
+from exudyn_rotor.linear.modal.basis_error import is_known, motion_error, warn
 from exudyn_rotor.linear.model.build import warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
-from exudyn_rotor.linear.response.basis_check import motion_error
-from exudyn_rotor.linear.response.places import At, checked_places
+from exudyn_rotor.linear.response.loads import At, checked_places
 from exudyn_rotor.linear.static.problem import Problem, with_supports
 from exudyn_rotor.linear.static.static_result import StaticResponse
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor

@@ -21,8 +21,14 @@ from exudyn_rotor.bearings.film.void_states import COUNT
 from exudyn_rotor.bearings.journal_bearing import LITTLE, JournalBearing
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.equations import UnconvergedError
-from exudyn_rotor.linear.model.assembly import Assembly
-from exudyn_rotor.linear.model.element import Element, OwnBody, own_body, support_element, with_own
+from exudyn_rotor.linear.model.assembly import (
+    Assembly,
+    Element,
+    OwnBody,
+    own_body,
+    support_element,
+    with_own,
+)
 from exudyn_rotor.linear.model.scene.linear_scene import Journal, LinearScene
 
 _STEPS = 3  # of Newton's method: ε², ε⁴, ε⁸

@@ -13,7 +13,7 @@ import numpy as np
 
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
-from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.linear.equations import EPSILON, UnconvergedError
 from exudyn_rotor.linear.model.scene.attached import Attached, AttachedBearing, attached_to
 from exudyn_rotor.linear.model.scene.differences import (
     CURVATURE,
@@ -22,7 +22,6 @@ from exudyn_rotor.linear.model.scene.differences import (
     slopes,
 )
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
-from exudyn_rotor.linear.solve.state import EPSILON
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
 from exudyn_rotor.multibody.rotor.equations import without_forces
 from exudyn_rotor.multibody.supports.support_connector import SupportConnector

@@ -12,7 +12,7 @@ second term is the unevenness that is averaged, so that connectors see the same 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -21,15 +21,14 @@ import scipy.linalg as la
 
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, add, joined, turned
-from exudyn_rotor.linear.model.assembly import NO_EQUATIONS, Assembly
+from exudyn_rotor.linear.model.assembly import NO_EQUATIONS, Assembly, is_isotropic_matrix
 from exudyn_rotor.linear.model.body import RotorAlone, RotorBody, StandingBody, rotor_body
-from exudyn_rotor.linear.model.element import is_isotropic_matrix
 from exudyn_rotor.linear.model.linear_model import LinearModel, beside
-from exudyn_rotor.linear.model.points import interface_motion
 from exudyn_rotor.linear.model.scene.films import film_bodies, film_elements
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.linear.model.scene.probe import Rest
 from exudyn_rotor.linear.model.scene.sampled_terms import terms_of
+from exudyn_rotor.linear.model.turning import interface_motion
 from exudyn_rotor.theory.rotating_axes import axial_skew
 
 _HELD = 1e-8  # share of a motion of the rotor that is none of the scene
@@ -214,6 +213,21 @@ class SceneModel(LinearModel):
             except NO_EQUATIONS as error:
                 refused[place] = error
         return joined(found) if found else None, refused
+
+    @property
+    def pattern(self) -> tuple:
+        """The model: another scene may have any forces."""
+        return (id(self),)
+
+    def coefficients(self, speed: float) -> PeriodicSystem:
+        """Return the equations at a speed [rad/s], which stand for coefficients."""
+        return self.at(speed)
+
+    def at_points(
+        self, speeds: np.ndarray, coefficients: Sequence[PeriodicSystem]
+    ) -> PeriodicSystem:
+        """Return equations at speeds as one stack."""
+        return joined(coefficients)
 
     @property
     def _running_size(self) -> int:

@@ -1,21 +1,252 @@
-"""Loads of forced responses, as harmonics of the speed."""
+"""Loads on rotors and where they act: places, unbalances, harmonic forces, ground that shakes.
+
+Balance quality grades are those of ISO 21940-11:2016, "Mechanical vibration — Rotor balancing —
+Part 11: Procedures and tolerances for rotors with rigid behaviour", Sect. 5 and 6: grade
+G = e_per Ω in mm/s, with the permissible residual specific unbalance e_per and the highest service
+speed Ω.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.linear.equations import Terms, turned
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.response.places import At, Place, place
-from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.rotating_axes import FRAMES, turning_harmonics
 
+At = str | int | Sequence[float]
 _BALANCED = 1e-13  # rounding leaves this much of the unbalance of a perfectly balanced mesh
+
+# ------------------------------------------------------------------ places
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """A point of a model.
+
+    Attributes
+    ----------
+    label : str
+        Name of the interface, or 'node 12'.
+    seen : mapping of int to ndarray, shape (6, k)
+        Fourier terms of displacement and rotation along (n1, n2, e) per coordinate, in axes that
+        stand still.
+    is_node : bool
+        True for a mesh node, which has no rotation: those rows are zero.
+    ratio : float
+        Speed of the body over the speed of the analysis; 0 of a foundation.
+    """
+
+    label: str
+    seen: Terms
+    is_node: bool
+    ratio: float = 1.0
+
+    def motion(self, coordinates: Mapping[int, np.ndarray], frame: str) -> dict[int, np.ndarray]:
+        """Return the harmonics (…, 6) of the motion, given the harmonics (…, k) of coordinates.
+
+        In axes that stand still, or in axes that turn with the speed of the analysis.
+        """
+        seen = self.seen if frame == "inertial" else turned(self.seen, -1)
+        motion: dict[int, np.ndarray] = {}
+        for m, U in seen.items():
+            for n, x in coordinates.items():
+                motion[m + n] = motion.get(m + n, 0.0) + x @ U.T
+        return motion
+
+
+def place(model: LinearModel, at: At, speed: float = 1.0) -> Place:
+    """Find an interface by its name, a mesh node by its number or by a position [m].
+
+    The motion is seen at a speed [rad/s]: at rest, or at any other.
+
+    Raises
+    ------
+    ValueError
+        If there is no such interface or node, or the rotor was stored without mode shapes.
+    """
+    if isinstance(at, str):
+        known = model.interfaces
+        if at not in known:
+            raise ValueError(
+                f"at: {at!r}: no such interface; the rotor has: {', '.join(known) or 'none'}"
+            )
+        body, _ = model.owner(at)
+        return Place(at, model.seen(at, speed), False, getattr(body, "ratio", 0.0))
+    [first, *others] = model.rotors.values()
+    if others:
+        raise ValueError(f"at: {at!r}: of several rotors, name an interface")
+    if first.shapes is None:
+        raise ValueError(
+            f"at: {at!r}: mesh nodes need a rotor with mode shapes; reduce with "
+            "keep_shapes=True, or name an interface"
+        )
+    number = _node_number(at, first.shapes.nodes)
+    return Place(f"node {number}", model.seen_at_node(number, speed), is_node=True)
+
+
+def checked_places(at: Sequence[At] | At | None) -> tuple[At, ...] | None:
+    """Return places as a tuple; None for all interfaces.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If one is neither a name, nor a number, nor a position.
+    """
+    if at is None:
+        return None
+    if isinstance(at, str | int | np.integer):
+        at = (at,)
+    listed = checks.items(at, "at", "places of the rotor in a sequence")
+    return tuple(checks.place(one, f"at[{index}]") for index, one in enumerate(listed))
+
+
+def places(model: LinearModel, at: Sequence[At] | None, speed: float = 1.0) -> list[Place]:
+    """Return the places asked for; by default all interfaces."""
+    observed = [place(model, one, speed) for one in (model.interfaces if at is None else at)]
+    if not observed:
+        raise ValueError("at: the rotor has no interfaces; name mesh nodes or positions to look at")
+    labels = [one.label for one in observed]
+    if len(set(labels)) < len(labels):
+        raise ValueError(f"at: a place is named twice: {', '.join(labels)}")
+    return observed
+
+
+def _node_number(at: int | Sequence[float], nodes: np.ndarray) -> int:
+    """Return a node's number; the nearest one to a position."""
+    if isinstance(at, int):
+        if at >= len(nodes):
+            raise ValueError(f"at: {at}: no such node; the mesh has nodes 0 to {len(nodes) - 1}")
+        return at
+    return int(np.argmin(np.linalg.norm(nodes - np.asarray(at), axis=1)))
+
+
+# ------------------------------------------------------------------ unbalances
+
+
+def permissible_unbalance(grade: float, mass: float, speed: float) -> float:
+    """Return the permissible residual unbalance of a rotor, ``U = G m / Ω`` [kg m].
+
+    Parameters
+    ----------
+    grade : float
+        Balance quality grade G [mm/s]: 2.5 for G 2.5.
+    mass : float
+        Mass of the rotor [kg].
+    speed : float
+        Highest service speed [rad/s].
+
+    Raises
+    ------
+    TypeError, ValueError
+        If one of them is not a positive number.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import permissible_unbalance
+    >>> permissible_unbalance(2.5, mass=40.0, speed=500.0)
+    0.0002
+    """
+    grade = checks.number(grade, "grade", "mm/s", above=0.0)
+    mass = checks.number(mass, "mass", "kg", above=0.0)
+    speed = checks.number(speed, "speed", "rad/s", above=0.0)
+    return 1e-3 * grade * mass / speed
+
+
+@dataclass(frozen=True)
+class Unbalance:
+    """A small excess mass at a radius: a load ``Ω² U`` that stands still in the rotor frame.
+
+    Parameters
+    ----------
+    at : str, int, or sequence of three floats
+        Interface, mesh node, or the node nearest to a position in mesh coordinates [m]. Where on
+        the radius the mass sits is in the amount already: the load acts on the mean motion of the
+        interface.
+    amount : float
+        Mass times eccentricity U [kg m], positive.
+    angle : float, optional
+        Direction in the rotor frame, from n1 to n2 of :attr:`SpinAxis.plane` [rad].
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the place is of another kind, the amount not positive, or a number not finite.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import Unbalance
+    >>> Unbalance.from_grade("disc", 2.5, mass=40.0, speed=500.0, share=0.5)
+    Unbalance(at='disc', amount=0.0001, angle=0.0)
+    """
+
+    at: str | int | Sequence[float]
+    amount: float
+    angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "at", checks.place(self.at, "at"))
+        where = f"unbalance at {self.at!r}"
+        amount = checks.number(self.amount, f"{where}: amount", "kg m")
+        if amount <= 0.0:
+            raise ValueError(
+                f"{where}: amount needs a positive number [kg m], got {self.amount!r}; turn it by "
+                "its angle, leave it out if there is none"
+            )
+        object.__setattr__(self, "amount", amount)
+        angle = checks.number(self.angle, f"{where}: angle", "rad")
+        object.__setattr__(self, "angle", angle)
+
+    @classmethod
+    def from_grade(
+        cls,
+        at: str | int | Sequence[float],
+        grade: float,
+        mass: float,
+        speed: float,
+        *,
+        angle: float = 0.0,
+        share: float = 1.0,
+    ) -> Unbalance:
+        """Return the largest unbalance that a balance quality grade permits.
+
+        Parameters
+        ----------
+        at : str, int, or sequence of three floats
+        grade, mass, speed : float
+            See :func:`permissible_unbalance`.
+        angle : float, optional
+            In the rotor frame [rad].
+        share : float, optional
+            Part of the whole in this plane: 0.5 where two tolerance planes lie at equal distances
+            from the centre of mass (ISO 21940-11:2016, Sect. 7).
+
+        Raises
+        ------
+        TypeError, ValueError
+            If `share` is not between 0 and 1, or another argument is refused.
+        """
+        share = checks.number(share, "share", above=0.0, most=1.0)
+        return cls(at, share * permissible_unbalance(grade, mass, speed), angle)
+
+    def __str__(self) -> str:
+        """Return place, amount [g mm] and angle [deg] in words."""
+        amount, angle = 1e6 * self.amount, np.degrees(self.angle)
+        return f"unbalance of {amount:.4g} g mm at {self.at!r}, angle {angle:.4g} deg"
+
+    @property
+    def vector(self) -> np.ndarray:
+        """Unbalance along (n1, n2, e), rotor frame, shape (3,) [kg m]."""
+        return self.amount * np.array([np.cos(self.angle), np.sin(self.angle), 0.0])
+
+
+# ------------------------------------------------------------------ loads over a frequency
 
 
 @dataclass(frozen=True, eq=False)
