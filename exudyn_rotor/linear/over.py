@@ -100,7 +100,13 @@ def margins_over(
 
 
 def forced_over(
-    model: LinearModel, speed: float, loads: Terms, frequencies: np.ndarray, **options: Any
+    model: LinearModel,
+    speed: float,
+    loads: Terms,
+    frequencies: np.ndarray,
+    *,
+    held: np.ndarray | None = None,
+    **options: Any,
 ) -> dict[int, np.ndarray]:
     """Return the harmonics (s, k) of steady motions under loads of frequencies (s,), at one speed.
 
@@ -115,15 +121,20 @@ def forced_over(
         At the frequencies plus multiples of the speed.
     frequencies : ndarray, shape (s,)
         [rad/s]
+    held : ndarray, optional
+        :attr:`LinearModel.held_basis`, of motions in which it is solved.
     **options
         Of :func:`forced_motions`.
     """
+    options |= {"held": held}
     if not model.over_frequency:
-        return forced_motions(model.at(speed), loads, frequencies, **options)
+        system = model.at(speed) if held is None else model.at(speed).projected(held)
+        return forced_motions(system, loads, frequencies, **options)
     found = {}
     for n, load in loads.items():
         rates = np.abs(frequencies + n * speed)
-        stack = model.at_all(np.full(len(rates), speed), rates)
+        within = "" if held is None else "held"
+        stack = model.at_all(np.full(len(rates), speed), within, rates)
         found |= forced_motions(stack, {n: load}, frequencies, **options)
     return found
 

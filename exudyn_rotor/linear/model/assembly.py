@@ -22,6 +22,7 @@ from exudyn_rotor.bearings.controlled_support import (
 )
 from exudyn_rotor.bearings.given import linear_supports
 from exudyn_rotor.bearings.support import NoCoefficientsError, OutsideTableError, Support, acts
+from exudyn_rotor.calls import kept
 from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.linear.equations import (
     PeriodicSystem,
@@ -431,6 +432,34 @@ class Assembly:
                 add(powers_K[1], K, -1.0)
         return _without_rounding(powers_D), _without_rounding(powers_K)
 
+    @cached_property
+    def _powers(self) -> tuple[dict[int, tuple[list[int], np.ndarray]], ...]:
+        """Coefficients of :attr:`_steady` by multiples of θ: powers (p,) of Ω, and (p, k, k)."""
+        found = []
+        for given in self._steady:
+            orders = {n for terms in given for n in terms}
+            which = {n: [p for p, X in enumerate(given) if n in X and np.any(X[n])] for n in orders}
+            which[0] = which.get(0) or [0]
+            found.append(
+                {n: (p, np.stack([given[i][n] for i in p])) for n, p in which.items() if p}
+            )
+        return tuple(found)
+
+    def projected(self, basis: np.ndarray) -> Assembly:
+        """Return what gives the equations of motions in a real basis (k, r)."""
+
+        def within(terms: Terms) -> dict[int, np.ndarray]:
+            return {n: basis.T @ X @ basis for n, X in terms.items()}
+
+        other = Assembly(self.bodies, self.elements, self.turns)
+        vars(other).update(
+            M=basis.T @ self.M @ basis,
+            motions=[{n: U @ basis for n, U in terms.items()} for terms in self.motions],
+            _steady=tuple([within(terms) for terms in given] for given in self._steady),
+            _H=[(n, basis.T @ X @ basis) for n, X in self._H],
+        )
+        return other
+
     def system(self, speed: float, frequency: float | None = None) -> PeriodicSystem:
         """Return the equations at a spin speed, and a frequency of motions [rad/s]."""
         given = [one.coefficients(speed, frequency) for one in self._varying]
@@ -470,10 +499,10 @@ class Assembly:
     def _system(self, speed: float | np.ndarray, coefficients: Sequence) -> PeriodicSystem:
         """Return the equations at a speed, or a stack, by the `coefficients` of what varies."""
         factor = np.asarray(speed)[..., None, None] if np.ndim(speed) else speed
-        D, K = {}, {}
-        for terms, powers in zip((D, K), self._steady, strict=True):
-            for power, given in enumerate(powers):
-                add(terms, given, factor**power)
+        D, K = (
+            {n: np.tensordot(np.power.outer(speed, powers), X, 1) for n, (powers, X) in each}
+            for each in map(dict.items, self._powers)
+        )
         M, rest = self.M, iter(coefficients)
         for element, U in zip(self.elements, self.motions, strict=True):
             given = next(rest) if element.varies else (None, None)
@@ -509,6 +538,7 @@ class Assembly:
             for n, X in body.H
         ]
 
+    @kept
     def seen(self, body: Body, interface: str) -> dict[int, np.ndarray]:
         """Return the motion (6, k) of an interface, seen from outside, for loads and results."""
         return self.wide(body.seen(interface), self.slices[self.bodies.index(body)])

@@ -148,7 +148,7 @@ def unbalance_response(
         moving = np.flatnonzero(speeds)  # at rest there is no load
         if not moving.size:
             return {0: np.zeros((len(speeds), model.size), dtype=complex)}
-        stack = model.at_all(speeds[moving])
+        stack = model.at_all(speeds[moving], "held")
         model.warn_beyond(np.abs(speeds[moving]))
         known = moving[stack.known]
         if len(known) < len(moving):

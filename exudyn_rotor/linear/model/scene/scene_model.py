@@ -204,7 +204,7 @@ class SceneModel(LinearModel):
         return replace(system, M=own)
 
     def _systems(
-        self, speeds: np.ndarray, frequencies: np.ndarray | None = None
+        self, speeds: np.ndarray, within: str = "", frequencies: np.ndarray | None = None
     ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         found, refused = [], {}
         for place, speed in enumerate(speeds.tolist()):
