@@ -321,6 +321,7 @@ def _with_stand_ins(model: LinearModel, speed: float) -> tuple[LinearModel, Laws
 
 def _constant(model: LinearModel, speed: float) -> tuple[LinearModel, LinearModel | None]:
     """Return a model whose equations are constant, and one in axes that stand still."""
+    model.check_without_frequency("a periodic motion")
     constant = model.at(speed).is_constant
     standing = model if constant and not model.turns else None
     if standing and len(model.rotors) > 1:  # no axes turn with all of them

@@ -250,7 +250,7 @@ class SupportConnector(Connector):
     ) -> None:
         super().__init__(end, base)
         self.support, self._turns = support, support.frame == "rotor"
-        self.whole = acts(support.tilt_stiffness) or acts(support.tilt_damping)
+        self.whole = support.tilts
         self._between = on_rotor  # tables are over the difference of both speeds
 
     @property
@@ -284,7 +284,7 @@ class SupportConnector(Connector):
     def added_mass(self) -> float:
         """Return the mass that goes with the rotor at its speed [kg]."""
         between = self.base.speed if self._between else 0.0
-        return self.support.mass_at(self.end.speed - between)
+        return float(self.support.mass_matrix(self.end.speed - between)[0, 0])
 
     def wrench(self, t: float) -> tuple:
         """Return force and moment on the rotor."""

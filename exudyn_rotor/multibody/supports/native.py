@@ -36,7 +36,7 @@ def native_parts(
     """
     parts, left = [], {}
     across, tilts = ("stiffness", "damping"), ("tilt_stiffness", "tilt_damping")
-    if support.frame == "rotor":
+    if support.frame == "rotor" or support.couples:
         return parts, support
     constant = [
         not any(varies(getattr(support, name)) for name in kind) for kind in (across, tilts)
