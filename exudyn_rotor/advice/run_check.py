@@ -15,8 +15,7 @@ from exudyn_rotor.advice.proposal import Proposal
 from exudyn_rotor.advice.run_measures import Measures
 from exudyn_rotor.advice.run_rows import ALWAYS, LIMITS, OF_MODES, rows_at_nodes
 from exudyn_rotor.advice.warning import AssumptionWarning
-from exudyn_rotor.multibody.full.full_body import FullRotorBody
-from exudyn_rotor.multibody.full.full_record import recorded_states
+from exudyn_rotor.multibody.full.full_body import FullRotorBody, recorded_states
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor

@@ -14,7 +14,7 @@ from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.multibody.rotor.connections import lost_items
 from exudyn_rotor.multibody.rotor.record import Record, Solver, last_solver
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.tensor import von_mises
 from exudyn_rotor.theory.invariants import inertia_tensor
