@@ -17,8 +17,7 @@ from exudyn_rotor.advice.request import PERIOD_ERROR
 from exudyn_rotor.advice.run_measures import Measures
 from exudyn_rotor.advice.run_rows import rows, rows_at_nodes
 from exudyn_rotor.advice.warning import AssumptionWarning
-from exudyn_rotor.multibody.full.full_body import FullRotorBody
-from exudyn_rotor.multibody.full.full_record import recorded_states
+from exudyn_rotor.multibody.full.full_body import FullRotorBody, recorded_states
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor

@@ -13,7 +13,7 @@ from exudyn_rotor.advice.request import PERIOD_ERROR
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.multibody.rotor.record import Record, Solver, last_solver
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.theory.stiffening import stiffening, tilt_factors
 
 _TOP = 0.2  # share of the flexible modes, from the top, that shows what lies beyond

@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_rotor.advice.run_loads import external_load, instants, turned, weight
+from exudyn_rotor.multibody.drives.add_drive import SceneDrive
 from exudyn_rotor.multibody.rotor.record import Record, newton_tolerance
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.theory.nodal import skew
@@ -52,6 +53,9 @@ def _balance(
         for number, driven in body.locks.varying.items():
             load[number] -= place.lock_mass[number] * driven.acceleration(t)
     load[place.unknowns] = external
+    # a drive of the whole rotor acts on the coordinate, not as a moment along its axis
+    drives = [one.drive for one in body.drives if isinstance(one, SceneDrive) and one.at is None]
+    load[body.locks.spin] -= sum(one.law(float(record.speed[index]), t) for one in drives)
     turn = turned(body, q)
     on_modes = external[motion.modes]
     missing = np.zeros(6)

@@ -9,10 +9,17 @@ from exudyn.itemInterface import (
 )
 from models import centered_disc
 from run_scenes import scene, solve
+from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
     AssumptionWarning,
+    BaseRecord,
+    DirectCurrentMotor,
+    Support,
+    add_base_motion,
+    add_drive,
     add_rotor,
+    add_supports,
     check_run,
     craig_bampton_modes,
     keep_modes,
@@ -78,6 +85,24 @@ def test_run_of_few_instants_is_told(reduced):
     assert check.instants == 5
     assert not check.complete
     assert check.ok
+
+
+SKEW = Rotation.from_rotvec([0.3, -0.8, 0.5]).as_matrix()
+
+
+@pytest.mark.parametrize("translation", ["free", "none"])
+def test_motors_and_shaken_ground_are_resisted(reduced, translation):
+    """Of a rotor that is mounted askew."""
+    options = {"rotation": SKEW, "gravity": [0, -9.81, 0], "initial_speed": 100.0}
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, reduced, translation=translation, **options)
+    add_supports(body, [Support(name, 2e6, damping=500.0) for name in ("left", "right")])
+    add_drive(body, DirectCurrentMotor(stall_torque=10.0, no_load_speed=150.0))
+    add_base_motion(mbs, BaseRecord([0.0, 1.0], [[3.0, 1.5, 1.0]] * 2), body)
+    body.start_recording()
+    mbs.Assemble()
+    solve(mbs, 100, 0.01)
+    assert check_run(body, warn=False)["unresisted load"].value < 1e-3
 
 
 @pytest.mark.parametrize("translation", ["free", "in-plane", "none"])

@@ -14,9 +14,8 @@ from typing import Any
 import exudyn
 import numpy as np
 
-from exudyn_rotor.multibody.rotor.known_rotor import KnownRotor, known_rotor
 from exudyn_rotor.multibody.rotor.node_motion import NODE_MARKERS
-from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
+from exudyn_rotor.multibody.rotor.rotor_items import KnownRotor, RotorItems, known_rotor
 
 _ALONG = 1e-6  # sine of the angle up to which a direction counts as that of the spin axis
 _COORDINATES = ("NodeCoordinate", "NodeCoordinates", "NodeRotationCoordinate")

@@ -8,7 +8,7 @@ import exudyn
 import numpy as np
 from exudyn.itemInterface import SensorNode, SensorObject
 
-from exudyn_rotor.multibody.rotor.locking import LOCKS, MODES
+from exudyn_rotor.multibody.rotor.frame import LOCKS, MODES
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 
 _KINDS = exudyn.OutputVariableType

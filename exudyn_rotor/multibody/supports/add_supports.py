@@ -22,18 +22,21 @@ from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
-from exudyn_rotor.multibody.rotor.known_rotor import carrying_rotor
 from exudyn_rotor.multibody.rotor.plan import generic_node
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_items import carrying_rotor
 from exudyn_rotor.multibody.rotor.sensors import add_function_sensor
-from exudyn_rotor.multibody.supports.bearing_connector import BearingConnector, has_torque
-from exudyn_rotor.multibody.supports.clearances import watch_clearance
-from exudyn_rotor.multibody.supports.connector import CURRENT, Connector
-from exudyn_rotor.multibody.supports.ends import FoundationEnd, RotorEnd
-from exudyn_rotor.multibody.supports.magnetic_connector import MagneticConnector
+from exudyn_rotor.multibody.supports.connector import (
+    CURRENT,
+    BearingConnector,
+    Connector,
+    MagneticConnector,
+    SupportConnector,
+    has_torque,
+    watch_clearance,
+)
+from exudyn_rotor.multibody.supports.ends import Base, FoundationEnd, RotorEnd, Seat
 from exudyn_rotor.multibody.supports.native import PYTHON, native_parts
-from exudyn_rotor.multibody.supports.seats import Base, Seat
-from exudyn_rotor.multibody.supports.support_connector import SupportConnector
 
 _PARALLEL = 1e-9  # of the cosine between axes of two rotors
 
