@@ -324,6 +324,12 @@ CALLS = {
         "modal_coordinates": w.coordinates[0],
     },
     "Support": {"stiffness": 1e6 * np.eye(3), "damping": 100.0},
+    "Support.from_columns": {"source": {"speed": [0.0, 9e3], "kxx": [1e6, 2e6]}},
+    "Support.from_table": {
+        "speeds": [0.0, 9e3],
+        "frequencies": [0.0, 1e3],
+        "stiffness": 1e6 * np.ones((2, 2, 2, 2)),
+    },
     "TiltingPadBearing": {"film": PADS, "load": [0.0, -500.0], "pad_inertia": 1e-5},
     "TorqueCurve": {"curve": ([0.0, 90.0], [5.0, 0.0])},
     "TorqueCurve.torque": {"speed": 10.0},

@@ -271,6 +271,7 @@ class _ShakenRotor:
         cls, model: LinearModel, speed: float, record: BaseRecord, observed: Sequence[Place]
     ) -> _ShakenRotor:
         """Return the equations at a spin speed [rad/s], with a spin that nothing holds held."""
+        model.check_without_frequency("a motion of the ground")
         system, basis = model.at(speed), model.held_basis
         basis = np.eye(model.size) if basis is None else basis
         states = states_of(system.projected(basis))

@@ -107,7 +107,7 @@ class Problem:
         ValueError
             Where it changes as the rotor turns.
         """
-        system = self.model.at(self.speed)
+        system = self.model.at(self.speed, 0.0)
         if not system.is_constant:
             raise ValueError(
                 "frame: the supports are not alike in all directions, so that no motion stands "
@@ -257,7 +257,7 @@ class Problem:
 
     def _resistance(self, element: Element) -> np.ndarray:
         """Return the stiffness of an element in the axes of the loads, past which it may turn."""
-        K, D = element.matrices(self.speed)
+        K, D = element.matrices(self.speed, 0.0)
         return K + (self._turns - element.turns) * self.speed * D @ axial_skew(len(D))
 
     def _label(self, ends: Sequence[tuple[str, str]]) -> str:
