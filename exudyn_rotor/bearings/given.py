@@ -36,8 +36,8 @@ def checked_supports(supports: Sequence[Given] | Given) -> tuple[Support, ...]:
         raise ValueError(
             f"supports: the bearing at {controlled[0].interface!r}, magnetic, of pads with "
             "inertia, in series or with a film that conserves mass, has states of its own, which "
-            "this analysis does not take; give a Support with its stiffness and damping, pads without pad_inertia, or "
-            "a film with 'reynolds'"
+            "this analysis does not take; give a Support with its stiffness and damping, pads "
+            "without pad_inertia, or a film with 'reynolds'"
         )
     return linear
 

@@ -202,8 +202,8 @@ def add_supports(
         if isinstance(support, SeriesSupport | FloatingRingBearing):
             raise ValueError(
                 f"supports: what is in series at {support.interface!r} has a ring, which is a body "
-                "of a scene: add the ring as a rotor with the outer bearing, and give the inner one "
-                "base=ring.marker(…)"
+                "of a scene: add the ring as a rotor with the outer bearing, and give the inner "
+                "one base=ring.marker(…)"
             )
         if isinstance(support, Bearing):
             _check_law(body, support)
