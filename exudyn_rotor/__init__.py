@@ -174,6 +174,7 @@ _NAMES = {
     "bearings.magnetic": "MagneticBearing",
     "bearings.pid_controller": "PIDController",
     "bearings.rolling": "RollingBearing",
+    "bearings.series": "FloatingRingBearing SeriesSupport",
     "bearings.short_journal": "ShortJournalBearing",
     "bearings.squeeze_film": "SqueezeFilmDamper",
     "bearings.support": "Support",
