@@ -141,7 +141,8 @@ def check_run(
     ``connections``      0        connectors, joints and loads that the rotor cannot carry:
                                   ``body.check_connections()`` names them
     ``unresisted load``  0.01     load on a locked coordinate, or moment by a second-order arm, that
-                                  no equation resists, over the largest load
+                                  no equation resists, over the largest load; not after an explicit
+                                  solver that eliminates the locks
     ``top modes``        0.01     elastic energy in the highest fifth of the flexible modes over the
                                   energy of the motion: how much the modes beyond may hold
     ``residual``         a        static deflection of interfaces against the mean motion of the

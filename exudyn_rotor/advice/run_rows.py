@@ -85,7 +85,7 @@ _ALWAYS: tuple[tuple[str, Callable[[Measures], float], str, str], ...] = (
         "take smaller steps; the error falls with their square",
     ),
 )
-_OF_MODES: tuple[tuple[str, Callable[[Measures], float], str, str], ...] = (
+_OF_MODES: tuple[tuple[str, Callable[[Measures], float | None], str, str], ...] = (
     (
         "unresisted load",
         lambda m: unresisted_load(m.body, m.record, m.size),
@@ -171,7 +171,9 @@ def _rows_of_nodes(measures: FullMeasures) -> Iterator[Row]:
 
 def _rows_of_modes(measures: Measures, reduced: ReducedRotor | None) -> Iterator[Row]:
     for name, measure, meaning, advice in _OF_MODES:
-        yield name, meaning, float(measure(measures)), advice
+        value = measure(measures)
+        if value is not None:
+            yield name, meaning, float(value), advice
     missing = residual_deflection(measures.body, measures.record, measures.size)
     if missing is not None:
         yield (

@@ -13,19 +13,23 @@ import numpy as np
 
 from exudyn_rotor.advice.run_loads import external_load, instants, turned, weight
 from exudyn_rotor.multibody.drives.add_drive import SceneDrive
-from exudyn_rotor.multibody.rotor.record import Record, newton_tolerance
+from exudyn_rotor.multibody.rotor.record import Record, last_solver, newton_tolerance
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.theory.nodal import skew
 
 _SINGULAR = 0.1  # singular value of the node's axes below which they do not show a direction
 
 
-def unresisted_load(body: RotorBody, record: Record, size: float) -> float:
+def unresisted_load(body: RotorBody, record: Record, size: float) -> float | None:
     """Return the largest load that no equation resists, over the largest load of the run.
 
     `size` [m] makes forces and moments comparable. Needs accelerations, so the first instant of a
-    run does not count.
+    run does not count. None where explicit solvers eliminate the constraints: the forces on locked
+    coordinates are not known then.
     """
+    solver = last_solver(body)
+    if body.constraints and solver is not None and solver.explicit:
+        return None
     if "marker_body" not in body.objects or len(record.time) < 2:
         return 0.0
     unresisted, largest = 0.0, 0.0
