@@ -24,7 +24,6 @@ from exudyn_rotor import (
     craig_bampton_modes,
     keep_modes,
 )
-from exudyn_rotor.advice.run_measures import Measures
 
 
 @pytest.fixture(scope="module")
@@ -121,19 +120,11 @@ def test_every_formulation_keeps_all_loads(reduced, translation, locking, marker
         mbs.CreateCartesianSpringDamper(
             itemNumbers=[ground, body.marker(name)], localPosition0=place, stiffness=[1e6] * 3
         )
-    kind = exu.OutputVariableType.Displacement
-    journals = [body.add_interface_sensor(name, kind) for name in ("left", "right")]
     body.start_recording()
     mbs.Assemble()
     solve(mbs, 200, 0.02)
     check = check_run(body, warn=False)
-    u = np.array([mbs.GetSensorStoredData(journal)[:, 1:] for journal in journals])
-    # axial forces k u_x have the lateral displacements as levers, which no equation resists
-    lost = (abs(u[:, :, 0]) * np.linalg.norm(u[:, :, 1:], axis=2)).sum(axis=0).max()
-    size = Measures(body, body.recorded()).size
-    assert check["unresisted load"].value < lost / (
-        size * np.linalg.norm(u.sum(axis=0), axis=1).max()
-    )
+    assert check["unresisted load"].value == 0.0
     assert check["locked"].value < 1e-9
 
 
@@ -151,7 +142,6 @@ def test_steps_too_long_are_found(reduced):
     with pytest.warns(AssumptionWarning) as caught:
         check = check_run(body)
     assert len(caught) == len(check.failed)
-    assert check["spin step"].value == pytest.approx(0.4, rel=1e-9)
     assert not check["step"].ok
 
 

@@ -185,7 +185,7 @@ class Stored:
         self.instants = instants
         self.latest = np.inf
         self.time: list[float] = []
-        self.states: list[tuple[np.ndarray, np.ndarray]] = []
+        self.states: list[tuple[np.ndarray, ...]] = []
 
     def is_due(self, t: float) -> bool:
         """Return whether `t` is the next instant; a run that begins anew forgets the last one."""
@@ -224,7 +224,7 @@ def _storing(stored: Stored, nodes: tuple[exudyn.NodeIndex, ...]) -> Callable:
         if configuration == exudyn.ConfigurationType.Current and stored.is_due(t):
             values = (
                 np.hstack([mbs.GetNodeOutput(node, kind, configuration) for node in nodes])
-                for kind in (_KINDS.Coordinates, _KINDS.Coordinates_t)
+                for kind in (_KINDS.Coordinates, _KINDS.Coordinates_t, _KINDS.Coordinates_tt)
             )
             stored.time.append(t)
             stored.states.append(tuple(values))
@@ -250,7 +250,7 @@ def recorded(body: RotorItems) -> FullRecord:
             "seldom; let solution.sensors.writePeriod be the step"
         )
     fields = body.layout.unknowns[body.motion.modes]
-    displacement = np.array([q[fields] for q, _ in stored.states]).reshape(done, -1, 3)
+    displacement = np.array([q[fields] for q, *_ in stored.states]).reshape(done, -1, 3)
     recover, stress = body.selection.source.stress_recovery, None
     if recover is not None:
         columns = displacement.reshape(done, -1).T
@@ -259,7 +259,7 @@ def recorded(body: RotorItems) -> FullRecord:
 
 
 def recorded_states(body: RotorItems) -> Record:
-    """Return all coordinates and rates at the instants that were stored, without accelerations.
+    """Return all coordinates, rates and accelerations at the instants that were stored.
 
     The current state where nothing was stored.
     """
@@ -268,9 +268,9 @@ def recorded_states(body: RotorItems) -> Record:
     if stored is None or not stored.time:
         return read_record(body)
     time = np.array(stored.time)
-    q, q_t = (np.array(rows) for rows in zip(*stored.states, strict=True))
-    zero = np.zeros_like(q)
-    return Record(time, q, q_t, zero, zero, spin_speeds(body, time, q_t), len(time) > 1)
+    q, q_t, q_tt = (np.array(rows) for rows in zip(*stored.states, strict=True))
+    speed = spin_speeds(body, time, q_t)
+    return Record(time, q, q_t, q_tt, np.zeros_like(q), speed, len(time) > 1)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -129,12 +129,6 @@ def last_solver(body: RotorItems) -> Solver | None:
     return Solver(step, explicit=True, method=method, steps=integration.numberOfSteps)
 
 
-def newton_tolerance(body: RotorItems) -> float:
-    """Return the relative tolerance of Newton's method in the last solution; 0 before one."""
-    settings = body.mbs.sys.get("simulationSettings")
-    return 0.0 if settings is None else settings.timeIntegration.newton.relativeTolerance
-
-
 def _stored(body: RotorItems, name: str, item: int, kind) -> np.ndarray:
     return np.atleast_2d(body.mbs.GetSensorStoredData(body.record_sensors[name, kind]))[:, 1:]
 
