@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,8 +13,8 @@ from exudyn_rotor import checks
 from exudyn_rotor.calls import one_thread, user_level
 from exudyn_rotor.linear.equations import PeriodicSystem
 from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
-from exudyn_rotor.linear.solve.motions import Motions, margins_of, motions_of
-from exudyn_rotor.results import Result
+from exudyn_rotor.linear.solve.motions import Motions, motions_of
+from exudyn_rotor.results import Result, text_table
 from exudyn_rotor.theory.stiffening import LEVELS
 
 NOT_KNOWN = "error of the basis: not known"
@@ -72,22 +72,6 @@ def motions_in(
     return found if basis is None else found.in_all(basis, neutral)
 
 
-@one_thread()
-def margins_over(
-    model: LinearModel,
-    speeds: Sequence[float],
-    *,
-    method: str = "auto",
-    tolerance: float = 1e-6,
-) -> np.ndarray:
-    """Return by how much the least stable motion grows beyond its bound at speeds [1/s], (s,).
-
-    Free spins are held; neutral motions do not count; NaN where the model has no equations.
-    """
-    stack, basis = model.at_all(speeds), model.moving_basis
-    return margins_of(stack if basis is None else stack.projected(basis), method, tolerance)
-
-
 def _warn_of_lost(found: Motions) -> None:
     """Warn of motions of periodic equations that were not found."""
     lost = np.any(np.isnan(found.values), axis=1) & ~np.isnan(found.bounds)
@@ -143,12 +127,25 @@ class ModelResult(Result):
         checks.choice(self.axes, "axes", AXES[1:])
         checks.number(self.unevenness, "unevenness", least=0.0)
 
-    def _closing(self, errors: object) -> list[str]:
+    def _closing(self, errors: np.ndarray | None) -> list[str]:
         """Return the last lines of a table; `errors` of the basis, None where not known."""
         lines = [f"stiffening: {self.stiffening}"] if self.stiffening else []
         if self.unevenness > _SHOWN:
             lines.append(f"unevenness of the mesh, averaged: {self.unevenness:.2g}")
         return lines if errors is not None else [*lines, NOT_KNOWN]
+
+
+def basis_column(errors: np.ndarray | None, size: int) -> dict[str, np.ndarray]:
+    """Return the column of errors of the basis, NaN where they are not known."""
+    return {"basis error": np.full(size, np.nan) if errors is None else errors.ravel()}
+
+
+def table_lines(columns: Mapping[str, np.ndarray], *left_out: str) -> list[str]:
+    """Return a table as lines, without some columns, and errors of the basis that are all zero."""
+    if not np.any(np.nan_to_num(columns["basis error"])):
+        left_out += ("basis error",)
+    shown = {name: each for name, each in columns.items() if name not in left_out}
+    return text_table({{"nodal diameters": "n"}.get(name, name): shown[name] for name in shown})
 
 
 def in_table(error: float, digits: int = 1) -> str:
