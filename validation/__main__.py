@@ -28,6 +28,7 @@ SCRIPTS = {
     "conical": Script("exudyn_3d.conical", "conical frequencies"),
     "timoshenko": Script("references.timoshenko", "Timoshenko beam"),
     "benchmarks": Script("references.benchmarks", "published and independently computed rotors"),
+    "calculix": Script("references.calculix", "rotating discs of CalculiX's test suite"),
     "film": Script("references.film", "oil films of finite length"),
     "branches": Script("branches", "nonlinear steady motion beside runs"),
     "nonlinear": Script("stiffening.nonlinear", "nonlinear solid, clamped blade"),

@@ -73,11 +73,12 @@ class PeriodicSystem:
         """Which speeds of a stack have equations, (s,)."""
         return np.isfinite(self.K[0].sum(axis=(1, 2)))
 
-    def __getitem__(self, place: int | np.ndarray) -> PeriodicSystem:
+    def __getitem__(self, place: int | slice | np.ndarray) -> PeriodicSystem:
         """Return the equations at one speed, or at some speeds, of a stack."""
+        is_part = isinstance(place, slice)  # of a stack, with its terms
         M = self.M if self.M.ndim == 2 else self.M[place]
         D, K = (
-            {n: X[place] for n, X in terms.items() if n == 0 or np.any(X[place])}
+            {n: X[place] for n, X in terms.items() if n == 0 or is_part or np.any(X[place])}
             for terms in (self.D, self.K)
         )
         return PeriodicSystem(self.speed[place], M, D, K, self.H)
@@ -204,6 +205,8 @@ def spread(
 ) -> PeriodicSystem:
     """Return parts of a stack, each with its places among the speeds (s,), as one; else NaN."""
     first = parts[0][1]
+    if np.ndim(first.speed) and np.array_equal(parts[0][0], np.arange(len(speeds))):
+        return first
     shape = len(speeds), first.size, first.size
     alike = all(part.M is first.M or np.array_equal(part.M, first.M) for _, part in parts)
     M = first.M if alike and first.M.ndim == 2 else np.full(shape, np.nan)

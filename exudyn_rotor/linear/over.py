@@ -5,14 +5,17 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from tqdm import tqdm
 
 from exudyn_rotor import checks
 from exudyn_rotor.calls import one_thread, user_level
-from exudyn_rotor.linear.equations import PeriodicSystem
+from exudyn_rotor.linear.equations import PeriodicSystem, Terms
 from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
+from exudyn_rotor.linear.own_frequency import met, own_motions
+from exudyn_rotor.linear.solve.forced import forced_motions
 from exudyn_rotor.linear.solve.motions import Motions, motions_of
 from exudyn_rotor.results import Result, text_table
 from exudyn_rotor.theory.stiffening import LEVELS
@@ -49,7 +52,8 @@ def motions_over(
     with tqdm(total=len(speeds), desc=label or None, disable=not progress) as bar:
         given = {"held": held, "least_stable": least_stable, "told": bar.update}
         found = motions_in(model, model.at_all(speeds), method, tolerance, **given)
-    _warn_of_lost(found)
+    if not model.over_frequency:
+        _warn_of_lost(found)
     return found
 
 
@@ -60,16 +64,65 @@ def motions_in(
     tolerance: float,
     *,
     held: bool = False,
+    warns: bool = True,
     **given,
 ) -> Motions:
-    """Return the motions of a stack of equations of a model, see :func:`motions_over`."""
+    """Return the motions of a stack of equations of a model, see :func:`motions_over`.
+
+    It `warns` of motions beyond the tables over the frequency.
+    """
     basis, neutral = model.moving_basis, model.neutral_motions
     if held:
         neutral = neutral[:, : neutral.shape[1] - model.free_spins.shape[1]]
+    if model.over_frequency:
+        found = own_motions(model, stack)
+        if warns:
+            model.warn_beyond(met(model, found))
+        return found if basis is None else found.in_all(basis, neutral)
     if basis is not None:
         stack = stack.projected(basis)
     found = motions_of(stack, method, tolerance, **given)
     return found if basis is None else found.in_all(basis, neutral)
+
+
+def forced_over(
+    model: LinearModel,
+    speed: float,
+    loads: Terms,
+    frequencies: np.ndarray,
+    *,
+    held: np.ndarray | None = None,
+    **options: Any,
+) -> dict[int, np.ndarray]:
+    """Return the harmonics (s, k) of steady motions under loads of frequencies (s,), at one speed.
+
+    Each harmonic has the coefficients of its own frequency.
+
+    Parameters
+    ----------
+    model : LinearModel
+    speed : float
+        Spin speed [rad/s].
+    loads : mapping of int to ndarray, shape (k,)
+        At the frequencies plus multiples of the speed.
+    frequencies : ndarray, shape (s,)
+        [rad/s]
+    held : ndarray, optional
+        :attr:`LinearModel.held_basis`, of motions in which it is solved.
+    **options
+        Of :func:`forced_motions`.
+    """
+    options |= {"held": held}
+    if not model.over_frequency:
+        system = model.at(speed) if held is None else model.at(speed).projected(held)
+        return forced_motions(system, loads, frequencies, **options)
+    found = {}
+    for n, load in loads.items():
+        rates = np.abs(frequencies + n * speed)
+        within = "" if held is None else "held"
+        stack = model.at_all(np.full(len(rates), speed), within, rates)
+        found |= forced_motions(stack, {n: load}, frequencies, **options)
+    return found
 
 
 def _warn_of_lost(found: Motions) -> None:

@@ -142,7 +142,6 @@ def limit_cycles(
             start = family.corrected(Point(c, p, balance(p, _BEGIN)), row)[0]
         except UnconvergedError as error:
             raise ValueError("onset: no whirl of small size was found at it") from error
-        start = family.with_tangent(start, row)
         limits = min(speeds[0], _BELOW * p[1]), speeds[-1]
         found = list(family.followed(start, speeds, limits=limits))
         warn_of(family, found)

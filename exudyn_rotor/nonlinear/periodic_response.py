@@ -98,7 +98,8 @@ def periodic_response(
         The rotor in a scene, or all of them; a scene has its own supports, foundation, loads and
         gravity. Whether and how fast it spins there plays no part; of several, the ratios do.
     revolutions : int, optional
-        After which the motion repeats: 2 for motions at half of the spin frequency.
+        After which the motion repeats: 2 for motions at half of the spin frequency. From doublings
+        on the branch of a shorter period, those of a longer one are followed, too.
     at : sequence of str, int or position, optional
         Interfaces and mesh nodes to look at; all interfaces by default.
     stiffening : {'auto', 'none', 'tilt', 'full'}
@@ -272,12 +273,40 @@ def _branches(
         met = [point for branch in found for point in branch]
         if not same(start, met, family.size):
             found.append(list(family.followed(start, values, sense)))
+            found += _of_longer_periods(family, found[-1], values)
     if not found:
         raise ValueError(
             f"values: no steady motion was found at {values[0]:g} and {values[-1]:g}, from which a "
             f"branch could be followed ({lost}); give other values, or a damped run of a scene "
             "shows what the rotor does"
         ) from lost
+    return found
+
+
+def _of_longer_periods(
+    family: Family, branch: list[Point], values: np.ndarray
+) -> list[list[Point]]:
+    """Return the branches of a longer period that begin at doublings, which are marked."""
+    found = []
+    for index, point in enumerate(branch):
+        if point.kind != "branching" or point.balance.rest.revolutions == 1:
+            continue
+        beside = family.aside(point)
+        if beside is None:
+            continue
+        branch[index] = replace(point, kind="doubling")
+        start, g = beside
+
+        def returns(one: Point, after: Point, g: int = g) -> bool:
+            """Return whether a branch comes back to a motion of the shorter period."""
+            new = after.balance.orders[:, 1] % g != 0
+            before = family.widened(one, after.balance.reach).c
+            return np.vdot(before[new], after.c[new]).real < 0.0
+
+        sense = float(np.sign(start.tangent[1][-1]))
+        one = list(family.followed(start, values, sense, until=returns))
+        others = _of_longer_periods(family, one, values)
+        found += [[branch[index], *one], *others]
     return found
 
 
@@ -290,7 +319,7 @@ def _one_by_one(
     for value in map(float, values):
         try:
             try:
-                near = found[-1:] and family.refined(family.at_value(found[-1], value))
+                near = found[-1:] and family.refined(family.at_value(found[-1], value)[0])
             except _FAILS:
                 near = None
             found.append(_measured(near or _first(family, problem_at(value), value)))

@@ -68,6 +68,13 @@ def materials_by_region(
     return {name: _checked_material(name, materials[name]) for name in names}
 
 
+def lame_parameters(material: Material) -> tuple[float, float]:
+    """Return λ and μ [Pa]."""
+    modulus, ratio = material["youngsModulus"], material["poissonsRatio"]
+    shear = modulus / (2 * (1 + ratio))
+    return 2 * shear * ratio / (1 - 2 * ratio), shear
+
+
 def check_material_units(name: str, material: Material) -> None:
     """Raise ValueError if the material `name` cannot be in SI units."""
     density = material["density"]

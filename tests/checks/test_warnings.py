@@ -336,6 +336,9 @@ PLACES = {
 # part of the text of warnings that the tests of their analyses make fire
 ELSEWHERE = {
     "bearings/tilting_pad.py:_of_pads": "carry nothing at",
+    "bearings/own_table.py:table_of": "speeds are left out",
+    "linear/own_frequency.py:own_motions": "do not settle at their own frequency",
+    "linear/model/linear_model.py:warn_beyond": "keeps its ends for motions of",
     "linear/over.py:_warn_of_lost": "do not converge for all motions",
     "linear/over.py:warn_of_refused": "no values at .* which are NaN",
 }

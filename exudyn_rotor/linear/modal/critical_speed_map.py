@@ -249,7 +249,9 @@ def critical_speed_map(
     unit = {n: X / _UNIT for n, X in _added(first, names).items()}
     # a map takes what a film is within its own smoothness, for films are solved at each speed
     error = 1e-9 if first.table_speeds.size else _FILM
-    search = Search(Stiffness(first, unit), Content.of(first), *given, tolerance, error)
+    search = Search(
+        Stiffness(first, unit, order=given[0]), Content.of(first), *given, tolerance, error
+    )
     judged = set() if accuracy is None else set(points(len(values)).tolist())
     solved: list[CriticalSpeeds | None] = []
     failed: list[tuple[str, Exception]] = []

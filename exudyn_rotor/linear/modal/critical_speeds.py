@@ -189,9 +189,10 @@ def critical_speeds(
         target, supports=supports, foundation=foundation, body=body, stiffening=stiffening,
         axes=axes,
     ).undamped()  # fmt: skip
-    search = Search(Stiffness(model), Content.of(model), *given, tolerance)
+    search = Search(Stiffness(model, order=given[0]), Content.of(model), *given, tolerance)
     result = collected(search.resonances(), search, model, accuracy is not None)
     search.warn()
+    model.warn_beyond(given[0] * result.speeds)
     if result.speeds.size:
         fastest = result.speeds[0] if max_speed is None else max_speed
         warn_of_left_out_stiffening(model, fastest)
@@ -249,7 +250,8 @@ def basis_errors(model: LinearModel, found: Sequence[Resonance], count: int) -> 
         errors[:count] = 0.0
         return errors
     richer = model.richer
-    lifted, stiffness = basis_error.lifting(model, richer), Stiffness(richer)
+    stiffness = Stiffness(richer, order=abs(float(found[0].multiples[0])) if found else 1.0)
+    lifted = basis_error.lifting(model, richer)
     for i, one in enumerate(found[:count]):
         lift, slope = one._replace(vectors=one.vectors @ lifted.T), None
         try:

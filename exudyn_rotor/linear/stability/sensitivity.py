@@ -31,8 +31,7 @@ from exudyn_rotor.linear.modal.whirl import Content, Named
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
-from exudyn_rotor.linear.over import motions_over
-from exudyn_rotor.linear.solve.forced import forced_motions
+from exudyn_rotor.linear.over import forced_over, motions_over
 from exudyn_rotor.linear.stability.stability import least_stable_of
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, storable, text_table, words
@@ -269,6 +268,6 @@ def _of_axis(
     stiffness, damping = (X[:, _SENSOR] @ np.append(axis, 0.0) for X in matrices)
     rates = frequencies[:, None]
     loads = {n: -(stiffness + 1j * rates * damping) @ U for n, U in motion.items()}
-    found = forced_motions(model.at(speed), loads, frequencies, held=model.held_basis)
+    found = forced_over(model, speed, loads, frequencies, held=model.held_basis)
     place = sum(found[-n] @ U[_SENSOR].T for n, U in motion.items() if -n in found)
     return 1.0 + place[:, :2] @ axis

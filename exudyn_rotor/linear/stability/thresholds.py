@@ -226,7 +226,8 @@ class _Growth:
         Of motions that are not neutral; less the bound where all are.
         """
         stack = model.at_all(speeds)
-        found = motions_in(model, stack, **self.given, held=True, least_stable=True)
+        how = {"held": True, "least_stable": True, "warns": False}
+        found = motions_in(model, stack, **self.given, **how)
         moves = np.abs(found.values.real) > found.bounds[:, None]
         growth = np.where(moves, found.values.real, -np.inf).max(axis=1, initial=-np.inf)
         return (np.where(np.any(moves, axis=1), growth, 0.0) - found.bounds).tolist()

@@ -17,7 +17,7 @@ from exudyn_rotor.linear.model.scene.scene_coordinates import (
     SceneCoordinates,
     nullspace,
 )
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.fields import ModeKind
 
 _REACHES = (1e-6, 1e-4, 1e-2, 1.0)  # of the rotor's length: a stop may have a gap
 _SOFTEST = 1e-6  # 1/s²: of the force over mass and reach, that of no spring

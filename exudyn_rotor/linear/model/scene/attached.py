@@ -28,10 +28,13 @@ from exudyn_rotor.bearings.rolling import RollingBearing, contacts
 from exudyn_rotor.bearings.short_film import ShortFilmBearing
 from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
-from exudyn_rotor.multibody.supports.bearing_connector import BearingConnector
-from exudyn_rotor.multibody.supports.connector import Connector, Force
+from exudyn_rotor.multibody.supports.connector import (
+    BearingConnector,
+    Connector,
+    Force,
+    MagneticConnector,
+)
 from exudyn_rotor.multibody.supports.ends import FoundationEnd
-from exudyn_rotor.multibody.supports.magnetic_connector import MagneticConnector
 
 _STILL = 1e-7  # of the clearance: a motion that does not matter
 ROUNDED = 1e-14  # m: of differences of positions of some metres

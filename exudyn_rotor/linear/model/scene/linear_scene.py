@@ -28,7 +28,7 @@ from exudyn_rotor.linear.model.scene.steady_motion import points_about, steady_m
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import spin_at_start
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.fields import ModeKind
 
 Journal = Sequence[tuple[np.ndarray, np.ndarray] | None]
 _ANGLES = 12  # of a revolution, for the mean mass

@@ -24,7 +24,7 @@ from exudyn_rotor.linear.model.scene.differences import (
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
 from exudyn_rotor.multibody.rotor.equations import without_forces
-from exudyn_rotor.multibody.supports.support_connector import SupportConnector
+from exudyn_rotor.multibody.supports.connector import SupportConnector
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
 

@@ -167,8 +167,10 @@ class SceneModel(LinearModel):
 
     # ------------------------------------------------------------------ equations
 
-    def at(self, speed: float) -> PeriodicSystem:
+    def at(self, speed: float, frequency: float | None = None) -> PeriodicSystem:
         """Return the equations at a spin speed [rad/s], about the steady motion there.
+
+        They do not depend on the frequency.
 
         Raises
         ------
@@ -201,7 +203,9 @@ class SceneModel(LinearModel):
             add(terms, {n: np.pad(Y, (0, self.size - k)) for n, Y in found.items()})
         return replace(system, M=own)
 
-    def _systems(self, speeds: np.ndarray) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
+    def _systems(
+        self, speeds: np.ndarray, within: str = "", frequencies: np.ndarray | None = None
+    ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         found, refused = [], {}
         for place, speed in enumerate(speeds.tolist()):
             try:
