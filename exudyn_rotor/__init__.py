@@ -69,31 +69,31 @@ if TYPE_CHECKING:
     from exudyn_rotor.linear.modal.critical_speeds import critical_speeds as critical_speeds
     from exudyn_rotor.linear.model.build import linear_model as linear_model
     from exudyn_rotor.linear.model.linear_model import LinearModel as LinearModel
-    from exudyn_rotor.linear.model.links import Link as Link
+    from exudyn_rotor.linear.model.rotor_train import Link as Link
     from exudyn_rotor.linear.model.rotor_train import RotorTrain as RotorTrain
     from exudyn_rotor.linear.response.base_response import BaseResponse as BaseResponse
     from exudyn_rotor.linear.response.base_response import base_response as base_response
-    from exudyn_rotor.linear.response.harmonic_loads import BaseAcceleration as BaseAcceleration
-    from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce as HarmonicForce
-    from exudyn_rotor.linear.response.responses import HarmonicResponse as HarmonicResponse
-    from exudyn_rotor.linear.response.responses import UnbalanceResponse as UnbalanceResponse
+    from exudyn_rotor.linear.response.loads import BaseAcceleration as BaseAcceleration
+    from exudyn_rotor.linear.response.loads import HarmonicForce as HarmonicForce
+    from exudyn_rotor.linear.response.loads import Unbalance as Unbalance
+    from exudyn_rotor.linear.response.loads import (
+        permissible_unbalance as permissible_unbalance,
+    )
+    from exudyn_rotor.linear.response.response import HarmonicResponse as HarmonicResponse
+    from exudyn_rotor.linear.response.response import UnbalanceResponse as UnbalanceResponse
     from exudyn_rotor.linear.response.steady_response import harmonic_response as harmonic_response
     from exudyn_rotor.linear.response.steady_response import (
         unbalance_response as unbalance_response,
     )
     from exudyn_rotor.linear.response.steady_state import SteadyState as SteadyState
     from exudyn_rotor.linear.response.steady_state import steady_state as steady_state
-    from exudyn_rotor.linear.response.unbalance import Unbalance as Unbalance
-    from exudyn_rotor.linear.response.unbalance import (
-        permissible_unbalance as permissible_unbalance,
-    )
+    from exudyn_rotor.linear.stability.sensitivity import Sensitivity as Sensitivity
     from exudyn_rotor.linear.stability.sensitivity import sensitivity as sensitivity
-    from exudyn_rotor.linear.stability.sensitivity_result import Sensitivity as Sensitivity
+    from exudyn_rotor.linear.stability.stability import Stability as Stability
     from exudyn_rotor.linear.stability.stability import stability as stability
     from exudyn_rotor.linear.stability.stability_map import StabilityMap as StabilityMap
     from exudyn_rotor.linear.stability.stability_map import stability_map as stability_map
-    from exudyn_rotor.linear.stability.stability_result import Stability as Stability
-    from exudyn_rotor.linear.stability.threshold_result import (
+    from exudyn_rotor.linear.stability.thresholds import (
         StabilityThresholds as StabilityThresholds,
     )
     from exudyn_rotor.linear.stability.thresholds import stability_threshold as stability_threshold
@@ -193,22 +193,17 @@ _NAMES = {
     "linear.modal.critical_speed_map": "CriticalSpeedMap critical_speed_map",
     "linear.modal.critical_speeds": "CriticalSpeeds critical_speeds",
     "linear.model.build": "linear_model",
-    "linear.model.links": "Link",
     "linear.model.linear_model": "LinearModel",
-    "linear.model.rotor_train": "RotorTrain",
+    "linear.model.rotor_train": "Link RotorTrain",
     "linear.response.base_response": "BaseResponse base_response",
-    "linear.response.harmonic_loads": "BaseAcceleration HarmonicForce",
-    "linear.response.responses": "HarmonicResponse UnbalanceResponse",
+    "linear.response.loads": "BaseAcceleration HarmonicForce Unbalance permissible_unbalance",
+    "linear.response.response": "HarmonicResponse UnbalanceResponse",
     "linear.response.steady_response": "harmonic_response unbalance_response",
     "linear.response.steady_state": "SteadyState steady_state",
-    "linear.response.unbalance": "Unbalance permissible_unbalance",
-    "linear.stability.sensitivity": "sensitivity",
-    "linear.stability.sensitivity_result": "Sensitivity",
-    "linear.stability.stability": "stability",
+    "linear.stability.sensitivity": "Sensitivity sensitivity",
+    "linear.stability.stability": "Stability stability",
     "linear.stability.stability_map": "StabilityMap stability_map",
-    "linear.stability.stability_result": "Stability",
-    "linear.stability.threshold_result": "StabilityThresholds",
-    "linear.stability.thresholds": "stability_threshold unstable_ranges",
+    "linear.stability.thresholds": "StabilityThresholds stability_threshold unstable_ranges",
     "linear.static.bearing_loads": "bearing_loads",
     "linear.static.static_response": "static_response",
     "linear.static.static_result": "StaticResponse",

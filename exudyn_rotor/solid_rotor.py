@@ -17,12 +17,16 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid import fem_interface, ngsolve_model
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.damping import with_damping
+from exudyn_rotor.solid.meshes import mesh_model
 from exudyn_rotor.solid.model import FiniteElementModel, node_set
 from exudyn_rotor.solid.rotor import AxisLike, FiniteElementRotor
 from exudyn_rotor.solid.summary import summary
 from exudyn_rotor.theory.axis import SpinAxis
 
 if TYPE_CHECKING:
+    import os
+
+    import meshio
     import ngsolve
     from exudyn.FEM import FEMinterface
 
@@ -53,7 +57,7 @@ class SolidRotor(FiniteElementRotor):
     rigid_motions : int
         How many of the six rigid motions the stiffness leaves free; 6 for a free rotor. A
         rotation that displaces no node (all nodes on its axis) counts as free.
-    elements : NgsolveElements or None
+    elements : SolidElements or None
         What :meth:`prestress` assembles on; only of :meth:`from_ngsolve`.
     carried_prestress : Prestress or None
         Set by :meth:`with_prestress`.
@@ -146,6 +150,90 @@ class SolidRotor(FiniteElementRotor):
         checks.flag(allow_parts, "allow_parts")
         model = ngsolve_model.assemble_model(
             mesh, materials, order=order, interfaces=interfaces, check_units=check_units
+        )
+        return cls._of_model(model, axis, check_units, allow_parts=allow_parts)
+
+    @classmethod
+    def from_mesh(
+        cls,
+        mesh: str | os.PathLike | meshio.Mesh,
+        materials: Mapping[str, Any] | None,
+        axis: AxisLike,
+        *,
+        interfaces: Sequence[str] | None = None,
+        length_unit: str = "m",
+        leave_out: Sequence[str] = (),
+        matrices: str | os.PathLike | None = None,
+        check_units: bool = True,
+        allow_parts: bool = False,
+    ) -> SolidRotor:
+        """Assemble a rotor on the mesh of another program: Abaqus, CalculiX, ANSYS, Nastran, Gmsh.
+
+        Tetrahedra, wedges and hexahedra of first order, or of second order with straight or
+        curved edges, keep the shape functions and nodes that they have there. ``C3D20R`` and
+        ``SOLID186`` keep their reduced integration of the stiffness, with the whole mass.
+        Loads, steps and ``*BOUNDARY`` are not read.
+
+        Parameters
+        ----------
+        mesh : str, path or meshio.Mesh
+            ``.inp`` (Abaqus, CalculiX), ``.cdb`` (ANSYS), ``.bdf``, ``.nas``, ``.dat`` (Nastran),
+            or what the package meshio reads, such as ``.msh`` of Gmsh.
+        materials : mapping or None
+            As of :meth:`from_ngsolve`, in SI units, by element set, name of a material (``.inp``),
+            number of a property (Nastran) or material (ANSYS), or physical group (Gmsh). None for
+            the materials of the file.
+        axis : SpinAxis, str or array_like
+            Read by :meth:`SpinAxis.of`, in metres.
+        interfaces : sequence of str, optional
+            Node sets and surfaces that become interfaces; by default all but sets of the whole
+            mesh. Weights are area shares where the set is a part of the surface, else equal.
+        length_unit : {'m', 'mm'}, optional
+            'mm' for files in mm, t, s, N and MPa.
+        leave_out : sequence of str, optional
+            Keywords and types of elements of the file that the rotor is to do without; others
+            than solids, and constraints, are refused.
+        matrices : str or path, optional
+            Mass and stiffness from a file, instead of elements: ``.sti`` of CalculiX with
+            ``.mas`` and ``.dof`` beside it, or DMIG cards of Nastran.
+        check_units, allow_parts : bool, optional
+            As of :meth:`from_ngsolve`.
+
+        Raises
+        ------
+        ImportError
+            If the format needs meshio, and it is not installed.
+        TypeError, ValueError
+            If the file cannot be read, holds what solid elements do not, an element is turned
+            inside out, a material is missing or anisotropic, or the units cannot be SI.
+
+        Warns
+        -----
+        UserWarning
+            Where elements are taken as others, such as C3D8R as C3D8.
+
+        Examples
+        --------
+        >>> import meshio
+        >>> from exudyn_rotor import SolidRotor
+        >>> corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+        >>> points = [[x, y, z + h] for h in (0, 1, 2) for x, y, z in corners]
+        >>> cells = [("hexahedron", [list(range(8)), list(range(4, 12))])]
+        >>> mesh = meshio.Mesh(points, cells, point_sets={"bottom": [0, 1, 2, 3]})
+        >>> steel = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
+        >>> SolidRotor.from_mesh(mesh, steel, ("z", [0.5, 0.5, 0]))
+        SolidRotor(12 nodes, 15700 kg, interfaces ['bottom'], 6 rigid motions free)
+        """
+        axis = SpinAxis.of(axis)
+        checks.flag(allow_parts, "allow_parts")
+        model = mesh_model.import_model(
+            mesh,
+            materials,
+            interfaces=interfaces,
+            length_unit=length_unit,
+            leave_out=leave_out,
+            matrices=matrices,
+            check_units=check_units,
         )
         return cls._of_model(model, axis, check_units, allow_parts=allow_parts)
 

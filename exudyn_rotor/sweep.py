@@ -1,4 +1,4 @@
-"""A function over many values: here, on threads, on processes or on a cluster; and the values."""
+"""A function over many values: here, on threads, on processes or on a cluster."""
 
 from __future__ import annotations
 
@@ -7,12 +7,10 @@ from concurrent.futures import Executor, Future
 from pickle import PicklingError
 from typing import TypeVar
 
-import numpy as np
-from numpy.typing import ArrayLike
 from tqdm import tqdm
 
 from exudyn_rotor import checks
-from exudyn_rotor.threads import one_thread
+from exudyn_rotor.calls import one_thread
 
 Value = TypeVar("Value")
 Result = TypeVar("Result")
@@ -32,7 +30,7 @@ def sweep(
 ) -> list[Result]:
     """Return ``[function(value) for value in values]``, computed by `executor`.
 
-    Each value on one thread of BLAS and LAPACK, see :mod:`exudyn_rotor.threads`.
+    Each value on one thread of BLAS and LAPACK, see :mod:`exudyn_rotor.calls`.
 
     Parameters
     ----------
@@ -139,21 +137,3 @@ def _named(function: Callable[[Value], Result], value: Value, label: str) -> Res
         kind = ValueError if isinstance(error, ValueError) else RuntimeError
         cause = str(error) if kind is ValueError else f"{type(error).__name__}: {error}"
         raise kind(f"{label or 'sweep'} at {value}: {cause}") from error
-
-
-def ascending_from_zero(
-    values: ArrayLike, name: str, otherwise: str = "turn the spin axis round for the other sense"
-) -> np.ndarray:
-    """Return ascending values, none of them negative; `otherwise` says what else to do."""
-    result = checks.ascending(values, name)
-    if result[0] < 0.0:
-        raise ValueError(f"{name}: {result[0]:g} is negative; give values ≥ 0, or {otherwise}")
-    return result
-
-
-def checked_speeds(speeds: ArrayLike, allow_negative: bool) -> np.ndarray:
-    """Return ascending spin speeds, none of them negative unless that is allowed."""
-    if checks.flag(allow_negative, "allow_negative"):
-        return checks.ascending(speeds, "speeds")
-    turn = "pass allow_negative=True if the rotor is meant to spin the other way round"
-    return ascending_from_zero(speeds, "speeds", turn)

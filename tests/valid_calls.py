@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import exudyn
 import numpy as np
+import pytest
 from exudyn.FEM import FEMinterface
 from models import STEEL
 from netgen.occ import Box, OCCGeometry, Pnt, Z
@@ -24,6 +25,14 @@ def _bar():
     bar.mat("steel")
     bar.faces.Min(Z).name, bar.faces.Max(Z).name = "left", "right"
     return Mesh(OCCGeometry(bar).GenerateMesh(maxh=0.15))
+
+
+def _cube():
+    meshio = pytest.importorskip("meshio")
+    corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    points = [[x, y, z + h] for h in (0, 1) for x, y, z in corners]
+    cells = [("hexahedron", [list(range(8))])]
+    return meshio.Mesh(points, cells, point_sets={"low": [0, 1, 2, 3]})
 
 
 def _point():
@@ -288,6 +297,12 @@ CALLS = {
         "interfaces": {"left": [0, 1, 2, 3]},
     },
     "ReducedRotor.stress_of": lambda w: {"coordinates": np.zeros(w.ReducedRotor.size)},
+    "SolidRotor.from_mesh": lambda w: {
+        "mesh": _cube(),
+        "materials": STEEL,
+        "interfaces": ["low"],
+        "leave_out": ["S4"],
+    },
     "SolidRotor.from_ngsolve": {"materials": {"steel": STEEL}, "order": 1},
     "SolidRotor.interface_at": {"name": "seat", "position": 0.15, "width": 0.4},
     "SolidRotor.prestress": {"euler": True},
@@ -309,6 +324,12 @@ CALLS = {
         "modal_coordinates": w.coordinates[0],
     },
     "Support": {"stiffness": 1e6 * np.eye(3), "damping": 100.0},
+    "Support.from_columns": {"source": {"speed": [0.0, 9e3], "kxx": [1e6, 2e6]}},
+    "Support.from_table": {
+        "speeds": [0.0, 9e3],
+        "frequencies": [0.0, 1e3],
+        "stiffness": 1e6 * np.ones((2, 2, 2, 2)),
+    },
     "TiltingPadBearing": {"film": PADS, "load": [0.0, -500.0], "pad_inertia": 1e-5},
     "TorqueCurve": {"curve": ([0.0, 90.0], [5.0, 0.0])},
     "TorqueCurve.torque": {"speed": 10.0},

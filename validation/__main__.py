@@ -1,4 +1,4 @@
-"""List the scripts of this folder, or run one: ``python -m validation NAME …``."""
+"""Run a script of this folder, a folder of them, or list all: ``python -m validation NAME …``."""
 
 from __future__ import annotations
 
@@ -28,6 +28,7 @@ SCRIPTS = {
     "conical": Script("exudyn_3d.conical", "conical frequencies"),
     "timoshenko": Script("references.timoshenko", "Timoshenko beam"),
     "benchmarks": Script("references.benchmarks", "published and independently computed rotors"),
+    "calculix": Script("references.calculix", "rotating discs of CalculiX's test suite"),
     "film": Script("references.film", "oil films of finite length"),
     "branches": Script("branches", "nonlinear steady motion beside runs"),
     "nonlinear": Script("stiffening.nonlinear", "nonlinear solid, clamped blade"),
@@ -59,10 +60,15 @@ def main() -> object:
     if name in ("-h", "--help"):
         print(listing())
         return 0
-    if name not in SCRIPTS:
+    chosen = [one for one in SCRIPTS if SCRIPTS[one].module.startswith(f"{name}.")]
+    chosen = [name] if name in SCRIPTS else chosen
+    if not chosen:
         return f"{name!r} is unknown; there are: {', '.join(SCRIPTS)}"
-    sys.argv[:] = [f"python -m validation {name}", *options]
-    return importlib.import_module(f"validation.{SCRIPTS[name].module}").main()
+    ends = []
+    for one in chosen:
+        sys.argv[:] = [f"python -m validation {one}", *options]
+        ends.append(importlib.import_module(f"validation.{SCRIPTS[one].module}").main())
+    return next((end for end in ends if end), 0)
 
 
 if __name__ == "__main__":

@@ -40,7 +40,7 @@ from scipy.optimize import brentq
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.callers import user_level
+from exudyn_rotor.calls import user_level
 
 _TURBULENT = 2000.0  # Reynolds number Ra, below which a leakage without spin may be laminar
 _LEAST = 1e-3  # of the axial velocity without friction, above which it is looked for first

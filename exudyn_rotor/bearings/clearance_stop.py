@@ -133,6 +133,34 @@ class ClearanceStop(Bearing):
         drag = self.friction * normal * tanh(sliding / self.slip_speed)
         return drag * ny - normal * nx, -drag * nx - normal * ny, -self.radius * drag
 
+    def _along(
+        self, motion: np.ndarray, angles: np.ndarray, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        forces, slopes = np.zeros((len(motion), 2)), np.zeros((len(motion), 2, 4))
+        e = np.hypot(*motion[:, :2].T)
+        touching = np.flatnonzero(e > self.clearance)
+        place, rate, e = motion[touching, :2], motion[touching, 2:], e[touching, None]
+        n = place / e
+        t = n[:, ::-1] * [-1.0, 1.0]
+        approach, along = ((rate * each).sum(axis=1, keepdims=True) for each in (n, t))
+        depth, harder = e - self.clearance, self.damping / self.clearance
+        rigid = self.stiffness + harder * approach
+        N = np.maximum(depth * rigid, 0.0)
+        pushes = N > 0.0
+        N_q = pushes * (rigid * n + depth * harder * along / e * t)
+        N_v = pushes * depth * harder * n
+        share = np.tanh((self.radius * speed + along) / self.slip_speed)
+        steep = (1.0 - share**2) / self.slip_speed
+        T = self.friction * share * N
+        T_q = self.friction * (share * N_q - N * steep * approach / e * t)
+        T_v = self.friction * (share * N_v + N * steep * t)
+        forces[touching] = -N * n - T * t
+        across = (N * t - T * n)[:, :, None] * (t / e)[:, None]
+        n, t = n[:, :, None], t[:, :, None]
+        slopes[touching, :, :2] = n * N_q[:, None] + t * T_q[:, None] + across
+        slopes[touching, :, 2:] = n * N_v[:, None] + t * T_v[:, None]
+        return forces, slopes
+
     def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
         """Return the centre, shape (2,): an open stop carries nothing.
 

@@ -75,13 +75,14 @@ def check_interfaces(
                     f"support at {support.interface!r}: no such interface{_asked(place, support)}; "
                     f"the rotor has: {', '.join(known) or 'none'}"
                 )
-        for name in _TILTING if known[support.interface].radius == 0.0 else ():
-            if acts(getattr(support, name, 0.0)):
-                raise ValueError(
-                    f"support at {support.interface!r}: {name} would act on nothing, since the "
-                    "interface is a single node, which has no rotation; make the interface of "
-                    "three nodes or more, or leave this out"
-                )
+        turns = known[support.interface].radius > 0.0
+        if not turns and isinstance(support, Support) and support.tilts:
+            names = (n for n in _TILTING if acts(getattr(support, n)))
+            raise ValueError(
+                f"support at {support.interface!r}: {next(names, 'a 6 × 6 matrix')} would act on "
+                "nothing, since the interface is a single node, which has no rotation; make the "
+                "interface of three nodes or more, or leave this out"
+            )
 
 
 def _asked(place: str, support: Given | Controlled) -> str:

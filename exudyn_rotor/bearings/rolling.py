@@ -33,7 +33,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing, LawWithTorque
-from exudyn_rotor.cached import kept
+from exudyn_rotor.calls import kept
 from exudyn_rotor.solvers.line_search import step_share
 
 _EXPONENTS = {"balls": 1.5, "rollers": 10.0 / 9.0}

@@ -36,7 +36,7 @@ from exudyn_rotor.bearings.film.state import FilmState
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.pad_tilt import shift_of_pad, stiffness_unit
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.callers import user_level
+from exudyn_rotor.calls import user_level
 
 _STEPS, _SHORTER, _VAIN = 60, 8, 12  # of Newton's method, halvings of one, steps in vain
 _TOGETHER, _NARROWER = 15, 0.6  # steps of journal and tilts together, what of a film one may close

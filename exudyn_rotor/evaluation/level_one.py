@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
-from exudyn_rotor.callers import user_level
+from exudyn_rotor.calls import user_level
 from exudyn_rotor.evaluation.coupled_modes import ROUNDING, Coupled, Modes
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, storable

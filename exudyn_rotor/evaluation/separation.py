@@ -16,15 +16,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.callers import user_level
-from exudyn_rotor.linear.modal.excitation import checked_range, shade_range
-from exudyn_rotor.linear.response.refinement import (
+from exudyn_rotor.calls import user_level
+from exudyn_rotor.linear.modal.campbell_diagram import checked_range, shade_range
+from exudyn_rotor.linear.response.response import (
     HALF_POWER,
     STILL,
+    UnbalanceResponse,
     resolved_peak,
     warn_of_coarse_peaks,
 )
-from exudyn_rotor.linear.response.responses import UnbalanceResponse
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.units import Units
 

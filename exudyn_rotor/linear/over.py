@@ -1,17 +1,27 @@
-"""Motions over speeds: what Campbell diagrams, stability and maps have in common."""
+"""What linear analyses have in common: motions over speeds, warnings, the base of results."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from tqdm import tqdm
 
-from exudyn_rotor.callers import user_level
-from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.solve.motions import Motions, margins_of, motions_of
-from exudyn_rotor.threads import one_thread
+from exudyn_rotor import checks
+from exudyn_rotor.calls import one_thread, user_level
+from exudyn_rotor.linear.equations import PeriodicSystem, Terms
+from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
+from exudyn_rotor.linear.own_frequency import met, own_motions
+from exudyn_rotor.linear.solve.forced import forced_motions
+from exudyn_rotor.linear.solve.motions import Motions, margins, margins_of, motions_of
+from exudyn_rotor.results import Result
+from exudyn_rotor.theory.stiffening import LEVELS
+
+NOT_KNOWN = "error of the basis: not known"
+_SHOWN = 1e-6  # unevenness that is told
 
 
 @one_thread()
@@ -39,15 +49,34 @@ def motions_over(
     progress : bool, optional
         Show a progress bar with the `label`.
     """
-    stack, basis, neutral = model.at_all(speeds), model.moving_basis, model.neutral_motions
+    with tqdm(total=len(speeds), desc=label or None, disable=not progress) as bar:
+        given = {"held": held, "least_stable": least_stable, "told": bar.update}
+        found = motions_in(model, model.at_all(speeds), method, tolerance, **given)
+    if not model.over_frequency:
+        _warn_of_lost(found)
+    return found
+
+
+def motions_in(
+    model: LinearModel,
+    stack: PeriodicSystem,
+    method: str,
+    tolerance: float,
+    *,
+    held: bool = False,
+    **given,
+) -> Motions:
+    """Return the motions of a stack of equations of a model, see :func:`motions_over`."""
+    basis, neutral = model.moving_basis, model.neutral_motions
     if held:
         neutral = neutral[:, : neutral.shape[1] - model.free_spins.shape[1]]
+    if model.over_frequency:
+        found = own_motions(model, stack)
+        model.warn_beyond(met(model, found))
+        return found if basis is None else found.in_all(basis, neutral)
     if basis is not None:
         stack = stack.projected(basis)
-    with tqdm(total=len(stack.speed), desc=label or None, disable=not progress) as bar:
-        given = {"least_stable": least_stable, "told": bar.update}
-        found = motions_of(stack, method, tolerance, **given)
-    _warn_of_lost(found)
+    found = motions_of(stack, method, tolerance, **given)
     return found if basis is None else found.in_all(basis, neutral)
 
 
@@ -64,7 +93,50 @@ def margins_over(
     Free spins are held; neutral motions do not count; NaN where the model has no equations.
     """
     stack, basis = model.at_all(speeds), model.moving_basis
+    if model.over_frequency:
+        found = own_motions(model, stack)
+        return margins(found.values, found.bounds)
     return margins_of(stack if basis is None else stack.projected(basis), method, tolerance)
+
+
+def forced_over(
+    model: LinearModel,
+    speed: float,
+    loads: Terms,
+    frequencies: np.ndarray,
+    *,
+    held: np.ndarray | None = None,
+    **options: Any,
+) -> dict[int, np.ndarray]:
+    """Return the harmonics (s, k) of steady motions under loads of frequencies (s,), at one speed.
+
+    Each harmonic has the coefficients of its own frequency.
+
+    Parameters
+    ----------
+    model : LinearModel
+    speed : float
+        Spin speed [rad/s].
+    loads : mapping of int to ndarray, shape (k,)
+        At the frequencies plus multiples of the speed.
+    frequencies : ndarray, shape (s,)
+        [rad/s]
+    held : ndarray, optional
+        :attr:`LinearModel.held_basis`, of motions in which it is solved.
+    **options
+        Of :func:`forced_motions`.
+    """
+    options |= {"held": held}
+    if not model.over_frequency:
+        system = model.at(speed) if held is None else model.at(speed).projected(held)
+        return forced_motions(system, loads, frequencies, **options)
+    found = {}
+    for n, load in loads.items():
+        rates = np.abs(frequencies + n * speed)
+        within = "" if held is None else "held"
+        stack = model.at_all(np.full(len(rates), speed), within, rates)
+        found |= forced_motions(stack, {n: load}, frequencies, **options)
+    return found
 
 
 def _warn_of_lost(found: Motions) -> None:
@@ -94,3 +166,42 @@ def warn_of_refused(refused: Sequence[tuple[str, Exception]], count: int) -> Non
             UserWarning,
             stacklevel=user_level(),
         )
+
+
+@dataclass(frozen=True, eq=False)
+class ModelResult(Result):
+    """Result of the analysis of a linear model.
+
+    Attributes
+    ----------
+    stiffening : str or None
+        Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
+    axes : {'inertial', 'rotor'}
+        In which the equations were solved.
+    unevenness : float
+        Largest share of a rotor that differs around its axis, as that of a mesh, and was averaged
+        over a turn.
+    """
+
+    stiffening: str | None = field(default=None, kw_only=True)
+    axes: str = field(default="inertial", kw_only=True)
+    unevenness: float = field(default=0.0, kw_only=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.stiffening is not None:
+            checks.choice(self.stiffening, "stiffening", LEVELS)
+        checks.choice(self.axes, "axes", AXES[1:])
+        checks.number(self.unevenness, "unevenness", least=0.0)
+
+    def _closing(self, errors: object) -> list[str]:
+        """Return the last lines of a table; `errors` of the basis, None where not known."""
+        lines = [f"stiffening: {self.stiffening}"] if self.stiffening else []
+        if self.unevenness > _SHOWN:
+            lines.append(f"unevenness of the mesh, averaged: {self.unevenness:.2g}")
+        return lines if errors is not None else [*lines, NOT_KNOWN]
+
+
+def in_table(error: float, digits: int = 1) -> str:
+    """Return an error as tables show it: '-' where it was not estimated."""
+    return "-" if np.isnan(error) else f"{error:.{digits}e}"

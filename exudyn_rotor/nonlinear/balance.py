@@ -44,6 +44,10 @@ class Laws:
     Attributes
     ----------
     bearings : sequence of Bearing
+    names : sequence of str
+        Their interfaces, of trains with the rotor's name.
+    ratios : sequence of float
+        Spin speeds of their rotors over Ω.
     springs, dampers : ndarray, shape (d,)
     passes : float
         Elements that pass the load in a revolution: angles of the cage per second phase; 0 where
@@ -51,6 +55,8 @@ class Laws:
     """
 
     bearings: Sequence[Bearing]
+    names: Sequence[str]
+    ratios: Sequence[float]
     springs: np.ndarray
     dampers: np.ndarray
     passes: float = 0.0
@@ -63,11 +69,10 @@ class Laws:
         Cages of rolling bearings stand where the second phase φ says.
         """
         found = []
-        for b, bearing in enumerate(self.bearings):
+        for b, (bearing, ratio) in enumerate(zip(self.bearings, self.ratios, strict=True)):
             turns = self.passes and isinstance(bearing, RollingBearing)
-            found.append(
-                bearing.law_along(motion[:, b], phi / self.passes if turns else theta, speed)
-            )
+            angles = ratio * (phi / self.passes if turns else theta)
+            found.append(bearing.law_along(motion[:, b], angles, ratio * speed))
         forces, slopes = zip(*found, strict=True)
         return np.stack(forces, axis=1), np.stack(slopes, axis=1)
 

@@ -92,7 +92,8 @@ class Beside:
         pulled = np.linalg.solve(M, P.T)
         period, second = self._period()
         angles = 2.0 * np.pi * np.arange(_ANGLES) / _ANGLES
-        phi, theta = (each.ravel() for each in np.meshgrid(angles, angles * rest.revolutions))
+        first = angles if K or self.balance.laws.passes else angles[:1]
+        phi, theta = (each.ravel() for each in np.meshgrid(first, angles * rest.revolutions))
         stiffness, damping = self._changes(phi, theta)
         reach = np.linalg.norm(P @ pulled, 2)
         fastest = np.sqrt(reach * np.abs(stiffness).sum(axis=2).max())

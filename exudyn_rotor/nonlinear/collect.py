@@ -9,7 +9,7 @@ import numpy as np
 from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.linear.model.assembly import rotors_of
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.response.places import At, Place, places
+from exudyn_rotor.linear.response.loads import At, Place, places
 from exudyn_rotor.nonlinear.continuation import Point
 from exudyn_rotor.nonlinear.periodic_result import PeriodicResponse
 
@@ -55,7 +55,7 @@ def collected(
         np.array([rest.rates for rest in rests]),
         orders,
         motion,
-        tuple(one.interface for one in points[0].balance.laws.bearings),
+        tuple(points[0].balance.laws.names),
         *np.moveaxis(measured, 1, 0),
         np.array([point.error for point in points]),
         np.array([point.growth for point in points]),
@@ -116,7 +116,7 @@ def _at_bearings(point: Point) -> np.ndarray:
         least = gap - far.max() if np.isfinite(gap) else np.nan
         load, away = np.nan, float(np.mean(forces[:, b] == 0.0))
         if isinstance(one, RollingBearing):
-            angles = phi / laws.passes
+            angles = laws.ratios[b] * phi / laws.passes
             loads = np.array([one.element_loads(*each) for each in zip(q, angles, strict=True)])
             load, away = loads.max(), float(np.mean(~np.any(loads, axis=1)))
         found.append((forces[:, b].max(), least, load, away))

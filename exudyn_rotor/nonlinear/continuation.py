@@ -8,7 +8,10 @@ A step goes along the tangent t of the branch by the length s, and returns to it
 
 by Newton's method, so that a branch may turn back: there the last component of t is zero (E. L.
 Allgower, K. Georg, *Numerical Continuation Methods* (1990)). Steps grow where the method converges
-fast and the tangent turns little.
+fast and the tangent turns little; where the branch is steep enough they end at wanted values.
+
+At a crossing of branches the derivative of (1) has a second null vector. Where a motion of a part
+of its period begins to repeat after the whole period only, that vector has the new harmonics alone.
 """
 
 from __future__ import annotations
@@ -25,14 +28,22 @@ from exudyn_rotor.nonlinear.balance import Balance, orders_of, padded, real_part
 
 _MOST_ITERATIONS = 9
 _CONVERGED = 1e-6  # scaled last step, whose square is the error
+_RATE = 1e-8  # or what steps that shrink as the last one did would leave
+_FAR = 1e-2  # scaled step from which on derivatives by parameters are taken anew
 _DIFFERENCE = 1e-6  # of the range of a parameter, for derivatives by it
 _FIRST, _LONGEST, _SHORTEST = 0.02, 0.25, 1e-5  # steps in scaled unknowns
 _WANTED = 3  # iterations
 _TURN = 0.92  # cosine between tangents, below which a step is repeated with half its length
+_STEEP = 0.2  # component of a tangent along the parameter, from which on a step ends at a value
+_REACHED = 1.25  # steps to a value that one step may have
+_ASIDE = (0.02, 0.05, 0.005)  # scaled steps from a crossing onto the other branch
+_NEW = 1e-6  # share of a motion in harmonics that it does not have
 _SMOOTH = 1e-3  # step below which a tangent may turn as it likes, where contacts begin
 _LEAST = 0.1  # of the wanted size, as which a motion counts at least
+Row = tuple[np.ndarray, np.ndarray]
 _MOST_POINTS = 2000
 _MOST_UNKNOWNS = 1500
+_SAME, _UNLIKE = 1e-3, 10.0  # share of a motion, and of what is left out, that two may differ by
 _IN_PARAMETER = 1e-7  # of a step, to which a change on a branch is found
 
 
@@ -47,6 +58,8 @@ class Point:
     balance : Balance
     tangent : tuple of ndarray, or None
         Components along c and p, scaled length 1.
+    bend : tuple of ndarray, or None
+        Its change per step.
     kind : str
         'computed', 'value' (a wanted one), 'fold', 'doubling', 'torus' or 'branching'.
     growth, multiplier : float, complex
@@ -58,7 +71,8 @@ class Point:
     c: np.ndarray
     p: np.ndarray
     balance: Balance
-    tangent: tuple[np.ndarray, np.ndarray] | None = None
+    tangent: Row | None = None
+    bend: Row | None = None
     kind: str = "computed"
     growth: float = np.nan
     multiplier: complex = np.nan
@@ -107,73 +121,81 @@ class Family:
         return max(float(np.linalg.norm(c)), _LEAST * self.size)
 
     def _system(self, point: Point) -> tuple[np.ndarray, np.ndarray]:
-        """Return what is left (n,), and its derivative (n, n + 1), without the last row of (1)."""
+        """Return what is left (n,), and its derivative by c (n, n), without the last row of (1)."""
         left, J = point.balance.linearised(point.c)
-        by_parameters = []
+        left = left.ravel()
+        if self.phase is not None:
+            phi = padded(*self.phase, point.balance.reach).ravel().conj()
+            J, left = np.vstack([J, phi]), np.r_[left, phi @ point.c.ravel()]
+        return left, J
+
+    def _by_parameters(self, point: Point, left: np.ndarray) -> np.ndarray:
+        """Return the derivative (n, e) of what is left by the parameters."""
+        found = np.zeros((len(left), len(self.spans)), dtype=complex)
         for place, span in enumerate(self.spans):
             p = point.p.copy()
             p[place] += _DIFFERENCE * span
-            beside = self.balance(p, point.balance.reach).residual(point.c)
-            by_parameters.append((beside - left).ravel() / (_DIFFERENCE * span))
-        left, J = left.ravel(), np.column_stack([J, *by_parameters])
-        if self.phase is not None:
-            phi = padded(*self.phase, point.balance.reach).ravel().conj()
-            J = np.vstack([J, np.r_[phi, np.zeros(len(self.spans))]])
-            left = np.r_[left, phi @ point.c.ravel()]
-        return left, J
+            beside = self.balance(p, point.balance.reach).residual(point.c).ravel()
+            found[: beside.size, place] = (beside - left[: beside.size]) / (_DIFFERENCE * span)
+        return found
 
-    def corrected(self, start: Point, row: tuple[np.ndarray, np.ndarray]) -> tuple[Point, int]:
+    def corrected(self, start: Point, row: Row) -> tuple[Point, int]:
         """Return the solution near a start at right angles to a row, and after how many steps.
+
+        With its tangent, in the sense of the row.
 
         Raises
         ------
         UnconvergedError
         """
-        point, last = start, np.inf
+        point, last, by = start, np.inf, None
         flat = np.r_[row[0].conj().ravel(), row[1]]
         for count in range(1, _MOST_ITERATIONS + 1):
             left, J = self._system(point)
+            if by is None or last > _FAR:
+                by = self._by_parameters(point, left)
+            both = np.zeros((len(left) + 1, 2), dtype=complex)
+            both[:-1, 0], both[-1, 1] = left, 1.0
             try:
-                step = np.linalg.solve(np.vstack([J, flat]), np.r_[left, 0.0])
+                step, t = np.linalg.solve(np.vstack([np.hstack([J, by]), flat]), both).T
             except np.linalg.LinAlgError:
                 break
-            moved = real_part_of(step[: point.c.size].reshape(point.c.shape))
-            parameters = step[point.c.size :].real
-            length = np.hypot(
-                np.linalg.norm(moved) / self._scale(point.c),
-                np.linalg.norm(parameters / self.spans),
-            )
+            moved, parameters = self._parts(step, point)
+            length = self._length(moved, parameters, point.c)
             if not np.isfinite(length) or (length > 2.0 * last and count > 2) or length > 10.0:
                 break
+            converged = length < _CONVERGED or (count > 1 and length**2 < _RATE * last)
             last = length
             p = point.p - parameters
             point = replace(
                 point, c=point.c - moved, p=p, balance=self.balance(p, point.balance.reach)
             )
-            if length < _CONVERGED:
-                return point, count
+            if converged:
+                tc, tp = self._parts(t, point)
+                length = self._length(tc, tp, point.c)
+                return replace(point, tangent=(tc / length, tp / length)), count
         raise UnconvergedError("no solution beside another one")
 
-    def at_value(self, start: Point, value: float) -> Point:
-        """Return the solution near a start at a value of the parameter."""
+    def _parts(self, step: np.ndarray, like: Point) -> Row:
+        """Return the parts of a step (n + 1,) along harmonics and parameters."""
+        size = like.c.size
+        return real_part_of(step[:size].reshape(like.c.shape)), step[size:].real
+
+    def _length(self, c: np.ndarray, p: np.ndarray, at: np.ndarray) -> float:
+        """Return the scaled length of a step from harmonics."""
+        return float(np.hypot(np.linalg.norm(c) / self._scale(at), np.linalg.norm(p / self.spans)))
+
+    def at_value(self, start: Point, value: float, sense: float = 1.0) -> tuple[Point, int]:
+        """Return the solution near a start at a value of the parameter, and after how many steps.
+
+        With its tangent in the sense in which the parameter changes.
+        """
         p = start.p.copy()
         p[-1] = value
         start = replace(start, p=p, balance=self.balance(p, start.balance.reach))
-        row = np.zeros_like(start.c), np.eye(len(p))[-1]
-        return self.corrected(start, row)[0]
+        return self.corrected(start, (np.zeros_like(start.c), sense * np.eye(len(p))[-1]))
 
-    def with_tangent(self, point: Point, like: tuple[np.ndarray, np.ndarray]) -> Point:
-        """Return a point with its tangent, in the sense of another one."""
-        _, J = self._system(point)
-        c0, flat = self._scale(point.c), np.r_[like[0].conj().ravel(), like[1]]
-        last = np.zeros(len(J) + 1)
-        last[-1] = 1.0
-        t = np.linalg.solve(np.vstack([J, flat]), last)
-        tc, tp = real_part_of(t[: point.c.size].reshape(point.c.shape)), t[point.c.size :].real
-        length = np.hypot(np.linalg.norm(tc) / c0, np.linalg.norm(tp / self.spans))
-        return replace(point, tangent=(tc / length, tp / length))
-
-    def _row(self, tangent: tuple[np.ndarray, np.ndarray], c: np.ndarray) -> tuple:
+    def _row(self, tangent: Row, c: np.ndarray) -> Row:
         """Return the row of (1) of a tangent."""
         return tangent[0] / self._scale(c) ** 2, tangent[1] / self.spans**2
 
@@ -193,21 +215,25 @@ class Family:
             if point.error <= self.tolerance or more == (K, N) or unknowns > _MOST_UNKNOWNS:
                 return point
             try:
-                point = self.at_value(self.widened(point, more), point.value)
+                sense = 1.0 if point.tangent is None else np.sign(point.tangent[1][-1])
+                point = self.at_value(self.widened(point, more), point.value, sense or 1.0)[0]
             except UnconvergedError:
                 return point
 
     def widened(self, point: Point, reach: tuple[int, int]) -> Point:
         """Return a point, no solution yet, with other harmonics."""
         before = point.balance.reach
-        tangent = point.tangent
-        if tangent is not None:
-            tangent = padded(tangent[0], before, reach), tangent[1]
+        if before == reach:
+            return point
+        tangent, bend = (
+            one and (padded(one[0], before, reach), one[1]) for one in (point.tangent, point.bend)
+        )
         return replace(
             point,
             c=padded(point.c, before, reach),
             balance=self.balance(point.p, reach),
             tangent=tangent,
+            bend=bend,
         )
 
     # ------------------------------------------------------------ a branch
@@ -218,63 +244,109 @@ class Family:
         values: np.ndarray,
         sense: float = 1.0,
         limits: tuple[float, float] | None = None,
+        until: Callable[[Point, Point], bool] | None = None,
     ) -> Iterator[Point]:
         """Yield the points of a branch from a solution on, until it leaves its limits.
 
-        These are the first and the last value by default.
+        These are the first and the last value by default; or until two points say so.
         """
-        c = start.c
-        if start.tangent is None:
-            up = np.zeros_like(c), np.eye(len(start.p))[-1] * sense / self.spans
-            start = self.with_tangent(start, up)
+        if start.tangent is None or start.tangent[1][-1] * sense < 0.0:
+            start = replace(self.at_value(start, start.value, sense)[0], kind=start.kind)
         point, step = self.measure(start), _FIRST
         yield point
         low, high = limits or (values[0], values[-1])
         for _ in range(_MOST_POINTS):
             try:
-                after, step = self._next(point, step)
+                after, step = self._next(point, step, values)
             except UnconvergedError:
                 self.lost.append(f"{point.value:.6g}")
+                return
+            if until is not None and until(point, after):
                 return
             section = [point, *self._changes(point, after), after]
             for first, second in pairwise(section):
                 yield from self._landed(first, second, values)
                 if second is not after or low <= after.value <= high:
                     yield second
-            if not low <= after.value <= high:
+            up = after.tangent[1][-1] > 0.0
+            if not low <= after.value <= high or after.value == (high if up else low):
                 return
             point = after
         self.lost.append(f"{point.value:.6g}")
 
-    def _next(self, point: Point, step: float) -> tuple[Point, float]:
+    def _next(self, point: Point, step: float, values: np.ndarray) -> tuple[Point, float]:
         """Return the next point, measured, and the step after it."""
+        goal, slope = None, point.tangent[1][-1]
+        if abs(slope) > _STEEP * self.spans[-1]:
+            ahead = values[(values - point.value) * np.sign(slope) > 0.0]
+            goal = ahead[np.argmin(np.abs(ahead - point.value))] if ahead.size else None
         while step > _SHORTEST:
+            away = np.inf if goal is None else (goal - point.value) / slope
+            lands = away <= _REACHED * step
+            length = away if lands else min(step, 0.5 * away)
             try:
-                after, count = self._stepped(point, step)
+                after, count = self._stepped(point, length, goal if lands else None)
             except (UnconvergedError, np.linalg.LinAlgError, ArithmeticError, ValueError):
-                step *= 0.5
+                step = 0.5 * length
                 continue
             like = self.widened(point, after.balance.reach).tangent
             row = self._row(like, point.c)
             turn = np.vdot(row[0], after.tangent[0]).real + row[1] @ after.tangent[1]
-            if turn < _TURN and step > _SMOOTH:
-                step *= 0.5
+            if turn < _TURN and length > _SMOOTH:
+                step = 0.5 * length
                 continue
+            bend = tuple((b - a) / length for a, b in zip(like, after.tangent, strict=True))
             factor = np.clip(_WANTED / count, 0.5, 2.0) * (0.7 if turn < 0.97 else 1.0)
-            return self.measure(after), min(factor * step, _LONGEST)
+            longer = max(step, factor * length) if factor >= 1.0 else factor * length
+            return self.measure(replace(after, bend=bend)), min(longer, _LONGEST)
         raise UnconvergedError("a branch ends")
 
-    def _stepped(self, point: Point, step: float) -> tuple[Point, int]:
-        t = point.tangent
-        p = point.p + step * t[1]
-        start = replace(
-            point, c=point.c + step * t[0], p=p, kind="computed",
-            balance=self.balance(p, point.balance.reach),
-        )  # fmt: skip
-        after, count = self.corrected(start, self._row(t, point.c))
-        refined = self.refined(after)
-        like = self.widened(replace(point, tangent=t), refined.balance.reach).tangent
-        return self.with_tangent(refined, self._row(like, refined.c)), count
+    def _stepped(self, point: Point, step: float, goal: float | None) -> tuple[Point, int]:
+        """Return the point after a step, perhaps at a value, and after how many corrections."""
+        (tc, tp), kind = point.tangent, "computed" if goal is None else "value"
+        c, p = point.c + step * tc, point.p + step * tp
+        if point.bend is not None:
+            dc, dp = (0.5 * step**2 * each for each in point.bend)
+            if self._length(dc, dp, point.c) < 0.5 * step:
+                c, p = c + dc, p + dp
+        start = replace(point, c=c, p=p, kind=kind, balance=self.balance(p, point.balance.reach))
+        if goal is None:
+            after, count = self.corrected(start, self._row(point.tangent, point.c))
+        else:
+            after, count = self.at_value(start, goal, np.sign(tp[-1]))
+            if self._length(after.c - c, after.p - p, point.c) > step:
+                raise UnconvergedError("another branch")
+        return self.refined(after), count
+
+    def aside(self, point: Point) -> tuple[Point, int] | None:
+        """Return a solution beside a crossing, on the branch of a longer period.
+
+        With the number g, multiples of which are the orders n of the shorter period; None where no
+        branch of a longer period begins.
+        """
+        n = point.balance.orders[:, 1]
+        size = np.linalg.norm(point.c, axis=1)
+        g = int(np.gcd.reduce(n[size > _NEW * size.max()]))
+        if g < 2:
+            return None
+        left, J = self._system(point)
+        t = np.r_[point.tangent[0].conj().ravel() / self._scale(point.c), point.tangent[1]]
+        matrix = np.vstack([np.hstack([J, self._by_parameters(point, left)]), t])
+        phi = np.linalg.svd(matrix)[2][-1].conj()
+        pairs = [self._parts(turn * phi, point) for turn in (1.0, 1j)]
+        phi = max(pairs, key=lambda one: np.linalg.norm(one[0]))[0]
+        new = n % g != 0
+        if np.linalg.norm(phi[~new]) > 0.1 * np.linalg.norm(phi):
+            return None
+        phi = phi * new[:, None] * self._scale(point.c) / np.linalg.norm(phi)
+        row = self._row((phi, np.zeros(len(point.p))), point.c)
+        for step in _ASIDE:
+            start = replace(point, c=point.c + step * phi, kind="computed", bend=None)
+            try:
+                return self.refined(self.corrected(start, row)[0]), g
+            except UnconvergedError:
+                continue
+        return None
 
     # ------------------------------------------------------------ between two points
 
@@ -290,7 +362,7 @@ class Family:
     def _between(self, first: Point, second: Point, share: float) -> Point:
         """Return the solution at a share of the way between two."""
         start, row = self._chord(first, second, share)
-        return self.with_tangent(self.corrected(start, row)[0], row)
+        return self.corrected(start, row)[0]
 
     def _changes(self, first: Point, second: Point) -> list[Point]:
         """Return folds, or else changes of stability, between two points of a branch."""
@@ -319,11 +391,11 @@ class Family:
     def _landed(self, first: Point, second: Point, values: np.ndarray) -> Iterator[Point]:
         """Yield the solutions at wanted values between two points, in their order."""
         a, b = first.value, second.value
-        up = values[(values > a) & (values <= b)]
-        for value in up if a < b else values[(values < a) & (values >= b)][::-1]:
+        inside = values[(values - a) * (values - b) < 0.0]
+        for value in inside if a < b else inside[::-1]:
             try:
                 near = self._chord(first, second, (value - a) / (b - a))[0]
-                found = self.refined(self.at_value(near, value))
+                found = self.refined(self.at_value(near, value, np.sign(b - a))[0])
                 found = self.measure(replace(found, kind="value"))
             except (UnconvergedError, ValueError, ArithmeticError, np.linalg.LinAlgError):
                 continue
@@ -338,11 +410,12 @@ def _kind(multiplier: complex) -> str:
 
 
 def same(one: Point, others: Sequence[Point], size: float) -> bool:
-    """Return whether a point is one of others, at the same value."""
+    """Return whether a point is one of others, at the same value, by what its harmonics tell."""
     for other in others:
+        apart = max(_SAME, _UNLIKE * max(one.error, other.error))
         reach = tuple(map(max, zip(one.balance.reach, other.balance.reach, strict=True)))
         a, b = (padded(each.c, each.balance.reach, reach) for each in (one, other))
         near = abs(one.value - other.value) <= 1e-9 * max(abs(one.value), 1e-300)
-        if near and np.linalg.norm(a - b) <= 1e-3 * max(np.linalg.norm(b), _LEAST * size):
+        if near and np.linalg.norm(a - b) <= apart * max(np.linalg.norm(b), _LEAST * size):
             return True
     return False

@@ -20,12 +20,13 @@ from scipy.optimize import root
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, given_supports
+from exudyn_rotor.calls import one_thread
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear import options
 from exudyn_rotor.linear.equations import UnconvergedError
-from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
-from exudyn_rotor.linear.response.places import At, checked_places
-from exudyn_rotor.linear.stability.threshold_result import StabilityThresholds
+from exudyn_rotor.linear.model.build import Target
+from exudyn_rotor.linear.response.loads import At, HarmonicForce, checked_places
+from exudyn_rotor.linear.stability.thresholds import StabilityThresholds
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.nonlinear.balance import Balance, orders_of
 from exudyn_rotor.nonlinear.beside import Beside
 from exudyn_rotor.nonlinear.collect import collected
@@ -33,10 +34,7 @@ from exudyn_rotor.nonlinear.continuation import Family, Point
 from exudyn_rotor.nonlinear.periodic_response import size_of, warn_of
 from exudyn_rotor.nonlinear.periodic_result import PeriodicResponse
 from exudyn_rotor.nonlinear.problem import Problem
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.solid_rotor import SolidRotor
-from exudyn_rotor.sweep import ascending_from_zero
-from exudyn_rotor.threads import one_thread
+from exudyn_rotor.nonlinear.scene import as_lists
 
 _FIRST = 0.02  # of a clearance: size of the first motion
 _BELOW = 0.3  # of the onset, down to which a branch is followed that turns back
@@ -44,14 +42,15 @@ _BEGIN, _MOST = (3, 0), (48, 0)  # harmonics
 
 
 def limit_cycles(
-    target: ReducedRotor | SolidRotor,
+    target: Target,
     speeds: ArrayLike,
     onset: StabilityThresholds,
     *,
-    supports: Sequence[Given] | Given,
+    supports: Sequence[Given] | Given = (),
     gravity: ArrayLike = (0.0, 0.0, 0.0),
     loads: Sequence[HarmonicForce] | HarmonicForce = (),
     foundation: Foundation | None = None,
+    body: RotorBody | Sequence[RotorBody] | None = None,
     at: Sequence[At] | At | None = None,
     stiffening: str = "auto",
     tolerance: float = 1e-3,
@@ -63,13 +62,13 @@ def limit_cycles(
 
     Parameters
     ----------
-    target : ReducedRotor or SolidRotor
-        Round.
+    target : ReducedRotor, SolidRotor, RotorTrain, LinearModel or exudyn.MainSystem
+        As of :func:`periodic_response`; round.
     speeds : array_like, shape (v,)
         Ascending spin speeds [rad/s] at which all solutions that are met are wanted.
     onset : StabilityThresholds
         Of :func:`stability_threshold`, with the same supports.
-    supports, gravity, loads, foundation, at, stiffening, tolerance
+    supports, gravity, loads, foundation, body, at, stiffening, tolerance
         See :func:`periodic_response`.
 
     Returns
@@ -103,22 +102,19 @@ def limit_cycles(
     >>> print(round(whirl.rates[point, 0] / 1200.0, 2))
     0.5
     """
-    speeds = ascending_from_zero(speeds, "speeds")
+    speeds = checks.ascending_from_zero(speeds, "speeds")
     checks.instance(onset, "onset", StabilityThresholds, "stability_threshold(…) makes one")
-    checks.instance(target, "target", (ReducedRotor, SolidRotor))
     loads = checks.instances(loads, "loads", HarmonicForce)
     gravity = checks.vector(gravity, "gravity", "m/s²")
-    tolerance = options.accuracy(tolerance, "tolerance")
+    tolerance = checks.tolerance(tolerance)
     asked = checked_places(at)
     begins = np.flatnonzero(onset.onset)
     if not begins.size:
         raise ValueError("onset: the rotor does not turn unstable in its range; give a wider one")
     speed = float(onset.values[begins[0]])
     frequency = float(onset.frequencies_inertial[begins[0]])
-    problem = Problem.of(
-        target, given_supports(supports), (), gravity=gravity, loads=loads, own=False,
-        foundation=foundation, stiffening=stiffening, speed=speed, highest=speed,
-    )  # fmt: skip
+    given = as_lists(target, body, given_supports(supports), foundation, gravity, loads, stiffening)
+    problem = Problem.of(given, unbalances=(), own=False, speed=speed, highest=speed)
     if problem.standing is None or problem.laws.passes or not problem.laws.bearings:
         raise ValueError(
             "supports: need one film or more, and a round rotor without rolling bearings, whose "
@@ -146,7 +142,6 @@ def limit_cycles(
             start = family.corrected(Point(c, p, balance(p, _BEGIN)), row)[0]
         except UnconvergedError as error:
             raise ValueError("onset: no whirl of small size was found at it") from error
-        start = family.with_tangent(start, row)
         limits = min(speeds[0], _BELOW * p[1]), speeds[-1]
         found = list(family.followed(start, speeds, limits=limits))
         warn_of(family, found)

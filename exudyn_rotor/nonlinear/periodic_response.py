@@ -13,24 +13,19 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.support import NoCoefficientsError
-from exudyn_rotor.callers import user_level
+from exudyn_rotor.calls import one_thread, user_level
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear import options
 from exudyn_rotor.linear.equations import UnconvergedError
-from exudyn_rotor.linear.model.build import warn_of_left_out_stiffening
-from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
-from exudyn_rotor.linear.response.places import At, checked_places
-from exudyn_rotor.linear.response.unbalance import Unbalance
+from exudyn_rotor.linear.model.build import Target, warn_of_left_out_stiffening
+from exudyn_rotor.linear.response.loads import At, HarmonicForce, Unbalance, checked_places
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.nonlinear.balance import Balance
 from exudyn_rotor.nonlinear.beside import Beside
 from exudyn_rotor.nonlinear.collect import collected
 from exudyn_rotor.nonlinear.continuation import Family, Point, same
 from exudyn_rotor.nonlinear.periodic_result import PeriodicResponse
 from exudyn_rotor.nonlinear.problem import Problem
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.solid_rotor import SolidRotor
-from exudyn_rotor.sweep import ascending_from_zero
-from exudyn_rotor.threads import one_thread
+from exudyn_rotor.nonlinear.scene import as_lists
 
 _LABELS = {"speed": "spin speed [rad/s]", "unbalance": "unbalance"}
 _MOST = (24, 48)  # harmonics of the second phase, and of the spin in a revolution
@@ -44,7 +39,7 @@ Over = str | Callable[[float], Sequence[Given] | Given]
 
 
 def periodic_response(
-    target: ReducedRotor | SolidRotor,
+    target: Target,
     values: ArrayLike,
     unbalances: Sequence[Unbalance] | Unbalance = (),
     *,
@@ -55,6 +50,7 @@ def periodic_response(
     loads: Sequence[HarmonicForce] | HarmonicForce = (),
     own: bool = True,
     foundation: Foundation | None = None,
+    body: RotorBody | Sequence[RotorBody] | None = None,
     revolutions: int = 1,
     at: Sequence[At] | At | None = None,
     stiffening: str = "auto",
@@ -72,8 +68,11 @@ def periodic_response(
 
     Parameters
     ----------
-    target : ReducedRotor or SolidRotor
-        A SolidRotor is reduced first, see :func:`linear_model`.
+    target : ReducedRotor, SolidRotor, RotorTrain, LinearModel or exudyn.MainSystem
+        As of :func:`linear_model`. A scene has laws of :func:`add_supports` on the ground or on one
+        foundation, Exudyn's own linear springs between interfaces and the ground, constant forces
+        and weight; anything else in it is refused. Of a train, the unbalance is that of rotors of
+        ratio 1.
     values : array_like, shape (v,)
         Ascending values of the parameter; all solutions that are met there are among the points.
         From the first to the last one the branches are followed.
@@ -95,8 +94,12 @@ def periodic_response(
         Whether the rotor's own eccentricity counts, by added point masses and by its mesh.
     foundation : Foundation, optional
         What carries all supports, see :func:`linear_model`.
+    body : RotorBody or sequence of RotorBody, optional
+        The rotor in a scene, or all of them; a scene has its own supports, foundation, loads and
+        gravity. Whether and how fast it spins there plays no part; of several, the ratios do.
     revolutions : int, optional
-        After which the motion repeats: 2 for motions at half of the spin frequency.
+        After which the motion repeats: 2 for motions at half of the spin frequency. From doublings
+        on the branch of a shorter period, those of a longer one are followed, too.
     at : sequence of str, int or position, optional
         Interfaces and mesh nodes to look at; all interfaces by default.
     stiffening : {'auto', 'none', 'tilt', 'full'}
@@ -115,7 +118,8 @@ def periodic_response(
     ------
     TypeError, ValueError
         For bad input, a bearing without a force by place and velocity, two ball pass frequencies, a
-        rotor that nothing holds, and where no motion is found at all.
+        rotor that nothing holds, an item of a scene that is no law of this package, and where no
+        motion is found at all.
 
     Warns
     -----
@@ -146,16 +150,17 @@ def periodic_response(
     unbalances = checks.instances(unbalances, "unbalances", Unbalance)
     loads = checks.instances(loads, "loads", HarmonicForce)
     gravity = checks.vector(gravity, "gravity", "m/s²")
-    checks.instance(target, "target", (ReducedRotor, SolidRotor))
-    tolerance = options.accuracy(tolerance, "tolerance")
+    tolerance = checks.tolerance(tolerance)
     revolutions = checks.count(revolutions, "revolutions", least=1)
     checks.flag(own, "own")
     checks.flag(follow, "follow")
     asked = checked_places(at)
     values, speed = _checked_parameter(values, over, speed)
+    given = as_lists(target, body, given_supports(supports), foundation, gravity, loads, stiffening)
+    if callable(over) and given.supports:
+        raise ValueError("supports: come from over=…, a function; leave them out")
     make = partial(
-        Problem.of, target, unbalances=unbalances, gravity=gravity, loads=loads, own=own,
-        foundation=foundation, stiffening=stiffening, revolutions=revolutions,
+        Problem.of, unbalances=unbalances, own=own, revolutions=revolutions,
     )  # fmt: skip
     if callable(over):
         known: dict[float, Problem] = {}
@@ -164,12 +169,13 @@ def periodic_response(
             if value not in known:
                 if len(known) > 3:
                     known.pop(next(iter(known)))
-                known[value] = make(given_supports(over(value)), speed=speed, highest=speed)
+                one = given._replace(supports=given_supports(over(value)))
+                known[value] = make(one, speed=speed, highest=speed)
             return known[value]
     else:
         highest = values[-1] if over == "speed" else speed
         lowest = next(iter(values[values > 0.0]), 0.0) if over == "speed" else speed
-        one = make(given_supports(supports), speed=lowest, highest=highest)
+        one = make(given, speed=lowest, highest=highest)
         if not one.laws.bearings:
             raise ValueError(
                 "supports: none has a nonlinear law; unbalance_response takes linear ones"
@@ -212,7 +218,7 @@ def _checked_parameter(
     if over == "speed":
         if speed is not None:
             raise ValueError("speed: is for another parameter than over='speed'; leave it out")
-        return ascending_from_zero(values, "values"), None
+        return checks.ascending_from_zero(values, "values"), None
     if speed is None:
         raise ValueError("speed: needs the spin speed [rad/s] where the parameter is another one")
     return checks.ascending(values, "values"), checks.number(speed, "speed", "rad/s", least=0.0)
@@ -267,12 +273,40 @@ def _branches(
         met = [point for branch in found for point in branch]
         if not same(start, met, family.size):
             found.append(list(family.followed(start, values, sense)))
+            found += _of_longer_periods(family, found[-1], values)
     if not found:
         raise ValueError(
             f"values: no steady motion was found at {values[0]:g} and {values[-1]:g}, from which a "
             f"branch could be followed ({lost}); give other values, or a damped run of a scene "
             "shows what the rotor does"
         ) from lost
+    return found
+
+
+def _of_longer_periods(
+    family: Family, branch: list[Point], values: np.ndarray
+) -> list[list[Point]]:
+    """Return the branches of a longer period that begin at doublings, which are marked."""
+    found = []
+    for index, point in enumerate(branch):
+        if point.kind != "branching" or point.balance.rest.revolutions == 1:
+            continue
+        beside = family.aside(point)
+        if beside is None:
+            continue
+        branch[index] = replace(point, kind="doubling")
+        start, g = beside
+
+        def returns(one: Point, after: Point, g: int = g) -> bool:
+            """Return whether a branch comes back to a motion of the shorter period."""
+            new = after.balance.orders[:, 1] % g != 0
+            before = family.widened(one, after.balance.reach).c
+            return np.vdot(before[new], after.c[new]).real < 0.0
+
+        sense = float(np.sign(start.tangent[1][-1]))
+        one = list(family.followed(start, values, sense, until=returns))
+        others = _of_longer_periods(family, one, values)
+        found += [[branch[index], *one], *others]
     return found
 
 
@@ -285,7 +319,7 @@ def _one_by_one(
     for value in map(float, values):
         try:
             try:
-                near = found[-1:] and family.refined(family.at_value(found[-1], value))
+                near = found[-1:] and family.refined(family.at_value(found[-1], value)[0])
             except _FAILS:
                 near = None
             found.append(_measured(near or _first(family, problem_at(value), value)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -14,20 +14,19 @@ from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.rolling import RollingBearing, depth_under
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
-from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.response.harmonic_loads import (
+from exudyn_rotor.linear.response.loads import (
     BaseAcceleration,
-    HarmonicForce,
+    Unbalance,
     total,
     unbalance_load,
 )
-from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.nonlinear.balance import Balance, Laws, real_part_of
 from exudyn_rotor.nonlinear.rest import Rest, Unloaded, of_both_signs
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.nonlinear.scene import Listed
+from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.theory.rotating_axes import axes_of, parts_across
 
 _DEPTH = 1e-3  # of the radius of the elements, at which a contact has the stiffness of k₀
@@ -66,10 +65,11 @@ def parted(given: Sequence[Given]) -> tuple[list[Bearing], list[Given]]:
     return laws, linear
 
 
-def passes_of(laws: Sequence[Bearing]) -> float:
+def passes_of(laws: Sequence[Bearing], ratios: Sequence[float]) -> float:
     """Return how many elements pass the load in a revolution, the same for all; 0 without any."""
-    found = [one.count * one.cage_ratio for one in laws if isinstance(one, RollingBearing)]
-    if found and np.ptp(found) > _SAME_PASS * max(found):
+    pairs = zip(laws, ratios, strict=True)
+    found = [r * one.count * one.cage_ratio for one, r in pairs if isinstance(one, RollingBearing)]
+    if found and np.ptp(found) > _SAME_PASS * np.abs(found).max():
         raise ValueError(
             f"supports: {min(found):.6g} and {max(found):.6g} elements pass in a revolution, and "
             "one frequency of ball passes is balanced: give one kind as it is, with the other "
@@ -78,10 +78,10 @@ def passes_of(laws: Sequence[Bearing]) -> float:
     return found[0] if found else 0.0
 
 
-def springs_of(laws: Sequence[Bearing], speed: float) -> tuple[np.ndarray, np.ndarray]:
+def springs_of(laws: Sequence[Bearing], speeds: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
     """Return k₀ [N/m] and d₀ [N s/m] in place of laws, of the size of theirs, (d,) each."""
     found = []
-    for one in laws:
+    for one, speed in zip(laws, speeds, strict=True):
         gap = one.clearance_along()
         where = _INSIDE * gap if np.isfinite(gap) else 0.0
         if isinstance(one, RollingBearing):
@@ -124,15 +124,10 @@ class Problem:
     @classmethod
     def of(
         cls,
-        target: object,
-        given: Sequence[Given],
-        unbalances: Sequence[Unbalance],
+        given: Listed,
         *,
-        gravity: np.ndarray,
-        loads: Sequence[HarmonicForce],
+        unbalances: Sequence[Unbalance],
         own: bool,
-        foundation: Foundation | None,
-        stiffening: str,
         speed: float,
         highest: float,
         revolutions: int = 1,
@@ -146,20 +141,19 @@ class Problem:
         ------
         ValueError
         """
-        bearings, linear = parted(given)
-        springs, dampers = springs_of(bearings, highest)
-        stand_ins = [
-            Support(one.interface, k, d)
-            for one, k, d in zip(bearings, springs[::2], dampers[::2], strict=True)
-        ]
-        options = {"foundation": foundation, "stiffening": stiffening}
-        model = linear_model(target, supports=[*stand_ins, *linear], **options)
+        asked = linear_model(
+            given.target,
+            supports=given.supports,
+            foundation=given.foundation,
+            stiffening=given.stiffening,
+        )
+        model, laws = _with_stand_ins(asked, highest)
         model, standing = _constant(model, speed or 1.0)
-        _check_held(model, given)
-        weight = parts_across(axes_of(next(iter(model.rotors.values())).axis), gravity)
-        steady = [*([BaseAcceleration(-weight)] if np.any(weight) else []), *loads]
+        _check_held(model)
+        weight = parts_across(axes_of(next(iter(model.rotors.values())).axis), given.gravity)
+        steady = [*([BaseAcceleration(-weight)] if np.any(weight) else []), *given.loads]
         static = of_both_signs(total(steady, model, speed)) if steady else {}
-        _check_along(model, static, given)
+        _check_along(model, static)
         try:
             unbalance = unbalance_load(model, unbalances, own)
         except ValueError:
@@ -167,12 +161,11 @@ class Problem:
                 raise
             unbalance = {}
         unbalance = {n: F for n, F in of_both_signs(unbalance).items() if np.any(F)}
-        if passes_of(bearings) and not unbalance and not any(map(np.any, static.values())):
+        if laws.passes and not unbalance and not any(map(np.any, static.values())):
             raise ValueError(
                 "gravity, loads, unbalances: need one across the axis that is not zero: without a "
                 "load no element carries, and preloaded ones do not move"
             )
-        laws = Laws(bearings, springs, dampers, passes_of(bearings))
         return cls(model, standing, laws, static, unbalance, revolutions)
 
     @property
@@ -210,8 +203,7 @@ class Problem:
         if speed not in self._rests:
             while len(self._rests) >= _RESTS:
                 self._rests.pop(next(iter(self._rests)))
-            names = [one.interface for one in self.laws.bearings]
-            self._rests[speed] = Unloaded(self.model, names, speed, self.standing)
+            self._rests[speed] = Unloaded(self.model, self.laws.names, speed, self.standing)
         return self._rests[speed]
 
     # ------------------------------------------------------------ where a search begins
@@ -225,7 +217,10 @@ class Problem:
         """
         balance = self.balance(speed, (0, 0), unbalance=0.0, share=share)
         load = (self.laws.springs * balance.given[0].real).reshape(-1, 2)
-        guess = [_resting(one, speed, f) for one, f in zip(self.laws.bearings, load, strict=True)]
+        guess = [
+            _resting(one, ratio * speed, f)
+            for one, ratio, f in zip(self.laws.bearings, self.laws.ratios, load, strict=True)
+        ]
         tried = [np.ravel(guess)[None] + 0j, np.zeros_like(balance.given), balance.given]
         return balance, _first_of(balance, tried)
 
@@ -280,9 +275,9 @@ class Problem:
             -1, len(self.laws.bearings), 2
         )
         places = np.zeros_like(loads)
-        for b, one in enumerate(self.laws.bearings):
+        for b, (one, ratio) in enumerate(zip(self.laws.bearings, self.laws.ratios, strict=True)):
             for place, load in zip(places[:, b], loads[:, b], strict=True):
-                place[:] = _resting(one, balance.rest.speed, load)
+                place[:] = _resting(one, ratio * balance.rest.speed, load)
         k, n = balance.orders.T
         A, B = balance.points
         return balance.spectrum(places.reshape(len(places), -1))[k % A, n % B]
@@ -308,10 +303,29 @@ def _resting(one: Bearing, speed: float, load: np.ndarray) -> np.ndarray:
         return np.zeros(2)
 
 
+def _with_stand_ins(model: LinearModel, speed: float) -> tuple[LinearModel, Laws]:
+    """Return a model with springs and dampers in place of the laws, and these, up to a speed."""
+    bearings, names, ratios, linear = [], [], [], {}
+    for rotor, given in model.supports.items():
+        laws, linear[rotor] = parted(given)
+        bearings += laws
+        names += [f"{rotor}:{one.interface}" if rotor else one.interface for one in laws]
+        ratios += [model.ratios[rotor]] * len(laws)
+    springs, dampers = springs_of(bearings, [ratio * speed for ratio in ratios])
+    for one, name, k, d in zip(bearings, names, springs[::2], dampers[::2], strict=True):
+        rotor = name.rpartition(":")[0] if "" not in model.rotors else ""
+        linear[rotor].insert(0, Support(one.interface, k, d))
+    laws = Laws(bearings, names, ratios, springs, dampers, passes_of(bearings, ratios))
+    return replace(model, supports=linear), laws
+
+
 def _constant(model: LinearModel, speed: float) -> tuple[LinearModel, LinearModel | None]:
     """Return a model whose equations are constant, and one in axes that stand still."""
+    model.check_without_frequency("a periodic motion")
     constant = model.at(speed).is_constant
     standing = model if constant and not model.turns else None
+    if standing and len(model.rotors) > 1:  # no axes turn with all of them
+        return model, standing
     turning = model.for_responses
     if turning.at(speed).is_constant:
         return turning, standing
@@ -323,13 +337,13 @@ def _constant(model: LinearModel, speed: float) -> tuple[LinearModel, LinearMode
     return model, standing
 
 
-def _check_held(model: LinearModel, given: Sequence[Given]) -> None:
+def _check_held(model: LinearModel) -> None:
     """Refuse a rotor that supports leave free across its axis."""
     free = model.free_motions
     across = [name for name in free if name not in _NOT_ACROSS]
     # an eccentric rotor spins about its bearings, which is a combination of motions
     if across and len(free) > model.neutral_motions.shape[1]:
-        ends = ", ".join(dict.fromkeys(repr(one.interface) for one in given))
+        ends = _ends(model)
         motion = "tilting" if any("tilt" in name for name in across) else "lateral motion"
         raise ValueError(
             f"supports: nothing holds the rotor against {motion}: all stand at {ends}; add one at "
@@ -337,14 +351,18 @@ def _check_held(model: LinearModel, given: Sequence[Given]) -> None:
         )
 
 
-def _check_along(model: LinearModel, static: Mapping, given: Sequence[Given]) -> None:
+def _check_along(model: LinearModel, static: Mapping) -> None:
     """Refuse a load along the axis where nothing holds the rotor."""
     spins = model.free_spins.shape[1]
     shifts = model.neutral_motions[:, : model.neutral_motions.shape[1] - spins]
     largest = max((np.abs(F).max() for F in static.values()), default=0.0)
     if any(np.abs(F @ shifts).max(initial=0.0) > _SMALL * largest for F in static.values()):
-        ends = ", ".join(dict.fromkeys(repr(one.interface) for one in given))
         raise ValueError(
-            f"supports: nothing holds the rotor along its axis, with supports at {ends}; add a "
-            "stiffness along the axis, or leave out loads along it"
+            "supports: nothing holds the rotor along its axis, with supports at "
+            f"{_ends(model)}; add a stiffness along the axis, or leave out loads along it"
         )
+
+
+def _ends(model: LinearModel) -> str:
+    given = (one for each in model.supports.values() for one in each)
+    return ", ".join(dict.fromkeys(repr(one.interface) for one in given))

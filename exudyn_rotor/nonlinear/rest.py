@@ -20,7 +20,7 @@ from functools import cached_property
 
 import numpy as np
 
-from exudyn_rotor.cached import kept
+from exudyn_rotor.calls import kept
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, difference, stacked
 from exudyn_rotor.linear.model.linear_model import ON_FOUNDATION, LinearModel
 

@@ -9,17 +9,14 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear import options
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, rounded
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_structural_damping
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import motions_over
-from exudyn_rotor.linear.response.harmonic_loads import unbalance_load
-from exudyn_rotor.linear.response.unbalance import Unbalance
+from exudyn_rotor.linear.response.loads import Unbalance, unbalance_load
 from exudyn_rotor.linear.solve.forced import forced_motions
 from exudyn_rotor.pictures.motion_shapes import MotionShapes
-from exudyn_rotor.sweep import ascending_from_zero
 
 _ANGLES = 90  # of a revolution, at which the size of a response is looked up: 0.1 % of an ellipse
 
@@ -68,7 +65,7 @@ def mode_shapes(
     """
     speed = checks.number(speed, "speed", "rad/s")
     count = checks.count(modes, "modes", least=1)
-    tolerance = options.accuracy(tolerance, "tolerance")
+    tolerance = checks.tolerance(tolerance)
     model = _with_mesh(target, supports, stiffening, axes)
     warn_of_structural_damping(model, "mode_shapes finds modes")
     motions = motions_over(model, [speed], tolerance=tolerance)
@@ -140,17 +137,18 @@ def response_shapes(
     >>> round(float(shape.displacement(0, 0.0)[0, 0]), 9)  # U Ω² / (k − m Ω²)
     1.6667e-05
     """
-    values = ascending_from_zero(speeds, "speeds")
+    values = checks.ascending_from_zero(speeds, "speeds")
     if values[0] == 0.0:
         raise ValueError("speeds: needs spin speeds above zero, where an unbalance has a load")
     unbalances = checks.instances(unbalances, "unbalances", Unbalance)
     checks.flag(own, "own")
-    tolerance = options.accuracy(tolerance, "tolerance")
+    tolerance = checks.tolerance(tolerance)
     model = _with_mesh(target, supports, stiffening, axes).for_responses
     load, held = unbalance_load(model, unbalances, own), model.held_basis
     loads = {n: values[:, None] ** 2 * F for n, F in load.items()}
     none = np.zeros(len(values))
-    found = forced_motions(model.at_all(values), loads, none, held=held, tolerance=tolerance)
+    stack = model.at_all(values, "held")
+    found = forced_motions(stack, loads, none, held=held, tolerance=tolerance)
     seen = _of_nodes(model, {n: X.T for n, X in found.items()}, 1.0)
     if any(np.any(np.isnan(x)) for x in seen.values()):
         raise UnconvergedError("response_shapes: there is no steady motion at one of the speeds")

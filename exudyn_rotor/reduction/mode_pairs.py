@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from exudyn_rotor.callers import user_level
+from exudyn_rotor.calls import user_level
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers.lanczos import Modes
 from exudyn_rotor.theory.rotating_axes import axes_of

@@ -11,6 +11,7 @@ import scipy.sparse as sp
 from exudyn.FEM import FEMinterface
 
 from exudyn_rotor import checks
+from exudyn_rotor.calls import one_thread
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.prestress.estimate import estimated_stiffness
 from exudyn_rotor.prestress.static_solution import relief_rotations
@@ -19,9 +20,14 @@ from exudyn_rotor.reduction.attachment import attachment_modes
 from exudyn_rotor.reduction.basis import OrthonormalBasis, rigid_columns
 from exudyn_rotor.reduction.component import ModeBasis, free_modes
 from exudyn_rotor.reduction.fem_interface_modes import fem_interface_modes
-from exudyn_rotor.reduction.fields import Centrifugal, ModeShapes, ReducedInterface
+from exudyn_rotor.reduction.fields import (
+    RIGID_KINDS,
+    Centrifugal,
+    ModeKind,
+    ModeShapes,
+    ReducedInterface,
+)
 from exudyn_rotor.reduction.inertial_modes import inertial_modes
-from exudyn_rotor.reduction.mode_kind import RIGID_KINDS, ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.carried_prestress import Prestress
@@ -29,7 +35,6 @@ from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.nodal import rotations, translations
 from exudyn_rotor.theory.stiffening import with_prestress
-from exudyn_rotor.threads import one_thread
 
 _UNRESISTED = (ModeKind.TRANSLATION_1, ModeKind.TRANSLATION_2, ModeKind.AXIAL)
 _NO_TURN = 1e-9  # of the largest: what rounding leaves of the rotation of a translation

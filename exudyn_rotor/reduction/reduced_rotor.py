@@ -14,11 +14,12 @@ from exudyn_rotor import checks
 from exudyn_rotor.reduction.attached import Attached
 from exudyn_rotor.reduction.fields import (
     Centrifugal,
+    ModeKind,
     ModeShapes,
     ReducedInterface,
+    rigid_names,
     set_checked,
 )
-from exudyn_rotor.reduction.mode_kind import ModeKind, rigid_names
 from exudyn_rotor.reduction.reduced_file import load_reduced, save_reduced
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants

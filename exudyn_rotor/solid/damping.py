@@ -82,9 +82,9 @@ def _of_regions(
     if rotor.elements is None:
         raise ValueError(
             "materials: this rotor has no elements that tell its materials apart; make it with "
-            "SolidRotor.from_ngsolve"
+            "SolidRotor.from_ngsolve or from_mesh"
         )
-    regions = rotor.elements.mesh.GetMaterials()
+    regions = rotor.elements.materials
     checks.labels(tuple(materials), "materials", sorted(set(regions)))
     by_name = {}
     for name, factors in materials.items():

@@ -1,148 +1,97 @@
-"""Matrices of second order in the displacements, on the elements of an NGSolve model."""
+"""Isoparametric solid elements: their matrices, of second order too, and stress."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
-import ngsolve as ngs
 import numpy as np
 import scipy.sparse as sp
 
 from exudyn_rotor.solid import matrices
+from exudyn_rotor.solid.shapes import KINDS, ElementKind, Rule
 
-# Components xx, yy, zz, yz, xz, xy as entries of the 3 × 3 tensor, row by row.
-_TENSOR = (0, 5, 4, 5, 1, 3, 4, 3, 2)
-
-
-def nodal_space(mesh: ngs.Mesh, order: int, dim: int = 1) -> ngs.FESpace:
-    """Return the space whose degrees of freedom are the mesh nodes, `dim` of them at each."""
-    if order == 2:
-        return ngs.NodalFESpace(mesh, order=2, dim=dim)
-    return ngs.H1(mesh, order=1, dim=dim)
-
-
-def assembled(form: ngs.BilinearForm) -> sp.csr_array:
-    """Return the matrix of a form as arrays of its own, coordinates in the order x0 y0 z0 x1 …."""
-    with ngs.TaskManager():
-        form.Assemble()
-    # the arrays belong to the form, which ends here
-    dim, data = form.space.dim, form.mat.AsVector().FV().NumPy()
-    # half the memory of long ones
-    columns, ends = (array.NumPy().astype(np.int32) for array in form.mat.CSR()[1:])
-    if dim == 1:
-        return sp.csr_array((data.copy(), columns, ends), shape=form.mat.shape)
-    return sp.bsr_array((data.reshape(-1, dim, dim), columns, ends)).tocsr()
-
-
-def assemble_mass(space: ngs.FESpace, densities: np.ndarray) -> sp.csr_array:
-    """Return the consistent mass matrix; one direction is assembled, all three have the same."""
-    u, v = space.TnT()
-    form = ngs.BilinearForm(space)
-    form += ngs.CoefficientFunction(list(densities)) * u * v * ngs.dx
-    return matrices.in_all_directions(assembled(form))
-
-
-def assemble_stiffness(mesh: ngs.Mesh, order: int, lame: np.ndarray) -> sp.csr_array:
-    """Return the stiffness matrix of linear isotropic elasticity."""
-    space = nodal_space(mesh, order, dim=3)
-    u, v = space.TnT()
-    form = ngs.BilinearForm(space)
-    form += ngs.InnerProduct(_hooke(ngs.Sym(ngs.Grad(u)), lame), ngs.Sym(ngs.Grad(v))) * ngs.dx
-    return assembled(form)
+# Components xx, yy, zz, yz, xz, xy as entries of the 3 × 3 tensor.
+_FIRST, _SECOND = np.array([0, 1, 2, 1, 0, 0]), np.array([0, 1, 2, 2, 2, 1])
+_TENSOR = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])
+_CHUNK = 4_000_000  # numbers in the largest array of a step
 
 
 @dataclass(frozen=True, eq=False)
-class NgsolveElements:
-    """Elements of a model, for matrices of a static field and of single materials.
+class Block:
+    """Elements of one kind.
+
+    Attributes
+    ----------
+    kind : str
+        One of ``exudyn_rotor.solid.shapes.KINDS``.
+    nodes : ndarray of int, shape (e, n)
+        Order of meshio (and VTK).
+    regions : ndarray of int, shape (e,)
+        Number of each element's material.
+    """
+
+    kind: str
+    nodes: np.ndarray
+    regions: np.ndarray
+
+    @property
+    def shape(self) -> ElementKind:
+        """Shape functions and integration points."""
+        return KINDS[self.kind]
+
+
+@dataclass(frozen=True, eq=False)
+class SolidElements:
+    """Elements of a model, for its matrices, those of a static field and of single materials.
 
     All integrals of a static field use the integration points of the stiffness matrix. A stress
     field in discrete equilibrium then stays so: for a rotation ``a × x`` its geometric stiffness
-    is ``vᵀ K_G (a × x) = v · (a × f)`` with the nodal load f, to rounding. More points change K_G
-    of the lowest flexible modes by 3e-4 or less, but lose this balance by 4e-3 at curved elements.
+    is ``vᵀ K_G (a × x) = v · (a × f)`` with the nodal load f, to rounding.
 
     Parameters
     ----------
-    mesh : ngsolve.Mesh
-    order : int
-        Order of the displacements, 1 or 2.
     nodes : ndarray, shape (n, 3)
-        Positions at the time of assembly, mesh coordinates [m].
+        Reference positions, mesh coordinates [m].
+    blocks : sequence of Block
+    materials : sequence of str
+        Names of the regions.
     lame : ndarray, shape (regions, 2)
         Lamé parameters λ, μ of every region [Pa].
     densities : ndarray, shape (regions,)
         [kg/m³].
-    edges : ndarray of int, shape (n, 2)
-        Ends of the edge in whose middle a node is; itself twice for a vertex. Vertices come first.
     held : ndarray of int, optional
         Nodes that are clamped: their rows and columns are zero in every matrix.
     free : scipy.sparse.csr_array, optional
         Takes held directions of nodes out of displacements, shape (3n, 3n).
     """
 
-    mesh: ngs.Mesh
-    order: int
     nodes: np.ndarray
+    blocks: Sequence[Block]
+    materials: Sequence[str]
     lame: np.ndarray
     densities: np.ndarray
-    edges: np.ndarray
     held: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     free: sp.csr_array | None = None
 
-    def materials_at(self, nodes: np.ndarray) -> tuple[str, ...]:
-        """Return the names of the regions whose elements have any of these nodes."""
-        elements = self.mesh.ngmesh.Elements3D().NumPy()
-        touched = np.isin(elements["nodes"].astype(np.int64) - 1, nodes).any(axis=1)
-        regions = self.mesh.GetMaterials()
-        return tuple(sorted({regions[i - 1] for i in np.unique(elements["index"][touched])}))
+    def mass_matrix(self, factors: np.ndarray | None = None) -> sp.csr_array:
+        """Return the mass matrix (3n, 3n), with a factor for every region, shape (regions,)."""
+        densities = self.densities if factors is None else factors * self.densities
 
-    def mass_matrix(self, factors: np.ndarray) -> sp.csr_array:
-        """Return the mass matrix (3n, 3n) with a factor for every region, shape (regions,)."""
-        self._check_mesh()
-        space = nodal_space(self.mesh, self.order)
-        return self._without_held(assemble_mass(space, factors * self.densities))
+        def entries(block: Block) -> Iterator[np.ndarray]:
+            points = block.shape.mass_rule[0]
+            values = block.shape.values(points)
+            products = np.einsum("qi,qj->qij", values, values).reshape(len(points), -1)
+            for part in self._parts(block, block.shape.mass_rule):
+                yield (densities[part.regions][:, None] * part.weights) @ products
 
-    def stiffness_matrix(self, factors: np.ndarray) -> sp.csr_array:
-        """Return the stiffness matrix (3n, 3n) with a factor for every region."""
-        self._check_mesh()
-        lame = factors[:, None] * self.lame
-        return self._without_held(assemble_stiffness(self.mesh, self.order, lame))
+        matrix = self._assembled(entries, 1)
+        return self._without_held(matrices.in_all_directions(matrix))
 
-    def holding(self, nodes: np.ndarray) -> NgsolveElements:
-        """Return the elements with more nodes clamped."""
-        return replace(self, held=np.union1d(self.held, nodes))
-
-    def holding_directions(self, free: sp.csr_array) -> NgsolveElements:
-        """Return the elements with more directions held, which the projection `free` takes out."""
-        return replace(self, free=free if self.free is None else sp.csr_array(self.free @ free))
-
-    def interpolation(self) -> sp.csr_array | None:
-        """Return what gives all displacements (3n,) that are linear in every element.
-
-        From those of the vertices; a mid node takes the mean of its edge. None for elements of
-        first order, all of whose nodes are vertices.
-        """
-        if self.order == 1:
-            return None
-        every = np.repeat(np.arange(len(self.edges)), 2)
-        shape = (len(self.edges), int(self.edges.max()) + 1)
-        means = sp.csr_array((np.full(every.size, 0.5), (every, self.edges.ravel())), shape=shape)
-        linear = sp.csr_array(sp.kron(means, sp.eye_array(3), format="csr"))
-        return linear if self.free is None else sp.csr_array(self.free @ linear)
-
-    def described(self) -> list[tuple[str, float, float, float, float]]:
-        """Return name, mass [kg], Young's modulus [Pa], Poisson's ratio and density by region."""
-        self._check_mesh()
-        one = ngs.CoefficientFunction(1.0)
-        volumes = ngs.Integrate(one, self.mesh, order=2 * self.order, region_wise=True)
-        first, second = self.lame.T
-        young = second * (3.0 * first + 2.0 * second) / (first + second)
-        ratio = 0.5 * first / (first + second)
-        masses = self.densities * np.array(volumes)
-        columns = (masses, young, ratio, self.densities)
-        return [
-            (name, *(float(column[i]) for column in columns))
-            for i, name in enumerate(self.mesh.GetMaterials())
-        ]
+    def stiffness_matrix(self, factors: np.ndarray | None = None) -> sp.csr_array:
+        """Return the stiffness matrix (3n, 3n), with a factor for every region."""
+        scale = 1.0 if factors is None else factors[:, None]
+        return self._without_held(self._of_strains(None, None, scale * self.lame))
 
     def geometric_stiffness(self, displacement: np.ndarray) -> sp.csr_array:
         """Return ``vᵀ K_G u = ∫ σ⁰ : (∇uᵀ∇v) dV`` with σ⁰ of a displacement, shape (3n, 3n).
@@ -151,14 +100,9 @@ class NgsolveElements:
         ----------
         displacement : ndarray, shape (3n,)
             Static displacement u⁰, mesh axes; σ⁰ is Hooke's stress of its linear strain.
-
-        Raises
-        ------
-        ValueError
-            If the mesh was changed since the model was made, or the shape does not fit.
         """
-        static = self._displacement(displacement)
-        return self._without_held(self._of_stress(self._hooke(ngs.Sym(ngs.grad(static)))))
+        static = self._nodal("displacement", displacement, (self.nodes.size,)).reshape(-1, 3)
+        return self._without_held(self._of_stress(lambda part: part.stress(static, self.lame)))
 
     def geometric_stiffness_of_stress(self, stress: np.ndarray) -> sp.csr_array:
         """Return the same of a nodal stress field, interpolated by the shape functions.
@@ -168,14 +112,14 @@ class NgsolveElements:
         stress : ndarray, shape (n, 6)
             Components xx, yy, zz, yz, xz, xy in mesh axes [Pa].
         """
-        return self._without_held(self._of_stress(self._nodal_stress(stress)))
+        return self._without_held(self._of_nodal_stress(stress))
 
     def load_of_stress(self, stress: np.ndarray) -> np.ndarray:
         """Return the nodal forces ``v · r = ∫ σ : ∇v dV`` of a nodal stress (n, 6), shape (3n,).
 
         The positions are in the space of the displacements and ``∇x = I``, so ``r = K_G x``.
         """
-        return self._of_stress(self._nodal_stress(stress)) @ self.nodes.ravel()
+        return self._of_nodal_stress(stress) @ self.nodes.ravel()
 
     def initial_displacement_stiffness(self, displacement: np.ndarray) -> sp.csr_array:
         """Return ``∫ E₁(v) : C : ε(u) + ε(v) : C : E₁(u) dV``, ``E₁(u) = sym(∇u⁰ᵀ∇u)``.
@@ -184,50 +128,197 @@ class NgsolveElements:
         St. Venant–Kirchhoff elasticity in the direction u⁰, from ``W = ½ E : C : E`` with
         ``E = sym ∇u + ½ ∇uᵀ∇u``. Parameters as there.
         """
-        # with a row per component: ngs.grad in product spaces, ngs.Grad in spaces of vectors
-        static = ngs.grad(self._displacement(displacement))
-        space = nodal_space(self.mesh, self.order, dim=3)
-        u, v = (ngs.Grad(function) for function in space.TnT())
-        form = ngs.BilinearForm(space)
-        form += ngs.InnerProduct(self._hooke(ngs.Sym(u)), ngs.Sym(static.trans * v)) * ngs.dx
-        form += ngs.InnerProduct(self._hooke(ngs.Sym(static.trans * u)), ngs.Sym(v)) * ngs.dx
-        return self._without_held(assembled(form))
+        half = self._of_strains(self._static(displacement), None, self.lame)
+        return self._without_held(sp.csr_array(half + half.T))
 
     def squared_displacement_stiffness(self, displacement: np.ndarray) -> sp.csr_array:
         """Return ``∫ E₁(v) : C : E₁(u) dV``, the tangent's part of second order in u⁰.
 
         Symbols and parameters of :meth:`initial_displacement_stiffness`.
         """
-        static = ngs.grad(self._displacement(displacement))
-        space = nodal_space(self.mesh, self.order, dim=3)
-        u, v = (ngs.Sym(static.trans * ngs.Grad(function)) for function in space.TnT())
-        form = ngs.BilinearForm(space)
-        form += ngs.InnerProduct(self._hooke(u), v) * ngs.dx
-        return self._without_held(assembled(form))
+        static = self._static(displacement)
+        return self._without_held(self._of_strains(static, static, self.lame))
 
-    def _of_stress(self, stress: ngs.CoefficientFunction) -> sp.csr_array:
-        """Return K_G of a stress tensor; it acts on each direction by itself, the same on all."""
-        space = nodal_space(self.mesh, self.order)
-        u, v = space.TnT()
-        form = ngs.BilinearForm(space)
-        form += ngs.InnerProduct(stress * ngs.grad(u), ngs.grad(v)) * ngs.dx
-        return matrices.in_all_directions(assembled(form))
+    def nodal_stress(self, displacements: np.ndarray) -> np.ndarray:
+        """Return the stress (n, 6, k) of displacement columns (3n, k).
 
-    def _hooke(self, strain: ngs.CoefficientFunction) -> ngs.CoefficientFunction:
-        return _hooke(strain, self.lame)
+        Each element's stress is that at its integration points, linear between them; a node gets
+        the mean of its elements. In a curved tetrahedron that has two faces on a smooth surface,
+        which is flat where they meet, the stress grows without bound there. At a node shared by
+        two materials this is the mean over both.
 
-    def _displacement(self, displacement: np.ndarray) -> ngs.GridFunction:
-        values = self._nodal("displacement", displacement, (self.nodes.size,)).reshape(-1, 3)
-        return _function(nodal_space(self.mesh, self.order) ** 3, values.T)
+        Parameters
+        ----------
+        displacements : ndarray, shape (3n, k)
 
-    def _nodal_stress(self, stress: np.ndarray) -> ngs.CoefficientFunction:
+        Returns
+        -------
+        ndarray, shape (n, 6, k)
+            Components xx, yy, zz, yz, xz, xy in mesh axes [Pa].
+
+        Raises
+        ------
+        ValueError
+            If the columns do not have three entries for every node.
+        """
+        columns = np.asarray(displacements, dtype=float)
+        if columns.ndim != 2 or len(columns) != self.nodes.size:
+            raise ValueError(
+                f"stress: needs columns of shape ({self.nodes.size}, k), got {columns.shape}"
+            )
+        result = np.zeros((len(self.nodes), 6, columns.shape[1]))
+        counts = np.zeros(len(self.nodes))
+        for block in self.blocks:
+            counts += np.bincount(block.nodes.ravel(), minlength=len(self.nodes))
+            for part in self._parts(block, block.shape.stiffness_rule):
+                for k, column in enumerate(columns.T):
+                    stress = part.stress(column.reshape(-1, 3), self.lame)
+                    at_nodes = block.shape.to_nodes @ stress[:, :, _FIRST, _SECOND]
+                    np.add.at(result[:, :, k], part.nodes, at_nodes)
+        return result / counts[:, None, None]
+
+    def check_shapes(self) -> None:
+        """Raise ValueError where an element is turned inside out or has no volume."""
+        for block in self.blocks:
+            slopes = block.shape.slopes(block.shape.stiffness_rule[0])
+            jacobians = np.einsum("enx,qnc->eqxc", self.nodes[block.nodes], slopes, optimize=True)
+            sizes = np.linalg.det(jacobians)
+            if block.kind.startswith("wedge"):  # programs number them either way round
+                sizes *= np.sign(sizes[:, :1])
+            bad = np.flatnonzero((sizes <= 0.0).any(axis=1))
+            if bad.size:
+                place = np.round(self.nodes[block.nodes[bad[0]]].mean(axis=0), 6).tolist()
+                raise ValueError(
+                    f"mesh: {bad.size} {block.kind} elements are turned inside out or have no "
+                    f"volume, one about {place} m; mend the mesh there (nodes in the wrong order, "
+                    "or mid nodes too far from the middle of their edges?)"
+                )
+
+    def materials_at(self, nodes: np.ndarray) -> tuple[str, ...]:
+        """Return the names of the regions whose elements have any of these nodes."""
+        found = [
+            np.unique(block.regions[np.isin(block.nodes, nodes).any(axis=1)])
+            for block in self.blocks
+        ]
+        return tuple(sorted({self.materials[i] for i in np.concatenate(found)}))
+
+    def described(self) -> list[tuple[str, float, float, float, float]]:
+        """Return name, mass [kg], Young's modulus [Pa], Poisson's ratio and density by region."""
+        volumes = np.zeros(len(self.materials))
+        for block in self.blocks:
+            for part in self._parts(block, block.shape.mass_rule):
+                np.add.at(volumes, part.regions, part.weights.sum(axis=1))
+        first, second = self.lame.T
+        young = second * (3.0 * first + 2.0 * second) / (first + second)
+        ratio = 0.5 * first / (first + second)
+        columns = (self.densities * volumes, young, ratio, self.densities)
+        return [
+            (name, *(float(column[i]) for column in columns))
+            for i, name in enumerate(self.materials)
+        ]
+
+    def holding(self, nodes: np.ndarray) -> SolidElements:
+        """Return the elements with more nodes clamped."""
+        return replace(self, held=np.union1d(self.held, nodes))
+
+    def holding_directions(self, free: sp.csr_array) -> SolidElements:
+        """Return the elements with more directions held, which the projection `free` takes out."""
+        return replace(self, free=free if self.free is None else sp.csr_array(self.free @ free))
+
+    def interpolation(self) -> sp.csr_array | None:
+        """Return what gives all displacements (3n,) that are linear in every element.
+
+        From those of the vertices; a mid node takes the mean of its edge. None for elements of
+        first order, and where the vertices are not the first nodes.
+        """
+        ends = np.repeat(np.arange(len(self.nodes))[:, None], 2, axis=1)
+        for block in self.blocks:
+            corners = len(block.shape.corners)
+            for mid, edge in zip(block.nodes.T[corners:], block.shape.edges, strict=True):
+                ends[mid] = block.nodes[:, edge]
+        vertices = int(ends.max()) + 1
+        if vertices == len(ends) or np.any(ends[:vertices, 0] != np.arange(vertices)):
+            return None
+        every = np.repeat(np.arange(len(ends)), 2)
+        means = sp.csr_array(
+            (np.full(every.size, 0.5), (every, ends.ravel())), shape=(len(ends), vertices)
+        )
+        linear = sp.csr_array(sp.kron(means, sp.eye_array(3), format="csr"))
+        return linear if self.free is None else sp.csr_array(self.free @ linear)
+
+    def _of_strains(
+        self, first: np.ndarray | None, second: np.ndarray | None, lame: np.ndarray
+    ) -> sp.csr_array:
+        """Return ``∫ E(v) : C : E(u) dV``, of E = ε for None, else E₁ of nodal displacements."""
+
+        def entries(block: Block) -> Iterator[np.ndarray]:
+            for part in self._parts(block, block.shape.stiffness_rule):
+                left = right = part.strains(first)
+                if second is not first:
+                    right = part.strains(second)
+                right = _hooke(lame)[part.regions][:, None] @ right
+                right *= part.weights[..., None, None]
+                size = left.shape[3]
+                shape = (len(left), -1, size)
+                matrix = left.reshape(shape).transpose(0, 2, 1) @ right.reshape(shape)
+                pairs = matrix.reshape(len(left), size // 3, 3, size // 3, 3)
+                yield pairs.transpose(0, 1, 3, 2, 4).reshape(len(left), -1, 9)
+
+        return self._assembled(entries, 3)
+
+    def _of_nodal_stress(self, stress: np.ndarray) -> sp.csr_array:
         values = self._nodal("stress", stress, (len(self.nodes), 6))
-        space = nodal_space(self.mesh, self.order)
-        components = [_function(space, column) for column in values.T]
-        return ngs.CoefficientFunction(tuple(components[i] for i in _TENSOR), dims=(3, 3))
+        return self._of_stress(lambda part: part.interpolated(values)[..., _TENSOR])
+
+    def _of_stress(self, stress: Callable[[_Part], np.ndarray]) -> sp.csr_array:
+        """Return K_G of a stress tensor; it acts on each direction by itself, the same on all."""
+
+        def entries(block: Block) -> Iterator[np.ndarray]:
+            for part in self._parts(block, block.shape.stiffness_rule):
+                weighted = part.slopes @ (part.weights[..., None, None] * stress(part))
+                yield np.einsum("eqic,eqjc->eij", weighted, part.slopes, optimize=True)
+
+        return matrices.in_all_directions(self._assembled(entries, 1))
+
+    def _assembled(
+        self, entries: Callable[[Block], Iterator[np.ndarray]], dim: int
+    ) -> sp.csr_array:
+        """Return the sum over the elements of what `entries` yields for a block's parts."""
+        count, keys, values = len(self.nodes), [], []
+        for block in self.blocks:
+            keys.append((block.nodes[:, :, None] * count + block.nodes[:, None, :]).ravel())
+            values += [part.reshape(-1, dim * dim) for part in entries(block)]
+        places, where = np.unique(np.concatenate(keys), return_inverse=True)
+        table = np.concatenate(values)
+        data = np.stack(
+            [np.bincount(where, column, minlength=places.size) for column in table.T], axis=1
+        )
+        rows, columns = np.divmod(places, count)
+        ends = np.append(0, np.cumsum(np.bincount(rows, minlength=count))).astype(np.int32)
+        columns = columns.astype(np.int32)
+        if dim == 1:
+            return sp.csr_array((data[:, 0].copy(), columns, ends), shape=(count, count))
+        shape = (dim * count, dim * count)
+        return sp.bsr_array((data.reshape(-1, dim, dim), columns, ends), shape=shape).tocsr()
+
+    def _parts(self, block: Block, rule: Rule) -> Iterator[_Part]:
+        """Return a block's elements at the points of a rule, some at a time."""
+        points, weights = rule
+        values, slopes = block.shape.values(points), block.shape.slopes(points)
+        step = max(1, _CHUNK // (27 * slopes[..., 0].size))
+        for start in range(0, len(block.nodes), step):
+            nodes = block.nodes[start : start + step]
+            jacobians = np.einsum("enx,qnc->eqxc", self.nodes[nodes], slopes, optimize=True)
+            sizes = np.linalg.det(jacobians)
+            across = np.einsum("qnc,eqcx->eqnx", slopes, np.linalg.inv(jacobians), optimize=True)
+            regions = block.regions[start : start + step]
+            yield _Part(nodes, regions, np.abs(sizes) * weights, values, across)
+
+    def _static(self, displacement: np.ndarray) -> np.ndarray:
+        return self._nodal("displacement", displacement, (self.nodes.size,)).reshape(-1, 3)
 
     def _nodal(self, label: str, values: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
-        """Check a nodal field, and that the mesh is still the one the field belongs to."""
+        """Check a nodal field."""
         values = np.asarray(values, dtype=float)
         if values.shape != shape:
             raise ValueError(
@@ -236,19 +327,7 @@ class NgsolveElements:
             )
         if not np.all(np.isfinite(values)):
             raise ValueError(f"{label}: has entries that are not finite")
-        self._check_mesh()
         return values
-
-    def _check_mesh(self) -> None:
-        """Raise ValueError if the mesh was changed since the model was made."""
-        present = np.array(self.mesh.ngmesh.Coordinates(), dtype=float)
-        if self.order == 1:
-            present = present[: self.mesh.nv]
-        if not np.array_equal(present, self.nodes):
-            raise ValueError(
-                "the NGSolve mesh was changed after SolidRotor.from_ngsolve read it; make the "
-                "rotor anew from the changed mesh"
-            )
 
     def _without_held(self, matrix: sp.csr_array) -> sp.csr_array:
         if self.free is not None:
@@ -256,13 +335,51 @@ class NgsolveElements:
         return matrix if self.held.size == 0 else matrices.without_nodes(matrix, self.held)
 
 
-def _hooke(strain: ngs.CoefficientFunction, lame: np.ndarray) -> ngs.CoefficientFunction:
-    """Return Hooke's stress of a strain, with the Lamé parameters of every region."""
-    first, second = (ngs.CoefficientFunction(values.tolist()) for values in lame.T)
-    return 2 * second * strain + first * ngs.Trace(strain) * ngs.Id(3)
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """Some elements of a block at integration points.
+
+    Nodes (e, n), regions (e,), weights (e, q) [m³], shape functions (q, n), and their slopes
+    ∂N_j/∂x_c (e, q, n, 3).
+    """
+
+    nodes: np.ndarray
+    regions: np.ndarray
+    weights: np.ndarray
+    values: np.ndarray
+    slopes: np.ndarray
+
+    def interpolated(self, values: np.ndarray) -> np.ndarray:
+        """Return nodal values (n, c) at the points, shape (e, q, c)."""
+        return self.values @ values[self.nodes]
+
+    def gradient(self, displacement: np.ndarray) -> np.ndarray:
+        """Return ∂u_k/∂x_c of nodal displacements (n, 3), shape (e, q, 3, 3)."""
+        return displacement[self.nodes].transpose(0, 2, 1)[:, None] @ self.slopes
+
+    def stress(self, displacement: np.ndarray, lame: np.ndarray) -> np.ndarray:
+        """Return Hooke's stress of nodal displacements (n, 3), shape (e, q, 3, 3)."""
+        gradient = self.gradient(displacement)
+        first, second = lame[self.regions].T[:, :, None, None, None]
+        trace = np.trace(gradient, axis1=2, axis2=3)[..., None, None]
+        return second * (gradient + gradient.swapaxes(2, 3)) + first * trace * np.eye(3)
+
+    def strains(self, static: np.ndarray | None) -> np.ndarray:
+        """Return what makes ε of the nodes' displacements, or E₁ of `static`, (e, q, 6, 3n).
+
+        Components xx, yy, zz, 2 yz, 2 xz, 2 xy.
+        """
+        turned = np.eye(3)[None, None] if static is None else self.gradient(static)
+        # [i, j]: u_k of node n times (∂u⁰_k/∂x_i) ∂N_n/∂x_j
+        products = np.einsum("eqki,eqnj->eqijnk", turned, self.slopes)
+        rows = products[:, :, _FIRST, _SECOND]
+        rows[:, :, 3:] += products[:, :, _SECOND[3:], _FIRST[3:]]
+        return rows.reshape(*rows.shape[:3], -1)
 
 
-def _function(space: ngs.FESpace, values: np.ndarray) -> ngs.GridFunction:
-    function = ngs.GridFunction(space)
-    function.vec.FV().NumPy()[:] = values.ravel()
-    return function
+def _hooke(lame: np.ndarray) -> np.ndarray:
+    """Return Hooke's matrix of every region in six components, shape (regions, 6, 6)."""
+    matrix = np.zeros((len(lame), 6, 6))
+    matrix[:, :3, :3] = lame[:, 0, None, None]
+    matrix[:, np.arange(6), np.arange(6)] += lame[:, 1:] * [2, 2, 2, 1, 1, 1]
+    return matrix

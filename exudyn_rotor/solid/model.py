@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.solid.elements import NgsolveElements
+from exudyn_rotor.solid.elements import SolidElements
 
 StressRecovery = Callable[[np.ndarray], np.ndarray]
 NodeSet = tuple[Sequence[int], Sequence[float] | None]
@@ -31,7 +31,7 @@ class FiniteElementModel:
         Surface for drawing.
     stress_recovery : callable or None
         See :class:`exudyn_rotor.SolidRotor`.
-    elements : NgsolveElements or None
+    elements : SolidElements or None
         What matrices of a static stress are assembled on.
     """
 
@@ -42,7 +42,22 @@ class FiniteElementModel:
     node_sets: Mapping[str, NodeSet] = field(default_factory=dict)
     triangles: Any = ()
     stress_recovery: StressRecovery | None = None
-    elements: NgsolveElements | None = None
+    elements: SolidElements | None = None
+
+    @classmethod
+    def of_elements(
+        cls, elements: SolidElements, node_sets: Mapping[str, NodeSet], triangles: Any
+    ) -> FiniteElementModel:
+        """Return the model of elements."""
+        return cls(
+            nodes=elements.nodes,
+            mass=elements.mass_matrix(),
+            stiffness=elements.stiffness_matrix(),
+            node_sets=node_sets,
+            triangles=triangles,
+            stress_recovery=elements.nodal_stress,
+            elements=elements,
+        )
 
 
 def node_set(name: str, entry: Any) -> NodeSet:

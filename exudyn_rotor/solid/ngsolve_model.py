@@ -1,4 +1,4 @@
-"""Finite-element models assembled by NGSolve; displacement-based tetrahedra of order 1 or 2."""
+"""Finite-element models on meshes of NGSolve: tetrahedra of order 1 or 2."""
 
 from __future__ import annotations
 
@@ -12,19 +12,14 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.solid import units
-from exudyn_rotor.solid.elements import (
-    NgsolveElements,
-    assemble_mass,
-    assemble_stiffness,
-    nodal_space,
-)
+from exudyn_rotor.solid.elements import Block, SolidElements
 from exudyn_rotor.solid.model import FiniteElementModel, NodeSet
-from exudyn_rotor.solid.stress_recovery import EDGES, TetrahedronStress
 from exudyn_rotor.solid.surface import area_weights
 
 # Face names that Netgen invents for faces without a name.
 _INVENTED_NAME = re.compile(r"(default|bc_\d+)?")
 _TETRAHEDRA = {20: 4, 21: 10}  # Netgen's types of elements, and their nodes
+_MESHIO_ORDER = [0, 1, 2, 3, 4, 7, 5, 6, 8, 9]  # of Netgen's nodes
 
 
 def is_named(face: str) -> bool:
@@ -52,19 +47,16 @@ def assemble_model(
     nodes = np.array(mesh.ngmesh.Coordinates(), dtype=float)
     nodes = nodes if order == 2 else nodes[: mesh.nv]
     _check_used(tetrahedra, len(nodes))
-    lame = np.array([_lame_parameters(by_region[name]) for name in regions])
-    densities = np.array([by_region[name]["density"] for name in regions])
-    space = nodal_space(mesh, order)
+    elements = SolidElements(
+        nodes,
+        [Block("tetra10" if order == 2 else "tetra", tetrahedra, region_numbers)],
+        regions,
+        np.array([units.lame_parameters(by_region[name]) for name in regions]),
+        np.array([by_region[name]["density"] for name in regions]),
+    )
     triangles, faces = _triangles(mesh, order)
-    edges = _edges(tetrahedra, len(nodes))
-    return FiniteElementModel(
-        nodes=nodes,
-        mass=assemble_mass(space, densities),
-        stiffness=assemble_stiffness(mesh, order, lame),
-        node_sets=_node_sets(nodes, triangles, faces, interfaces),
-        triangles=triangles,
-        stress_recovery=TetrahedronStress(nodes, tetrahedra, lame[region_numbers]),
-        elements=NgsolveElements(mesh, order, nodes, lame, densities, edges),
+    return FiniteElementModel.of_elements(
+        elements, _node_sets(nodes, triangles, faces, interfaces), triangles
     )
 
 
@@ -110,16 +102,9 @@ def _node_counts(elements: np.ndarray) -> list[int]:
 def _tetrahedra(mesh: ngs.Mesh) -> tuple[np.ndarray, np.ndarray]:
     """Return node numbers (t, 4) or (t, 10) and region numbers (t,), counted from zero."""
     elements = mesh.ngmesh.Elements3D().NumPy()
-    nodes = elements["nodes"][:, : _node_counts(elements[:1])[0]]
-    return nodes.astype(np.int64) - 1, elements["index"].astype(np.int64) - 1
-
-
-def _edges(tetrahedra: np.ndarray, node_count: int) -> np.ndarray:
-    """Return the ends (n, 2) of the edge of each mid node; a vertex is both ends."""
-    ends = np.repeat(np.arange(node_count)[:, None], 2, axis=1)
-    for mid, edge in zip(tetrahedra.T[4:], EDGES, strict=False):  # linear ones have no mid nodes
-        ends[mid] = tetrahedra[:, edge]
-    return ends
+    order = _MESHIO_ORDER[: _node_counts(elements[:1])[0]]
+    nodes = elements["nodes"].astype(np.int64)[:, order]
+    return nodes - 1, elements["index"].astype(np.int64) - 1
 
 
 def _check_used(tetrahedra: np.ndarray, node_count: int) -> None:
@@ -157,10 +142,3 @@ def _node_sets(
     if len(set(wanted)) < len(wanted):
         raise ValueError(f"interfaces: a face name is repeated in {wanted}")
     return {name: area_weights(nodes, triangles[faces == name]) for name in wanted}
-
-
-def _lame_parameters(material: units.Material) -> tuple[float, float]:
-    """Return λ and μ [Pa]."""
-    modulus, ratio = material["youngsModulus"], material["poissonsRatio"]
-    shear = modulus / (2 * (1 + ratio))
-    return 2 * shear * ratio / (1 - 2 * ratio), shear

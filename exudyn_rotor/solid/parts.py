@@ -6,7 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import breadth_first_order, connected_components
 
-from exudyn_rotor.solid.elements import NgsolveElements
+from exudyn_rotor.solid.elements import SolidElements
 from exudyn_rotor.solid.rigid import leaves_free
 
 # how many parts a message describes
@@ -35,7 +35,7 @@ def describe_parts(
     parts: list[np.ndarray],
     nodes: np.ndarray,
     mass: sp.csr_array,
-    elements: NgsolveElements | None,
+    elements: SolidElements | None,
 ) -> str:
     """Return what :func:`described_parts` does of the largest parts, as one text."""
     more = len(parts) - _LISTED
@@ -47,7 +47,7 @@ def described_parts(
     parts: list[np.ndarray],
     nodes: np.ndarray,
     mass: sp.csr_array,
-    elements: NgsolveElements | None,
+    elements: SolidElements | None,
 ) -> list[str]:
     """Return materials, number of nodes, mass, box and its middle of each part as text."""
     return [_described(part, nodes, mass, elements) for part in parts]
@@ -57,7 +57,7 @@ def check_connected(
     nodes: np.ndarray,
     mass: sp.csr_array,
     stiffness: sp.csr_array,
-    elements: NgsolveElements | None,
+    elements: SolidElements | None,
 ) -> None:
     """Raise ValueError if the model falls into parts that move by themselves."""
     parts = loose_parts(nodes, stiffness)
@@ -79,7 +79,7 @@ def _is_free(nodes: np.ndarray, stiffness: sp.csr_array, part: np.ndarray) -> bo
 
 
 def _described(
-    part: np.ndarray, nodes: np.ndarray, mass: sp.csr_array, elements: NgsolveElements | None
+    part: np.ndarray, nodes: np.ndarray, mass: sp.csr_array, elements: SolidElements | None
 ) -> str:
     names = () if elements is None else elements.materials_at(part)
     weight = mass[3 * part].sum()

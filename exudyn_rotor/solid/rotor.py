@@ -14,7 +14,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.solid import matrices, units
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.clamp import checked_directions, held_directions, holding_spring
-from exudyn_rotor.solid.elements import NgsolveElements
+from exudyn_rotor.solid.elements import SolidElements
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.model import FiniteElementModel, StressRecovery
 from exudyn_rotor.solid.parts import check_connected
@@ -44,7 +44,7 @@ class FiniteElementRotor:
     stress_recovery: StressRecovery | None = None
     point_masses: tuple[PointMass, ...] = ()
     rigid_motions: int = 6
-    elements: NgsolveElements | None = None
+    elements: SolidElements | None = None
     carried_prestress: Prestress | None = None
     mass_damping: sp.csr_array | None = None
     structural_damping: sp.csr_array | None = None
@@ -72,7 +72,7 @@ class FiniteElementRotor:
         if self.stress_recovery is not None:
             checks.function(self.stress_recovery, "stress_recovery")
         if self.elements is not None:
-            checks.instance(self.elements, "elements", NgsolveElements)
+            checks.instance(self.elements, "elements", SolidElements)
         if self.carried_prestress is not None:
             checks.instance(self.carried_prestress, "carried_prestress", Prestress)
         for name, value in checked.items():

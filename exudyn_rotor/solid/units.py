@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.callers import user_level
+from exudyn_rotor.calls import user_level
 
 Material = Mapping[str, float]
 MATERIAL_KEYS = ("youngsModulus", "poissonsRatio", "density")
@@ -66,6 +66,13 @@ def materials_by_region(
             f"given are {sorted(materials)}, the mesh has {names}"
         )
     return {name: _checked_material(name, materials[name]) for name in names}
+
+
+def lame_parameters(material: Material) -> tuple[float, float]:
+    """Return λ and μ [Pa]."""
+    modulus, ratio = material["youngsModulus"], material["poissonsRatio"]
+    shear = modulus / (2 * (1 + ratio))
+    return 2 * shear * ratio / (1 - 2 * ratio), shear
 
 
 def check_material_units(name: str, material: Material) -> None:

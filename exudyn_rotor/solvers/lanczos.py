@@ -9,9 +9,9 @@ import scipy.linalg as la
 import scipy.sparse as sp
 import scipy.sparse.linalg as sla
 
+from exudyn_rotor.calls import one_thread
 from exudyn_rotor.solvers.factor import DENSE_SIZE
 from exudyn_rotor.solvers.rounding import rounding
-from exudyn_rotor.threads import one_thread
 
 Modes = tuple[np.ndarray, np.ndarray]
 _SEED = 4830498

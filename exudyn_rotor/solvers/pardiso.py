@@ -18,7 +18,7 @@ import numpy as np
 import scipy.sparse as sp
 from threadpoolctl import ThreadpoolController
 
-from exudyn_rotor.callers import user_level
+from exudyn_rotor.calls import user_level
 from exudyn_rotor.solvers.memory import TooLittleMemoryError, available_memory
 
 # above this size it is quicker than handing the matrix to NGSolve

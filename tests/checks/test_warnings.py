@@ -312,7 +312,7 @@ PLACES = {
         small_rotor_in_millimetres, UserWarning, "few rotors are that heavy; lengths in mm"),
     "solid/ngsolve_model.py:_prepare_mesh": (
         curved_elements, UserWarning, "are replaced by mid nodes"),
-    "linear/response/refinement.py:warn_of_coarse_peaks": (
+    "linear/response/response.py:warn_of_coarse_peaks": (
         peak_between_few_speeds, UserWarning, "too far apart to give its size and width"),
     "nonlinear/periodic_response.py:warn_of": (
         unstable_motion_on_rolling_bearings, UserWarning, "values .* the motion is unstable"),
@@ -336,6 +336,9 @@ PLACES = {
 # part of the text of warnings that the tests of their analyses make fire
 ELSEWHERE = {
     "bearings/tilting_pad.py:_of_pads": "carry nothing at",
+    "bearings/own_table.py:table_of": "speeds are left out",
+    "linear/own_frequency.py:own_motions": "do not settle at their own frequency",
+    "linear/model/linear_model.py:warn_beyond": "keeps its ends for motions of",
     "linear/over.py:_warn_of_lost": "do not converge for all motions",
     "linear/over.py:warn_of_refused": "no values at .* which are NaN",
 }

@@ -16,7 +16,7 @@ from exudyn_rotor import (
     harmonic_response,
     stability,
 )
-from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
+from exudyn_rotor.linear.response.loads import HarmonicForce
 
 MASS, RADIUS, ECCENTRICITY = 2.0, 0.1, 0.03
 INERTIA = MASS * RADIUS**2  # about the centre of mass, along the axis

@@ -8,6 +8,8 @@ from asymmetric import asymmetric_shaft
 from point_rotors import ring_rotor
 
 from exudyn_rotor import RotorTrain, SolidRotor, Support, linear_model, stability
+from exudyn_rotor.linear.equations import PeriodicSystem, joined
+from exudyn_rotor.linear.solve.motions import margins_of
 
 MASS, STIFFNESS, OUTER, INNER = 2.0, 2e4, 10.0, 5.0  # of each of two masses; ω = 100 rad/s
 
@@ -139,3 +141,17 @@ def test_stiff_supports_do_not_make_a_rotor_unstable(rod, stiffness):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert np.all(stability(rod, [10.0, 300.0], supports=supports, accuracy=None).stable)
+
+
+def test_mathieus_equation():
+    """``ẍ + (δ + ε cos t) x = 0`` is unstable about δ = 1/4 between ± ε/2, by ε at most."""
+    one, none, epsilon = np.ones((1, 1)), np.zeros((1, 1)), 0.1
+    given = [
+        PeriodicSystem(1.0, one, {0: none}, {0: delta * one, 1: 0.5 * epsilon * one,
+                                             -1: 0.5 * epsilon * one})
+        for delta in (0.19, 0.25, 0.31)
+    ]  # fmt: skip
+    for method in ("hill", "floquet"):
+        margins = margins_of(joined(given), method)
+        assert (margins > 0.0).tolist() == [False, True, False]
+        assert margins[1] == pytest.approx(0.5 * epsilon, rel=1e-2)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from exudyn_rotor import SolidRotor, StabilityMap, Support, linear_model, stability_map
-from exudyn_rotor.linear.equations import PeriodicSystem
 
 MASS, STIFFNESS = 2.0, 2e4
 
@@ -59,19 +58,6 @@ def test_a_point_that_fails_is_nan(point):
     assert found.stable.all(axis=1).tolist() == [True, True, False]
     with pytest.raises(ValueError, match="no such bearing"):
         stability_map(build, [3e4], [10.0])
-
-
-def test_equations_of_ones_own():
-    """Mathieu's ``ẍ + (δ + ε cos t) x = 0`` is unstable about δ = 1/4 between ± ε/2."""
-
-    def build(delta: float, epsilon: float) -> PeriodicSystem:
-        one, none = np.ones((1, 1)), np.zeros((1, 1))
-        return PeriodicSystem(1.0, one, {0: none}, {0: delta * one, 1: epsilon / 2 * one,
-                                                    -1: epsilon / 2 * one})  # fmt: skip
-
-    found = stability_map(build, [0.19, 0.25, 0.31], [0.1])
-    assert found.stable[:, 0].tolist() == [True, False, True]
-    assert found.growth[1, 0] == pytest.approx(0.05, rel=1e-2)
 
 
 def test_old_results_without_names_have_a_table():

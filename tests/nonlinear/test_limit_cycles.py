@@ -35,16 +35,16 @@ def test_whirl_begins_at_the_linear_limit_and_is_that_of_a_run():
     onset = stability_threshold(rotor, 50.0, 3000.0, supports=supports)
     limit = onset.values[0]
     speed = 1.05 * limit
-    found = limit_cycles(rotor, [speed], onset, supports=supports, gravity=DOWN, tolerance=1e-4)
-    assert found.values[0] == pytest.approx(limit, rel=1e-3)
-    assert found.rates[0, 0] == pytest.approx(onset.frequencies_inertial[0], rel=1e-3)
-    point = found.at(speed)[-1]
-    assert found.stable[point]
     mbs = exu.SystemContainer().AddSystem()
     body = add_rotor(mbs, rotor, spin=speed, gravity=DOWN, translation="none")
     add_supports(body, supports)
     sensor = body.add_interface_sensor("left", exu.OutputVariableType.Displacement)
     mbs.Assemble()
+    found = limit_cycles(mbs, [speed], onset, body=body, tolerance=1e-4)
+    assert found.values[0] == pytest.approx(limit, rel=1e-3)
+    assert found.rates[0, 0] == pytest.approx(onset.frequencies_inertial[0], rel=1e-3)
+    point = found.at(speed)[-1]
+    assert found.stable[point]
     body.start_from(found.state(int(point), body))
     period = 2.0 * np.pi / found.rates[point, 0]
     settings = recommended_settings(end_time=period, step=period / 300)

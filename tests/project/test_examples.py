@@ -30,7 +30,7 @@ def readme_script() -> str:
 
 def test_readme_script_runs_and_is_short(tmp_path):
     script = readme_script()
-    assert len([line for line in script.splitlines() if line.strip()]) <= 20
+    assert len([line for line in script.splitlines() if line.strip()]) <= 15
     (tmp_path / "readme.py").write_text(script, encoding="utf-8")
     results = runpy.run_path(str(tmp_path / "readme.py"))
     orbit = results["mbs"].GetSensorStoredData(results["orbit"])

@@ -12,10 +12,9 @@ from small_results import STORED
 import exudyn_rotor
 from exudyn_rotor import results
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
-from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse
+from exudyn_rotor.linear.response.loads import HarmonicForce, Unbalance
+from exudyn_rotor.linear.response.response import HarmonicResponse, UnbalanceResponse
 from exudyn_rotor.linear.response.steady_response import harmonic_response, unbalance_response
-from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.results import Result, load_result, numbers, storable, words
 
 

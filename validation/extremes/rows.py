@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 
 EPS = float(np.finfo(float).eps)
-REASONS = ("physics", "numerics", "input", "")
 
 
 @dataclass(frozen=True)
@@ -42,20 +41,10 @@ class Row:
     reason: str = ""
     told: str = ""
 
-    def __post_init__(self) -> None:
-        if self.reason not in REASONS:
-            raise ValueError(f"reason {self.reason!r} is unknown; use one of {REASONS}")
-        object.__setattr__(self, "measured", float(self.measured))
-        object.__setattr__(self, "limit", float(self.limit))
-
     @property
     def passed(self) -> bool:
         """True while the criterion holds; a NaN never passes."""
         return self.measured <= self.limit
-
-    def plain(self) -> dict:
-        """Return all entries as plain values."""
-        return asdict(self) | {"passed": self.passed}
 
 
 def breaking_point(

@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import textwrap
 from collections.abc import Callable
+from dataclasses import asdict
 
 from tqdm import tqdm
 
@@ -40,34 +41,17 @@ GROUPS: dict[str, tuple[Callable[..., Row], ...]] = {
 }
 
 
-def measured(quick: bool = False) -> dict[str, list[Row]]:
-    """Return the rows of all groups; `quick` takes fewer points of each range."""
-    found: dict[str, list[Row]] = {}
-    cases = [(group, make) for group, makers in GROUPS.items() for make in makers]
-    for group, make in (bar := tqdm(cases, desc="extremes")):
-        bar.set_postfix_str(group)
-        found.setdefault(group, []).append(make(quick=quick))
-    return found
-
-
-def printed(rows: dict[str, list[Row]]) -> str:
-    """Return the rows as text, one block each."""
-    lines = []
-    for group, entries in rows.items():
-        lines += [f"\n{group}", "-" * len(group)]
-        for row in entries:
-            verdict = "ok  " if row.passed else "FAIL"
-            lines.append(f"{verdict} {row.pushed}: {row.reach}")
-            lines += _wrapped(f"{row.criterion}: {row.measured:.3g} (limit {row.limit:.3g})")
-            reason = f" ({row.reason})" if row.reason else ""
-            lines += _wrapped(f"breaks at: {row.breaks_at}{reason}")
-            if row.told:
-                lines += _wrapped(f"told: {row.told}")
-    return "\n".join(lines)
-
-
-def _wrapped(text: str) -> list[str]:
-    return textwrap.wrap(text, 100, initial_indent=" " * 8, subsequent_indent=" " * 10)
+def printed(row: Row) -> str:
+    """Return a row as lines of text."""
+    reason = f" ({row.reason})" if row.reason else ""
+    lines = [
+        f"{row.criterion}: {row.measured:.3g} (limit {row.limit:.3g})",
+        f"breaks at: {row.breaks_at}{reason}",
+        f"told: {row.told}" if row.told else "",
+    ]
+    rest = "\n".join(textwrap.fill(line, 92) for line in lines)
+    title = f"{'ok  ' if row.passed else 'FAIL'} {row.pushed}: {row.reach}"
+    return f"{title}\n{textwrap.indent(rest, ' ' * 8)}"
 
 
 def main() -> None:
@@ -76,11 +60,13 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true", help="fewer points of each range")
     parser.add_argument("--json", metavar="FILE", help="write the rows to FILE")
     options = parser.parse_args()
-    rows = measured(options.quick)
-    print(printed(rows))
+    rows = {}
+    for group, makers in GROUPS.items():
+        print(f"\n{group}\n{'-' * len(group)}")
+        rows[group] = [make(quick=options.quick) for make in tqdm(makers, group, leave=False)]
+        print("\n".join(printed(row) for row in rows[group]))
     if options.json:
-        plain = {group: [row.plain() for row in entries] for group, entries in rows.items()}
-        write_json(options.json, plain)
+        write_json(options.json, {name: [asdict(row) for row in rows[name]] for name in rows})
     failed = sum(not row.passed for entries in rows.values() for row in entries)
     if failed:
         raise SystemExit(f"{failed} rows failed")

@@ -31,7 +31,6 @@ from netgen.occ import Axis, Box, Cylinder, OCCGeometry, Pnt, X, Z
 from tqdm import tqdm
 
 from exudyn_rotor import SolidRotor
-from exudyn_rotor.solid.elements import nodal_space
 from exudyn_rotor.solid.tensor import von_mises
 from exudyn_rotor.solvers.factor import SparseCholesky
 from exudyn_rotor.theory.nodal import block_diagonal
@@ -118,7 +117,7 @@ class ClampedSolid:
     @cached_property
     def _energy(self) -> tuple[ngs.BilinearForm, ngs.GridFunction, np.ndarray]:
         """Return the strain energy, a displacement, and where mesh coordinates stand in it."""
-        space = nodal_space(self.mesh, 2) ** 3
+        space = ngs.NodalFESpace(self.mesh, order=2) ** 3
         # on this space Grad is the transpose of the gradient
         F = ngs.Id(3) + ngs.Grad(space.TrialFunction()).trans
         E = 0.5 * (F.trans * F - ngs.Id(3))
@@ -145,7 +144,7 @@ class ClampedSolid:
         Second derivative of ``½ δE : C : δE + σ : δE`` with ``δE = E(Ω²u⁰ + w) − E(Ω²u⁰)`` at
         w = 0, differentiated by NGSolve. u⁰ is of a factorisation of its own.
         """
-        space = nodal_space(self.mesh, 2) ** 3
+        space = ngs.NodalFESpace(self.mesh, order=2) ** 3
         places = self._energy[2]
         linear = self._part(self.rotor.stiffness)
         load = speed**2 * (self.across_mass @ self.rotor.nodes.ravel())
@@ -210,7 +209,7 @@ class ClampedSolid:
 
     def rotation(self, speed: float) -> float:
         """Return the largest rotation of an element by the static deflection [rad]."""
-        space = nodal_space(self.mesh, 2) ** 3
+        space = ngs.NodalFESpace(self.mesh, order=2) ** 3
         state = ngs.GridFunction(space)
         state.vec.FV().NumPy()[self._energy[2]] = speed**2 * self._prestress[0].displacement
         H = ngs.Grad(state).trans

@@ -15,7 +15,7 @@ from exudyn_rotor import (
     unbalance_response,
 )
 from exudyn_rotor.demo.scene import BEARINGS, START_SPEED
-from exudyn_rotor.linear.response.responses import UnbalanceResponse
+from exudyn_rotor.linear.response.response import UnbalanceResponse
 from exudyn_rotor.theory.rotating_axes import axes_of
 from validation.trade.error import Row
 from validation.trade.scene import (

@@ -8,19 +8,19 @@ shapes, too, is solved at a few points of an analysis, and compared.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import scipy.linalg as la
 from scipy.optimize import linear_sum_assignment
 
-from exudyn_rotor.callers import user_level
+from exudyn_rotor.calls import user_level
 from exudyn_rotor.linear.modal.whirl import Content, Named
 from exudyn_rotor.linear.model.assembly import rotors_of
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import motions_over
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
-NOT_KNOWN = "error of the basis: not known"
 _DAMPED = 0.01  # share of the frequency that growth counts as at least
 _SLOW = 0.1  # share of the spin speed that a frequency counts as at least
 _RANGE, _LOWEST = 2.0, 6  # times the fastest speed, and lowest modes: what is judged in any case
@@ -29,6 +29,10 @@ _NEAR = 0.3  # share of a frequency by which the same motion may differ
 _MISSING = 0.1  # share of a flexibility that counts as missing
 _DIGITS = 9  # of costs that are compared
 _POINTS = 3  # speeds at which the richer model is solved
+_LEAST = 0.1  # of the largest motion at the same speed or frequency: smaller ones count as that
+_AXIAL = 1e-6  # share of a motion across the axis that is rounding
+
+Amplitudes = Mapping[int, np.ndarray]  # harmonics (s, p, 6) over speeds or frequencies
 
 
 def is_known(model: LinearModel, accuracy: float | None) -> bool:
@@ -145,9 +149,78 @@ def judged(
     return ((frequencies <= limit) | every) & ~overdamped
 
 
-def in_table(error: float, digits: int = 1) -> str:
-    """Return an error as tables show it: '-' where it was not estimated."""
-    return "-" if np.isnan(error) else f"{error:.{digits}e}"
+# ------------------------------------------------------------------ forced motions
+
+
+def basis_errors(
+    model: LinearModel,
+    accuracy: float | None,
+    values: np.ndarray,
+    motions: Amplitudes,
+    solve: Callable[[LinearModel, np.ndarray], Amplitudes],
+) -> np.ndarray | None:
+    """Return relative errors (s, p) by the basis, NaN where none is looked at.
+
+    None where they are not known.
+
+    Parameters
+    ----------
+    model : LinearModel
+    accuracy : float or None
+        None for no estimate.
+    values : ndarray, shape (s,)
+        Speeds or frequencies [rad/s].
+    motions : mapping of int to ndarray, shape (s, p, 6)
+        Harmonics there.
+    solve : callable
+        Takes a model, and speeds or frequencies; gives the motions.
+    """
+    if not is_known(model, accuracy):
+        return None
+    sizes = np.sqrt(sum(_size(each) ** 2 for each in motions.values()))
+    if model.is_full:
+        return np.zeros(sizes.shape)
+    errors = np.full(sizes.shape, np.nan)
+    at = looked_at(sizes)
+    better = solve(model.richer, values[at])
+    for row, index in enumerate(at):
+        given = {n: a[index] for n, a in motions.items()}
+        errors[index] = motion_error(given, {n: a[row] for n, a in better.items()})
+    return errors
+
+
+def looked_at(sizes: np.ndarray) -> np.ndarray:
+    """Return where errors are estimated, given sizes (s, p) of motions.
+
+    At all peaks, and at the first, middle and last value.
+    """
+    known = np.flatnonzero(np.all(np.isfinite(sizes), axis=1))
+    sizes = np.nan_to_num(sizes)
+    inner = np.any((sizes[1:-1] > sizes[:-2]) & (sizes[1:-1] >= sizes[2:]), axis=1)
+    even = np.linspace(0, len(sizes) - 1, min(_POINTS, len(sizes))).astype(int)
+    chosen = np.r_[even, np.flatnonzero(inner) + 1, np.argmax(sizes.max(axis=1))]
+    return np.intersect1d(chosen, known)
+
+
+def motion_error(given: Mapping[int, np.ndarray], finer: Mapping[int, np.ndarray]) -> np.ndarray:
+    """Return relative errors (p,) of displacements (p, 6) in the largest harmonic across the axis.
+
+    Relative to the larger one of the two motions at the place, or to a tenth of the largest at any.
+    """
+    across = {n: np.linalg.norm(each[:, :2]) for n, each in finer.items()}
+    largest = {n: _size(each).max() for n, each in finer.items()}
+    sizes = across if max(across.values()) > _AXIAL * max(largest.values()) else largest
+    order = max(sizes, key=sizes.get)  # not the static stretch by the rotation
+    other = given.get(order, np.zeros_like(finer[order]))
+    size = np.maximum(_size(finer[order]), _size(other))  # beside a sharp peak either is larger
+    away = _size(finer[order] - other)
+    least = np.maximum(size, _LEAST * size.max())
+    return np.divide(away, least, out=np.zeros_like(away), where=least > 0.0)
+
+
+def _size(amplitudes: np.ndarray) -> np.ndarray:
+    """Return sizes (…) of displacements, of motions (…, 6)."""
+    return np.linalg.norm(amplitudes[..., :3], axis=-1)
 
 
 def warn(errors: np.ndarray, what: str, model: LinearModel, accuracy: float) -> None:

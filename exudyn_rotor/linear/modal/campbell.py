@@ -3,29 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from exudyn_rotor import checks
+from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal import basis_error
-from exudyn_rotor.linear.modal.campbell_result import Campbell
-from exudyn_rotor.linear.modal.tracking import track
+from exudyn_rotor.linear.modal import campbell_diagram as diagram
+from exudyn_rotor.linear.modal.basis_error import relative_errors
 from exudyn_rotor.linear.modal.whirl import (
     BACKWARD,
     FORWARD,
     MIXED,
     OVERDAMPED,
     STATIC,
+    WHIRLS,
     Content,
     Named,
     damping_of,
+    oscillates,
     rounded,
     signed_diameters,
+    track,
 )
 from exudyn_rotor.linear.model.build import (
     Target,
@@ -33,15 +36,343 @@ from exudyn_rotor.linear.model.build import (
     warn_of_left_out_stiffening,
     warn_of_structural_damping,
 )
-from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.over import motions_over
+from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
+from exudyn_rotor.linear.over import NOT_KNOWN, in_table, motions_over
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.sweep import checked_speeds
+from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.theory.rotating_axes import FRAMES
+from exudyn_rotor.theory.stiffening import LEVELS
 from exudyn_rotor.units import Units
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+# growth below this share of frequency and speed is not marked: what is left of a free spin of a
+# rotor with an uneven mesh looks like that
+_UNSTABLE = 1e-4
+_SHOWN = 1e-6  # unevenness that is told
 _SPLIT = 4e-8  # of the fastest motion: the split of a double zero by rounding
 _FEWEST = 6  # modes that are listed of a basis with halves of pairs
+
+
+@storable
+@dataclass(frozen=True, eq=False)
+class Campbell(Result):
+    """Eigenfrequencies over spin speed, at every speed ascending in the :attr:`frame`.
+
+    Overdamped motions, which have the inertial frequency 0 and decay, stand behind the others. A
+    speed at which nothing could be computed has NaN. In the order of :meth:`tracked`, column j is
+    the same mode at all speeds.
+
+    Attributes
+    ----------
+    speeds : ndarray, shape (s,)
+        Spin speeds Ω [rad/s].
+    frequencies_rotor : ndarray, shape (s, k)
+        Frequency of the mode's strongest wave seen in the rotor frame [rad/s].
+    growth : ndarray, shape (s, k)
+        Real parts of the eigenvalues λ [1/s], the same in both frames; positive means unstable.
+    frequencies_inertial : ndarray, shape (s, k)
+        Frequency of the mode's strongest wave seen from outside [rad/s].
+    damping_ratio, log_decrement : ndarray, shape (s, k)
+        ``−Re λ / |Re λ + iω|`` and ``−2π Re λ / ω`` at the inertial frequency ω; 0 where Re λ is
+        rounding.
+    whirl_codes : ndarray of int, shape (s, k)
+        Index into :data:`exudyn_rotor.linear.modal.whirl.WHIRLS`; see :attr:`whirl`.
+    nodal_diameters : ndarray of int, shape (s, k)
+        n where ±n hold at least 70 % of the mode's energy; −1 where none does. Without mode shapes
+        n comes from the interfaces and is 0 or 1.
+    vectors : ndarray, shape (s, c, k)
+        Modes in the coordinates of the model, in its :attr:`axes`; the largest harmonic of
+        periodic equations.
+    order : ndarray of int, shape (s, k)
+        ``order[i, j]`` is the column at speed i that continues column j of the first speed.
+    continued : ndarray of bool, shape (s, k)
+        Where that is the same mode as at the speed before, by its shape and frequency; False where
+        it had to be another one, as where a mode leaves those that were computed.
+    free_motions : tuple of str
+        Rigid motions that nothing holds.
+    basis_shifts : ndarray, shape (s, k), or None
+        Estimated ``λ − λ_reduced`` with λ of the full model: its real part is what the basis of a
+        reduced rotor lacks in growth [1/s], its imaginary part in the frequency in the rotor frame
+        [rad/s]. Zero for a full model; where no number of modes was asked for, NaN of those beyond
+        twice the highest speed and the lowest six, and always of overdamped motions that decay
+        faster than these; None where it is not known.
+    stiffening : str or None
+        Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
+    frame : {'inertial', 'rotor'}
+        In which columns ascend, and modes were chosen.
+    axes : {'inertial', 'rotor'}
+        In which the equations were solved, and :attr:`vectors` are.
+    unevenness : float
+        Largest share of a rotor that differs around its axis, as that of a mesh, and was averaged
+        over a turn.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, campbell
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
+    >>> result = campbell(rotor, [0.0, 50.0], supports=supports)
+    >>> result.tracked().damping_ratio[:, 1].round(4)
+    array([0.025, 0.025])
+    >>> print(result.table(1))
+     speed [rpm]  mode  rotor frame [Hz]  inertial [Hz]  damping ratio  n  whirl
+               0     1                 0              0              0  0  axial
+         477.465     1                 0              0              0  0  axial
+    free motions: translation along axis
+    stiffening: tilt
+    """
+
+    speeds: np.ndarray = numbers("speeds")
+    frequencies_rotor: np.ndarray = numbers("speeds", "modes", finite=False)
+    growth: np.ndarray = numbers("speeds", "modes", finite=False)
+    frequencies_inertial: np.ndarray = numbers("speeds", "modes", finite=False)
+    damping_ratio: np.ndarray = numbers("speeds", "modes", finite=False)
+    log_decrement: np.ndarray = numbers("speeds", "modes", finite=False)
+    whirl_codes: np.ndarray = numbers("speeds", "modes", dtype=int, least=0, most=len(WHIRLS) - 1)
+    nodal_diameters: np.ndarray = numbers("speeds", "modes", dtype=int, least=-1)
+    vectors: np.ndarray = numbers("speeds", "coordinates", "modes", dtype=complex, finite=False)
+    order: np.ndarray = numbers("speeds", "modes", dtype=int, least=0)
+    continued: np.ndarray = numbers("speeds", "modes", dtype=bool)
+    free_motions: tuple[str, ...] = ()
+    stiffening: str | None = None
+    basis_shifts: np.ndarray | None = numbers(
+        "speeds", "modes", dtype=complex, finite=False, optional=True
+    )
+    frame: str = "inertial"
+    axes: str = "inertial"
+    unevenness: float = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        checks.choice(self.frame, "frame", FRAMES)
+        checks.choice(self.axes, "axes", AXES)
+        if self.stiffening is not None:
+            checks.choice(self.stiffening, "stiffening", LEVELS)
+        if np.any(np.sort(self.order, axis=1) != np.arange(self.order.shape[1])):
+            raise ValueError("order: needs every column once at each speed")
+
+    @property
+    def whirl_frequencies(self) -> np.ndarray:
+        """Inertial frequencies with the sign of the whirl, shape (s, k) [rad/s].
+
+        Negative for backward whirl, positive for all other motions.
+        """
+        sign = np.where(self.whirl_codes == BACKWARD, -1.0, 1.0)
+        return sign * self.frequencies_inertial
+
+    @property
+    def oscillates(self) -> np.ndarray:
+        """False for overdamped and free motions, shape (s, k); they are not drawn."""
+        return oscillates(self.growth, self.frequencies_inertial)
+
+    @property
+    def whirl(self) -> np.ndarray:
+        """Sense of every mode, shape (s, k).
+
+        'forward' and 'backward' are seen from outside, relative to the spin; 'mixed' where the
+        weaker sense has more than half the amplitude of the stronger; 'axial', 'torsional' and
+        'radial' for n = 0; 'static' for a wave that stands still in space, like a free rotor that
+        is displaced; 'overdamped' for a lateral motion that decays without oscillating;
+        'unknown' where neither shapes nor interfaces show the mode, or where it has more than four
+        nodal diameters: its inertial frequency is that of the rotor frame then.
+        """
+        return np.array(WHIRLS)[self.whirl_codes]
+
+    @property
+    def basis_errors(self) -> np.ndarray | None:
+        """Estimated relative error by the basis of a reduced rotor, shape (s, k).
+
+        The larger of those of the inertial frequency and of the growth. A frequency counts as at
+        least a tenth of the spin speed, a growth as at least a hundredth of the frequency. None
+        where it is not known.
+        """
+        if self.basis_shifts is None:
+            return None
+        given = self.growth, self.frequencies_inertial, self.speeds
+        return relative_errors(self.basis_shifts, *given)
+
+    def tracked(self) -> Campbell:
+        """Return the same result with columns that follow each mode over the speeds.
+
+        Neighbouring speeds are matched by the mass-weighted modal assurance criterion and the
+        distance in frequency; steps in speed must be small where modes veer. A column holds
+        different modes before and after a speed where :attr:`continued` is False.
+        """
+        names = ("frequencies_rotor", "growth", "frequencies_inertial", "damping_ratio",
+                 "log_decrement", "whirl_codes", "nodal_diameters")  # fmt: skip
+        names += ("basis_shifts",) if self.basis_shifts is not None else ()
+        moved = {name: np.take_along_axis(getattr(self, name), self.order, 1) for name in names}
+        moved["vectors"] = np.take_along_axis(self.vectors, self.order[:, None, :], 2)
+        moved["order"] = np.broadcast_to(np.arange(self.order.shape[1]), self.order.shape).copy()
+        return replace(self, **moved)
+
+    def crossings(
+        self, order: float = 1.0, frame: str = "inertial"
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return where modes have the frequency pΩ in a frame, p the `order`.
+
+        By linear interpolation between neighbouring speeds, with damping; :func:`critical_speeds`
+        finds undamped ones in the inertial frame without a grid.
+
+        Parameters
+        ----------
+        order : float, optional
+            In the rotor frame an engine order, see :meth:`plot`.
+        frame : {'inertial', 'rotor'}, optional
+
+        Returns
+        -------
+        speeds : ndarray, shape (c,)
+            Ascending [rad/s].
+        modes : ndarray of int, shape (c,)
+            Columns of :meth:`tracked`.
+        """
+        order = checks.number(order, "order", above=0.0)
+        inertial = checks.choice(frame, "frame", FRAMES) == "inertial"
+        tracked = self.tracked()
+        values = tracked.frequencies_inertial if inertial else tracked.frequencies_rotor
+        return diagram.crossings(self.speeds, values, tracked.continued, order)
+
+    def plot(
+        self,
+        ax: Axes | None = None,
+        frame: str | None = None,
+        *,
+        units: str = "rpm",
+        orders: Sequence[float] | float | None = None,
+        operating_range: ArrayLike | None = None,
+        margins: ArrayLike | None = None,
+    ) -> Axes:
+        """Draw the tracked modes over the spin speed; see :mod:`exudyn_rotor.plotting`.
+
+        A line breaks where it would join different modes.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            A new figure without a window by default.
+        frame : {'inertial', 'rotor'}, optional
+            That of the result by default.
+        units : {'rpm', 'Hz', 'SI'}
+            Of the picture: 'rpm' has speeds in rpm and frequencies in Hz, 'SI' rad/s.
+        orders : sequence of float, optional
+            Lines of excitation pΩ with p in `orders`, with the modes' crossings marked; by default
+            the spin speed alone without marks, and none in the rotor frame. There p is an engine
+            order: of a load that stands in space with p periods around the circle.
+        operating_range : two floats, optional
+            Lowest and highest operating speed [rad/s], shaded.
+        margins : two floats, optional
+            Separation margins, shaded: shares of the lowest speed below it and of the highest
+            above it, as (0.16, 0.26), the largest that API 617 asks for.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For an unknown frame or unit, or numbers out of range.
+        """
+        frame = self.frame if frame is None else checks.choice(frame, "frame", FRAMES)
+        shown, inertial = Units.of(units), frame == "inertial"
+        limits = diagram.checked_range(operating_range)
+        shares = diagram.checked_margins(margins, limits is not None)
+        if orders is not None:
+            orders = diagram.checked_orders(orders)
+        ax = plotting.axes_or_new(ax)
+        tracked, speeds = self.tracked(), shown.speeds(self.speeds)
+        values = tracked.frequencies_inertial if inertial else tracked.frequencies_rotor
+        scale = np.maximum(tracked.frequencies_inertial, np.abs(self.speeds)[:, None])
+        unstable = tracked.growth > _UNSTABLE * scale
+        codes, continued = tracked.whirl_codes, tracked.continued
+        drawn = np.where(tracked.oscillates, shown.frequencies(values), np.nan)
+        handles = diagram.draw_campbell(ax, speeds, drawn, codes, continued, unstable)
+        if limits is not None:
+            handles += diagram.shade_range(ax, limits, shares, shown)
+        if orders is not None:
+            given = (self.speeds, values, continued, orders, shown)
+            handles += diagram.draw_orders(ax, *given)
+        elif inertial:
+            line = shown.frequencies(np.abs(self.speeds))
+            handles += ax.plot(speeds, line, color="0.6", lw=0.8, label="spin speed")
+        ax.set_xlabel(f"spin speed [{shown.speed}]")
+        ax.set_ylabel(f"frequency in the {frame} frame [{shown.frequency}]")
+        top = max(np.nanmax(drawn, initial=0.0), shown.frequencies(np.abs(self.speeds).max()))
+        ax.set_ylim(0.0, 1.05 * top or None)
+        ax.grid(alpha=0.3)
+        plotting.legend_of_seen(ax, 3, handles)
+        return ax
+
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+        """Return the table as columns, one row for each speed and mode, tracked."""
+        shown, tracked = Units.of(units), self.tracked()
+        count = self.order.shape[1]
+        rows = count * len(self.speeds)
+        speed, frequency = f"[{shown.speed}]", f"[{shown.frequency}]"
+        errors = tracked.basis_errors
+        return {
+            f"speed {speed}": np.repeat(shown.speeds(self.speeds), count),
+            "mode": np.tile(np.arange(1, count + 1), len(self.speeds)),
+            f"rotor frame {frequency}": shown.frequencies(tracked.frequencies_rotor).ravel(),
+            f"inertial {frequency}": shown.frequencies(tracked.frequencies_inertial).ravel(),
+            "growth [1/s]": tracked.growth.ravel(),
+            "damping ratio": tracked.damping_ratio.ravel(),
+            "log decrement": tracked.log_decrement.ravel(),
+            "nodal diameters": tracked.nodal_diameters.ravel(),
+            "whirl": tracked.whirl.ravel(),
+            "continued": tracked.continued.ravel(),
+            "basis error": np.full(rows, np.nan) if errors is None else errors.ravel(),
+        }
+
+    def table(self, count: int | None = None, *, units: str = "rpm") -> str:
+        """Return the lowest `count` modes at every speed as lines of text.
+
+        `units` are those of :meth:`plot`. The error of the basis is '-' where it is not estimated,
+        see :attr:`basis_shifts`.
+        """
+        if count is not None:
+            count = checks.count(count, "count", least=1)
+        known = Units.of(units)
+        speed, frequency = f"[{known.speed}]", f"[{known.frequency}]"
+        errors = self.basis_errors
+        reduced = errors is not None and np.any(errors > 0.0)
+        label = "  basis error" if reduced else ""
+        lines = [
+            f"{'speed ' + speed:>12}  mode{'rotor frame ' + frequency:>18}"
+            f"{'inertial ' + frequency:>15}  damping ratio{label}  n  whirl"
+        ]
+        shown = slice(0, count)
+        rotor, inertial = (
+            known.frequencies(f) for f in (self.frequencies_rotor, self.frequencies_inertial)
+        )
+        for i, at in enumerate(known.speeds(self.speeds)):
+            if np.all(np.isnan(self.growth[i])):
+                lines.append(f"{at:12.6g}  no values")
+                continue
+            for j in np.arange(self.order.shape[1])[shown]:
+                n = self.nodal_diameters[i, j]
+                error = f"{in_table(errors[i, j]):>13}" if reduced else ""
+                kind = f"{n if n >= 0 else '-'}  {self.whirl[i, j]}"
+                lines.append(
+                    f"{at:12.6g}{j + 1:6d}{rotor[i, j]:18.6g}{inertial[i, j]:15.6g}"
+                    f"{self.damping_ratio[i, j]:15.3g}{error}  {kind}"
+                )
+        if self.free_motions:
+            lines.append("free motions: " + ", ".join(self.free_motions))
+        if self.stiffening:
+            lines.append(f"stiffening: {self.stiffening}")
+        if self.unevenness > _SHOWN:
+            lines.append(f"unevenness of the mesh, averaged: {self.unevenness:.2g}")
+        lost = known.speeds(self.speeds[~np.all(self.continued, axis=1)])
+        if lost.size:
+            listed = ", ".join(f"{f:.6g}" for f in lost)
+            lines.append(f"modes not followed up to {speed}: {listed}")
+        if errors is None:
+            lines.append(NOT_KNOWN)
+        return "\n".join(lines)
 
 
 def campbell(
@@ -134,11 +465,11 @@ def campbell(
     >>> result.whirl[1, 1:5].tolist()
     ['forward', 'forward', 'backward', 'backward']
     """
-    values = checked_speeds(speeds, allow_negative)
+    values = checks.spin_speeds(speeds, allow_negative)
     if modes is not None:
         modes = checks.count(modes, "modes", least=1)
-    tolerance = options.accuracy(tolerance, "tolerance")
-    options.check_basis_accuracy(accuracy)
+    tolerance = checks.tolerance(tolerance)
+    checks.accuracy(accuracy)
     checks.flag(progress, "progress")
     checks.choice(frame, "frame", FRAMES)
     model = linear_model(

@@ -1,16 +1,26 @@
-"""Drawing of Campbell diagrams."""
+"""Campbell diagrams as pictures: modes, lines of excitation, crossings, the operating range."""
 
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.lines import Line2D
+from numpy.typing import ArrayLike
 
-from exudyn_rotor import plotting
+from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.modal import whirl
+from exudyn_rotor.units import Units
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+# of the excitation's frequency: a mode that keeps to its line, as one fixed in the rotor, does
+# not cross it by rounding
+_ON_THE_LINE = 1e-9
 _STYLES = {  # colour, line
     whirl.FORWARD: (plotting.COLORS[0], "-"),
     whirl.BACKWARD: (plotting.COLORS[1], "--"),
@@ -23,6 +33,127 @@ _STYLES = {  # colour, line
     whirl.FOUNDATION: (plotting.COLORS[5], "-"),
     whirl.OVERDAMPED: ("0.7", ":"),
 }
+
+
+def checked_orders(orders: Sequence[float] | float) -> np.ndarray:
+    """Return positive orders of excitation, shape (p,)."""
+    if isinstance(orders, int | float | np.number) and not isinstance(orders, bool):
+        orders = [orders]
+    values = checks.vector(orders, "orders", size=None)
+    if values.size == 0 or np.any(values <= 0.0):
+        raise ValueError(f"orders: needs positive numbers, got {checks.shown(orders)}")
+    return values
+
+
+def checked_range(values: ArrayLike | None) -> np.ndarray | None:
+    """Return the lowest and the highest operating speed [rad/s], or None."""
+    if values is None:
+        return None
+    low, high = checks.vector(values, "operating_range", "rad/s", size=2)
+    if not 0.0 <= low < high:
+        raise ValueError(
+            "operating_range: needs the lowest and the highest speed [rad/s], got "
+            f"{checks.shown(values)}"
+        )
+    return np.array([low, high])
+
+
+def checked_margins(margins: ArrayLike | None, has_range: bool) -> np.ndarray:
+    """Return the shares of separation below and above the range; zeros for None."""
+    if margins is None:
+        return np.zeros(2)
+    values = checks.vector(margins, "margins", size=2)
+    if np.any(values < 0.0) or values[0] >= 1.0:
+        raise ValueError(
+            "margins: needs shares of the lowest and of the highest speed, as (0.16, 0.26), got "
+            + checks.shown(margins)
+        )
+    if not has_range:
+        raise ValueError("margins: are beside an operating range; give operating_range=(low, high)")
+    return values
+
+
+def crossings(
+    speeds: np.ndarray, values: np.ndarray, continued: np.ndarray, order: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return where modes have the frequency pΩ, between two speeds by linear interpolation.
+
+    Parameters
+    ----------
+    speeds : ndarray, shape (s,)
+        Spin speeds Ω [rad/s].
+    values : ndarray, shape (s, k)
+        Frequencies of each mode in the frame of the diagram [rad/s].
+    continued : ndarray of bool, shape (s, k)
+        Where a column is the same mode as at the speed before.
+    order : float
+        p.
+
+    Returns
+    -------
+    speeds : ndarray, shape (c,)
+        Ascending [rad/s].
+    columns : ndarray of int, shape (c,)
+        Which mode.
+    """
+    line = order * np.abs(speeds)[:, None]
+    apart = values - line
+    apart[np.abs(apart) <= _ON_THE_LINE * np.maximum(values, line)] = 0.0
+    before, after = apart[:-1], apart[1:]
+    crossed = (before * after < 0.0) | ((after == 0.0) & (before != 0.0))
+    rows, columns = np.nonzero(crossed & continued[1:])
+    share = before[rows, columns] / (before - after)[rows, columns]
+    crossings = speeds[rows] + share * np.diff(speeds)[rows]
+    ascending = np.argsort(crossings, kind="stable")
+    return crossings[ascending], columns[ascending]
+
+
+def draw_orders(
+    ax: Axes,
+    speeds: np.ndarray,
+    values: np.ndarray,
+    continued: np.ndarray,
+    orders: np.ndarray,
+    units: Units,
+) -> list[Line2D]:
+    """Draw the lines pΩ and mark where modes cross them; return what the legend needs.
+
+    `speeds`, `values` and `continued` are those of :func:`crossings`.
+    """
+    handles, last = [], speeds[np.argmax(np.abs(speeds))]
+    for number, order in enumerate(orders):
+        label = "spin speed" if order == 1.0 else f"{order:g} × spin speed"
+        style = plotting.LINES[number % len(plotting.LINES)]
+        drawn = units.frequencies(order * np.abs(speeds))
+        handles += ax.plot(units.speeds(speeds), drawn, color="0.6", lw=0.8, ls=style, label=label)
+        ax.annotate(f"{order:g}×", (units.speeds(last), units.frequencies(order * abs(last))),
+                    textcoords="offset points", xytext=(2, 0), fontsize=8, color="0.4",
+                    annotation_clip=True)  # fmt: skip
+    at = [crossings(speeds, values, continued, order)[0] for order in orders]
+    if sum(map(len, at)):
+        x = units.speeds(np.concatenate(at))
+        y = [units.frequencies(p * np.abs(one)) for p, one in zip(orders, at, strict=True)]
+        handles += ax.plot(x, np.concatenate(y), "o", mfc="none", mec="0.2", ms=6, label="crossing")
+    return handles
+
+
+def shade_range(
+    ax: Axes, limits: np.ndarray, margins: np.ndarray, units: Units, *, across: bool = False
+) -> list[Patch]:
+    """Shade operating speeds [rad/s] and the margins beside them; return what the legend needs.
+
+    Upright where the speed runs to the right, `across` where it runs upwards.
+    """
+    shade = ax.axhspan if across else ax.axvspan
+    low, high = units.speeds(limits)
+    handles = [shade(low, high, color=plotting.COLORS[2], alpha=0.15, lw=0.0)]
+    handles[0].set_label("operating range")
+    if np.any(margins > 0.0):
+        beside = [((1.0 - margins[0]) * low, low), (high, (1.0 + margins[1]) * high)]
+        drawn = [shade(*span, color="0.75", alpha=0.5, lw=0.0) for span in beside]
+        drawn[0].set_label("separation margin")
+        handles.append(drawn[0])
+    return handles
 
 
 def draw_campbell(
@@ -48,6 +179,8 @@ def draw_campbell(
     unstable : ndarray of bool, shape (s, k)
         Where a mode is marked by a cross.
     """
+    from matplotlib.lines import Line2D
+
     for column in range(values.shape[1]):
         starts = [0, *np.flatnonzero(~continued[1:, column]) + 1, len(speeds)]
         for start, stop in itertools.pairwise(starts):

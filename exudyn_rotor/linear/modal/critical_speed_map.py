@@ -16,20 +16,18 @@ from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear import options
-from exudyn_rotor.linear.modal.basis_error import in_table, is_known, points
+from exudyn_rotor.linear.modal.basis_error import is_known, points
 from exudyn_rotor.linear.modal.critical_speeds import (
     CriticalSpeeds,
     checked,
     collected,
     warn_of_critical,
 )
-from exudyn_rotor.linear.modal.model_result import ModelResult
 from exudyn_rotor.linear.modal.resonance import NO_EQUATIONS, Search, Stiffness
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, Content
 from exudyn_rotor.linear.model.build import linear_model, warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
-from exudyn_rotor.linear.over import warn_of_refused
+from exudyn_rotor.linear.over import ModelResult, in_table, warn_of_refused
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import numbers, storable
 from exudyn_rotor.solid_rotor import SolidRotor
@@ -150,11 +148,11 @@ class CriticalSpeedMap(ModelResult):
             Shaded; see :meth:`Campbell.plot`.
         """
         from exudyn_rotor import plotting
-        from exudyn_rotor.linear.modal import excitation
+        from exudyn_rotor.linear.modal import campbell_diagram as diagram
 
         shown = Units.of(units)
-        limits = excitation.checked_range(operating_range)
-        shares = excitation.checked_margins(margins, limits is not None)
+        limits = diagram.checked_range(operating_range)
+        shares = diagram.checked_margins(margins, limits is not None)
         ax = plotting.axes_or_new(ax)
         styles = {FORWARD: (plotting.COLORS[0], "o"), BACKWARD: (plotting.COLORS[1], "v")}
         for code in np.unique(self.whirl_codes[self.whirl_codes >= 0]):
@@ -174,7 +172,7 @@ class CriticalSpeedMap(ModelResult):
             room = (ends[1] / ends[0]) ** 0.05
             ax.set_xlim(ends[0] / room, ends[1] * room)
         if limits is not None:
-            excitation.shade_range(ax, limits, shares, shown, across=True)
+            diagram.shade_range(ax, limits, shares, shown, across=True)
         ax.set_xlabel("support stiffness [N/m]")
         ax.set_ylabel(f"undamped critical speed of order {self.order:g} [{shown.speed}]")
         ax.grid(alpha=0.3, which="both")
@@ -256,7 +254,7 @@ def critical_speed_map(
     checks.choice(stiffening, "stiffening", CHOICES)
     checks.choice(axes, "axes", AXES)
     checks.tolerance(tolerance)
-    options.check_basis_accuracy(accuracy)
+    checks.accuracy(accuracy)
     checks.flag(progress, "progress")
     curve = None if bearing is None else _as_support(bearing)
     first = linear_model(
@@ -266,7 +264,9 @@ def critical_speed_map(
     unit = {n: X / _UNIT for n, X in _added(first, names).items()}
     # a map takes what a film is within its own smoothness, for films are solved at each speed
     error = 1e-9 if first.table_speeds.size else _FILM
-    search = Search(Stiffness(first, unit), Content.of(first), *given, tolerance, error)
+    search = Search(
+        Stiffness(first, unit, order=given[0]), Content.of(first), *given, tolerance, error
+    )
     judged = set() if accuracy is None else set(points(len(values)).tolist())
     solved: list[CriticalSpeeds | None] = []
     failed: list[tuple[str, Exception]] = []

@@ -9,11 +9,9 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
+from exudyn_rotor.calls import one_thread
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal import basis_error
-from exudyn_rotor.linear.modal.basis_error import in_table
-from exudyn_rotor.linear.modal.model_result import ModelResult
 from exudyn_rotor.linear.modal.resonance import (
     NO_EQUATIONS,
     Resonance,
@@ -24,9 +22,9 @@ from exudyn_rotor.linear.modal.resonance import (
 from exudyn_rotor.linear.modal.whirl import WHIRLS, Content
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.over import ModelResult, in_table
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.results import numbers, storable, words
-from exudyn_rotor.threads import one_thread
 from exudyn_rotor.units import Units
 
 JUDGED = 6  # critical speeds that count where no largest speed is given
@@ -207,14 +205,15 @@ def critical_speeds(
     """
     given = checked(order, max_speed, nodal_diameters)
     checks.tolerance(tolerance)
-    options.check_basis_accuracy(accuracy)
+    checks.accuracy(accuracy)
     model = linear_model(
         target, supports=supports, foundation=foundation, body=body, stiffening=stiffening,
         axes=axes,
     ).undamped()  # fmt: skip
-    search = Search(Stiffness(model), Content.of(model), *given, tolerance)
+    search = Search(Stiffness(model, order=given[0]), Content.of(model), *given, tolerance)
     result = collected(search.resonances(), search, model, accuracy is not None)
     search.warn()
+    model.warn_beyond(given[0] * result.speeds)
     if result.speeds.size:
         fastest = result.speeds[0] if max_speed is None else max_speed
         warn_of_left_out_stiffening(model, fastest)
@@ -272,7 +271,8 @@ def basis_errors(model: LinearModel, found: Sequence[Resonance], count: int) -> 
         errors[:count] = 0.0
         return errors
     richer = model.richer
-    lifted, stiffness = basis_error.lifting(model, richer), Stiffness(richer)
+    stiffness = Stiffness(richer, order=abs(float(found[0].multiples[0])) if found else 1.0)
+    lifted = basis_error.lifting(model, richer)
     for i, one in enumerate(found[:count]):
         lift, slope = one._replace(vectors=one.vectors @ lifted.T), None
         try:

@@ -31,14 +31,13 @@ import scipy.linalg as la
 from scipy.optimize import brentq
 
 from exudyn_rotor.bearings.support import NoCoefficientsError
-from exudyn_rotor.callers import user_level
+from exudyn_rotor.calls import one_thread, user_level
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, UnconvergedError, add
 from exudyn_rotor.linear.modal.whirl import Content, signed_diameters
 from exudyn_rotor.linear.model.assembly import rotors_of
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.solve.hill import real_waves
 from exudyn_rotor.linear.solve.motions import Motions
-from exudyn_rotor.threads import one_thread
 
 NO_EQUATIONS = NoCoefficientsError, UnconvergedError
 _SHARE = 0.4  # of a motion's energy that must turn with the excitation
@@ -99,12 +98,15 @@ class Stiffness:
     factor : float
     line : Line, optional
         What gives the equations in the place of the model.
+    order : float
+        Frequency over the speed, for coefficients over the frequency.
     """
 
     model: LinearModel
     unit: Terms = field(default_factory=dict)
     factor: float = 0.0
     line: Line | None = None
+    order: float = 1.0
     known: dict[float, PeriodicSystem] = field(default_factory=dict)
 
     def system(self, speed: float) -> PeriodicSystem:
@@ -112,7 +114,7 @@ class Stiffness:
         if self.line is not None:
             return self.line(speed)
         if speed not in self.known:
-            system, basis = self.model.at(speed), self.model.moving_basis
+            system, basis = self.model.at(speed, self.order * speed), self.model.moving_basis
             self.known[speed] = system if basis is None else system.projected(basis)
         return self.known[speed]
 

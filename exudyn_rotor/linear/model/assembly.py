@@ -1,29 +1,358 @@
-"""The equations of bodies and elements together, in one kind of axes."""
+"""Bodies and what stands between them and the ground, together, in one kind of axes.
+
+An element, as of a support, a link, gears or pads, has stiffness and damping of a motion u of its
+own, ``f = −K u − D u̇``, in axes that stand still or turn with a rotor. How u follows from the
+coordinates of the bodies, ``u = U(θ) y``, is all that depends on the axes of the model.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 import scipy.linalg as la
 
-from exudyn_rotor.bearings.support import NoCoefficientsError
+from exudyn_rotor.bearings.controlled_support import (
+    Controlled,
+    ControlledSupport,
+    FilmSupport,
+    PadSupport,
+)
+from exudyn_rotor.bearings.given import linear_supports
+from exudyn_rotor.bearings.support import NoCoefficientsError, OutsideTableError, Support, acts
+from exudyn_rotor.calls import kept
+from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.linear.equations import (
     PeriodicSystem,
     Terms,
     UnconvergedError,
     add,
     congruent,
+    difference,
     rate_of,
+    stacked,
+    turned,
     without_rounding,
 )
 from exudyn_rotor.linear.model.body import Body, RotorBody
-from exudyn_rotor.linear.model.element import Element, End, OwnBody
+from exudyn_rotor.linear.model.rotor_train import Link
+from exudyn_rotor.linear.model.turning import ACROSS
+from exudyn_rotor.theory.rotating_axes import axial_skew
 
 NO_EQUATIONS = NoCoefficientsError, UnconvergedError
-_ROUNDING = 1e-14  # share of a stiffness that is the rounding of its change by the speed
+_CHANGE = 1e-14  # share of a stiffness that is the rounding of its change by the speed
+_ROUNDING = 1e-12  # share of a matrix by which it may differ after a turn and be isotropic
+End = tuple[str, str]  # names of a body and of its interface
+Seen = Callable[[End], Terms]  # what a support acts on, seen from outside
+WORDS = {ControlledSupport: "controller", FilmSupport: "voids", PadSupport: "pads"}
+
+
+@dataclass(frozen=True, eq=False)
+class Element:
+    """A law between bodies.
+
+    Attributes
+    ----------
+    ends : tuple of (str, str)
+        Bodies and their interfaces.
+    matrices : callable
+        Takes the speed Ω, and the frequency of the motion, that of Ω without it [rad/s]; gives
+        stiffness and damping, each (p, p), p a multiple of 3.
+    motion : callable
+        Takes a function that gives the motion (6, k) of an end, gives u as Fourier terms (p, k).
+    turns : float
+        Speed of its axes over Ω.
+    varies, stiffness_varies : bool
+        Whether anything, or a stiffness, depends on the speed.
+    table_speeds : ndarray
+        Ω at the points of its tables [rad/s], where coefficients have kinks.
+    holding : callable, optional
+        Gives a stiffness that tells which motions it holds, where it may have none at rest.
+    law : ControlledSupport or another with coordinates of its own, optional
+        What it was made from.
+    mass : callable, optional
+        As `matrices`, gives a mass (p, p) [kg] that goes with u, in axes that stand.
+    table_frequencies : ndarray
+        Frequencies of its tables [rad/s]; none where it does not depend on the frequency.
+    held_beyond : bool
+        Whether it may keep the ends of its tables beyond them.
+    """
+
+    ends: tuple[End, ...]
+    matrices: Callable[..., tuple[np.ndarray, np.ndarray]]
+    motion: Callable[[Seen], Terms]
+    turns: float = 0.0
+    varies: bool = False
+    stiffness_varies: bool = False
+    table_speeds: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    holding: Callable[[], np.ndarray] | None = None
+    law: Controlled | None = None
+    mass: Callable[..., np.ndarray] | None = None
+    table_frequencies: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    held_beyond: bool = False
+
+    @property
+    def what(self) -> str:
+        """The element, for messages."""
+        return " – ".join(filter(None, (":".join(filter(None, end)) for end in self.ends)))
+
+    def coefficients(self, speed: float, frequency: float | None = None) -> tuple[np.ndarray, ...]:
+        """Return stiffness, damping and, where there is one, the mass."""
+        found = self.matrices(speed, frequency)
+        return found if self.mass is None else (*found, self.mass(speed, frequency))
+
+    def at_rest(self) -> np.ndarray:
+        """Return a stiffness that tells which motions it holds, (p, p).
+
+        Of a film it is the stiffness at a speed at which it carries.
+        """
+        return self.holding() if self.holding is not None else self.matrices(0.0)[0]
+
+    def is_isotropic(self, speed: float) -> bool:
+        """Return whether the coefficients at a speed are the same in all directions."""
+        return all(is_isotropic_matrix(X) for X in self.matrices(speed))
+
+    def terms(
+        self,
+        coefficients: tuple[np.ndarray, np.ndarray],
+        speed: float | np.ndarray,
+        U: Terms,
+        turns: int,
+    ) -> tuple[dict, dict]:
+        """Return the Fourier terms of damping and stiffness, each (k, k), or (s, k, k) of a stack.
+
+        `coefficients` are what :attr:`matrices` gives at the speed Ω [rad/s], or stacks of them at
+        speeds of the shape (s, 1, 1); `U` is :attr:`motion` in axes that turn with `turns` times Ω.
+        """
+        K, D = coefficients
+        if self.turns:
+            if self.turns == turns:  # seen from axes that turn with it, it stands still
+                U = turned(U, -turns)
+            else:
+                K = K - self.turns * speed * D @ axial_skew(D.shape[-1])
+        damping, stiffness = congruent(U, D), congruent(U, K)
+        if len(U) > 1:
+            add(stiffness, congruent(U, D, rate_of(U)), speed)
+        return damping, stiffness
+
+    def check_axes(self, turns: int) -> None:
+        """Refuse an anisotropic element that turns otherwise than the axes do, and such a mass."""
+        if turns and self.table_frequencies.size:
+            raise ValueError(
+                f"supports: {self.what} has coefficients over the frequency, which need a rotor "
+                "that is round, and axes that stand still; give support.at_frequency(…), or leave "
+                "axes='rotor' out"
+            )
+        if turns and self.mass is not None and not is_isotropic_matrix(self.mass(0.0)):
+            raise ValueError(
+                f"supports: {self.what} has a mass that is not the same in all directions, which "
+                "needs a rotor that is round, and axes that stand still"
+            )
+        if self.turns and self.turns != turns and not self.is_isotropic(0.0):
+            raise ValueError(
+                f"supports: {self.what} is not the same in all directions and turns with "
+                f"{self.turns:g} times the speed of the analysis; give a RotorTrain relative_to "
+                "its rotor, or leave axes='inertial' out"
+            )
+
+
+def is_isotropic_matrix(X: np.ndarray) -> bool:
+    quarter = axial_skew(len(X))
+    return bool(np.abs(X @ quarter - quarter @ X).max() <= _ROUNDING * np.abs(X).max())
+
+
+class OwnBody(Body):
+    """Coordinates that a support brings with it, in pairs, as a body: of a controller, of voids."""
+
+    def rows(self) -> dict[int, np.ndarray]:
+        """Return the displacements of its pairs of coordinates, seen from outside, (3p, k)."""
+        pairs = np.kron(np.eye(self.size // 2), ACROSS)
+        return turned({0: pairs}, self.turns)
+
+
+class PadBody(OwnBody):
+    """The tilts of pads, which stand still."""
+
+    def rows(self) -> dict[int, np.ndarray]:
+        """Return the coordinates, (k, k)."""
+        return {0: np.eye(self.size)}
+
+
+def own_body(one: Controlled, number: int, turns: int) -> OwnBody:
+    """Return the coordinates of a support; pairs in axes that turn with `turns` times Ω."""
+    labels = tuple(
+        f"{WORDS[type(one)]} {number} at {one.interface}, {n}" for n in range(1, one.size + 1)
+    )
+    M, none = np.diag(one.masses), np.zeros((one.size, one.size))
+    name = f" {number}"
+    if isinstance(one, PadSupport):
+        return PadBody(name, 0, M, (none,), (none,), labels)
+    quarter = np.kron(np.eye(one.size // 2), axial_skew(3)[:2, :2])
+    powers_D, powers_K = (none, 2.0 * turns * M @ quarter), (none, none, -float(turns) * M)
+    return OwnBody(name, turns, M, powers_D, powers_K, labels)
+
+
+def _relative(end: End, base: End | None) -> Callable[[Seen], Terms]:
+    """Return what gives the motion of an end against its base."""
+    if base is None:
+        return lambda seen: seen(end)
+    return lambda seen: difference(seen(end), seen(base))
+
+
+def _part(motion: Callable[[Seen], Terms], rows: slice) -> Callable[[Seen], Terms]:
+    return lambda seen: {n: U[rows] for n, U in motion(seen).items()}
+
+
+def support_element(
+    support: Support, end: End, base: End | None, rate: float, ratio: float
+) -> Element:
+    """Return a support between an end and its base, the ground by default.
+
+    Its tables are over `rate` times Ω; one in the rotor's frame turns with `ratio` times Ω.
+    """
+
+    def pair(speed: float, frequency: float | None) -> tuple[float, float]:
+        return rate * speed, abs(speed) if frequency is None else frequency
+
+    def matrices(speed: float, frequency: float | None = None) -> tuple[np.ndarray, np.ndarray]:
+        try:
+            support.check_range(rate * speed)
+        except OutsideTableError as error:
+            if rate == 1.0:
+                raise
+            raise OutsideTableError(
+                f"{error}; it turns with {rate:g} times the speed of the analysis, {speed:g} rad/s"
+            ) from None
+        return support.matrices(*pair(speed, frequency))
+
+    def mass(speed: float, frequency: float | None = None) -> np.ndarray:
+        return support.mass_matrix(*pair(speed, frequency))
+
+    speeds = support.table_speeds / rate if rate and support.varies else np.zeros(0)
+    return Element(
+        (end,) if base is None else (end, base),
+        matrices,
+        _relative(end, base),
+        ratio if support.frame == "rotor" else 0.0,
+        support.varies,
+        support.stiffness_varies,
+        speeds,
+        lambda: support.matrices(0.0)[0],
+        mass=mass if acts(support.mass) else None,
+        table_frequencies=support.table_frequencies if support.varies else np.zeros(0),
+        held_beyond=support.extrapolate,
+    )
+
+
+def _gear_element(gears: GearMesh, ends: tuple[End, End]) -> Element:
+    return Element(ends, lambda *_: gears.matrices(), lambda seen: stacked([*map(seen, ends)]))
+
+
+def with_own(
+    one: Controlled, end: End, bases: Mapping[str, End], rate: float, own: OwnBody
+) -> list[Element]:
+    """Return the elements of a support with coordinates of its own."""
+    at = _part(_relative(end, bases.get(one.interface)), slice(0, 3))
+    if isinstance(one, PadSupport):
+        return [_pad_element(one, place, at, end, rate, own) for place in range(one.size)]
+    ports = [at]
+    if isinstance(one, ControlledSupport):
+        sensed = _relative((end[0], one.sensor), bases.get(one.sensor))
+        ports.append(_part(sensed, slice(0, 3)))
+    lifted = np.kron(np.eye(len(ports) + own.size // 2), ACROSS)
+
+    def matrices(*_: float) -> tuple[np.ndarray, np.ndarray]:
+        K, D = one.stiffness, one.damping
+        return lifted @ K @ lifted.T, lifted @ D @ lifted.T
+
+    def of_film(speed: float, *_: float) -> tuple[np.ndarray, np.ndarray]:
+        D, K = one.matrices(rate * speed)
+        return lifted @ K @ lifted.T, lifted @ D @ lifted.T
+
+    def motion(seen: Seen) -> Terms:
+        return stacked([*(port(seen) for port in ports), seen((own.name, ""))])
+
+    ends = (end, (end[0], one.sensor))
+    if isinstance(one, ControlledSupport):
+        return [Element(ends, matrices, motion, law=one)]
+    return [Element((end,), of_film, motion, varies=True, stiffness_varies=True)]
+
+
+def _pad_element(
+    one: PadSupport, place: int, at: Callable, end: End, rate: float, own: OwnBody
+) -> Element:
+    """Return the film of a pad, which acts on ``x − s t``."""
+    film, tangent = one.films[place], np.append(one.tangents[place], 0.0)
+
+    def matrices(speed: float, *_: float) -> tuple[np.ndarray, np.ndarray]:
+        film.check_range(rate * speed)
+        return tuple(X[:3, :3] for X in film.matrices(rate * speed))
+
+    def motion(seen: Seen) -> Terms:
+        tilt = seen((own.name, ""))[0][place : place + 1]
+        return difference(at(seen), {0: np.outer(tangent, tilt)})
+
+    return Element((end,), matrices, motion, varies=True, stiffness_varies=True)
+
+
+def elements_of(
+    supports: Mapping[str, Sequence],
+    ratios: Mapping[str, float],
+    links: Sequence[Link],
+    bases: Mapping[str, End],
+    turns: int,
+    kind: str = "full",
+    begun: int = 0,
+) -> tuple[list[Element], list[OwnBody]]:
+    """Return the elements of a model, and the coordinates that some of them bring.
+
+    Parameters
+    ----------
+    supports : mapping of str to sequence
+        Supports and bearings of each rotor.
+    ratios : mapping of str to float
+    links : sequence of Link
+    bases : mapping of str to (str, str)
+        What carries the support at an interface; the ground where there is nothing.
+    turns : int
+        Axes of the own coordinates.
+    kind : {'full', 'static', 'undamped'}
+        'static' elements have their static stiffness in the place of own coordinates; 'undamped'
+        ones are also without damping and the skew part of their stiffness.
+    begun : int
+        Number of own coordinates' bodies that there are already.
+
+    Raises
+    ------
+    ValueError
+        For a bearing without the load that it needs.
+    """
+    elements, own = [], []
+    for name, given in supports.items():
+        plain, controlled = linear_supports(given)
+        if kind != "full":
+            plain = [*plain, *(Support(c.interface, c.static_stiffness) for c in controlled)]
+            controlled = ()
+        if kind == "undamped":
+            plain = [one.undamped() for one in plain]
+        ratio = ratios[name]
+        for one in plain:
+            base = bases.get(one.interface)
+            elements.append(support_element(one, (name, one.interface), base, ratio, ratio))
+        for one in sorted(controlled, key=lambda each: list(WORDS).index(type(each))):
+            own.append(own_body(one, begun + len(own) + 1, turns))
+            elements += with_own(one, (name, one.interface), bases, ratio, own[-1])
+    for link in links:
+        first, second = link.ends
+        if isinstance(link.connection, GearMesh):
+            elements.append(_gear_element(link.connection, (first, second)))
+            continue
+        law = link.connection.undamped() if kind == "undamped" else link.connection
+        rate = ratios[first[0]] - ratios[second[0]]
+        elements.append(support_element(law, first, second, rate, ratios[first[0]]))
+    return elements, own
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,25 +435,65 @@ class Assembly:
                 add(powers_K[1], K, -1.0)
         return _without_rounding(powers_D), _without_rounding(powers_K)
 
-    def system(self, speed: float) -> PeriodicSystem:
-        """Return the equations at a spin speed [rad/s]."""
-        return self._system(float(speed), [one.matrices(speed) for one in self._varying])
+    @cached_property
+    def _powers(self) -> tuple[dict[int, tuple[list[int], np.ndarray]], ...]:
+        """Coefficients of :attr:`_steady` by multiples of θ: powers (p,) of Ω, and (p, k, k)."""
+        found = []
+        for given in self._steady:
+            orders = {n for terms in given for n in terms}
+            which = {n: [p for p, X in enumerate(given) if n in X and np.any(X[n])] for n in orders}
+            which[0] = which.get(0) or [0]
+            found.append(
+                {n: (p, np.stack([given[i][n] for i in p])) for n, p in which.items() if p}
+            )
+        return tuple(found)
 
-    def systems(self, speeds: np.ndarray) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
+    def projected(self, basis: np.ndarray) -> Assembly:
+        """Return what gives the equations of motions in a real basis (k, r)."""
+
+        def within(terms: Terms) -> dict[int, np.ndarray]:
+            return {n: basis.T @ X @ basis for n, X in terms.items()}
+
+        other = Assembly(self.bodies, self.elements, self.turns)
+        vars(other).update(
+            M=basis.T @ self.M @ basis,
+            motions=[{n: U @ basis for n, U in terms.items()} for terms in self.motions],
+            _steady=tuple([within(terms) for terms in given] for given in self._steady),
+            _H=[(n, basis.T @ X @ basis) for n, X in self._H],
+        )
+        return other
+
+    def system(self, speed: float, frequency: float | None = None) -> PeriodicSystem:
+        """Return the equations at a spin speed, and a frequency of motions [rad/s]."""
+        given = [one.coefficients(speed, frequency) for one in self._varying]
+        return self._system(float(speed), given)
+
+    def systems(
+        self, speeds: np.ndarray, frequencies: np.ndarray | None = None
+    ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         """Return the equations at spin speeds (s,), stacked, and why there are none at some.
 
-        Speeds at which there are none are left out of the stack.
+        Speeds at which there are none are left out of the stack. Frequencies of motions (s,) are
+        those of the speeds by default.
         """
         found, refused = [], {}
-        for place, speed in enumerate(speeds.tolist()):
+        rates = [None] * len(speeds) if frequencies is None else frequencies.tolist()
+        for place, pair in enumerate(zip(speeds.tolist(), rates, strict=True)):
             try:
-                found.append([one.matrices(speed) for one in self._varying])
+                found.append([one.coefficients(*pair) for one in self._varying])
             except NO_EQUATIONS as error:
                 refused[place] = error
         if not found:
             return None, refused
-        stacks = [tuple(map(np.stack, zip(*each, strict=True))) for each in zip(*found)]  # noqa: B905
-        return self._system(np.delete(speeds, list(refused)), stacks), refused
+        return self._system(np.delete(speeds, list(refused)), stacked_coefficients(found)), refused
+
+    def at_points(self, speeds: np.ndarray, coefficients: Sequence) -> PeriodicSystem:
+        """Return the equations at points, stacked, each with coefficients of its elements.
+
+        `coefficients` are :meth:`Element.coefficients` of each, as stacks over the points.
+        """
+        varying = tuple(replace(element, varies=True) for element in self.elements)
+        return replace(self, elements=varying)._system(speeds, coefficients)
 
     @cached_property
     def _varying(self) -> list[Element]:
@@ -133,44 +502,35 @@ class Assembly:
     def _system(self, speed: float | np.ndarray, coefficients: Sequence) -> PeriodicSystem:
         """Return the equations at a speed, or a stack, by the `coefficients` of what varies."""
         factor = np.asarray(speed)[..., None, None] if np.ndim(speed) else speed
-        D, K = {}, {}
-        for terms, powers in zip((D, K), self._steady, strict=True):
-            for power, given in enumerate(powers):
-                add(terms, given, factor**power)
-        rest = iter(coefficients)
+        D, K = (
+            {n: np.tensordot(np.power.outer(speed, powers), X, 1) for n, (powers, X) in each}
+            for each in map(dict.items, self._powers)
+        )
+        M, rest = self.M, iter(coefficients)
         for element, U in zip(self.elements, self.motions, strict=True):
+            given = next(rest) if element.varies else (None, None)
             if element.varies:
-                damping, stiffness = element.terms(next(rest), factor, U, self.turns)
+                damping, stiffness = element.terms(given[:2], factor, U, self.turns)
                 add(D, damping)
                 add(K, stiffness)
-        M = self.M
-        for (element, _), parts in zip(self._massive, self._inertia, strict=True):
-            m = factor * 0.0 + np.vectorize(element.mass, otypes=[float])(factor)
-            M = M + m * parts[0]
-            add(D, {n: 2.0 * factor * m * X for n, X in parts[1].items()})
-            add(K, {n: factor**2 * m * X for n, X in parts[2].items()})
+            if element.mass is not None:
+                mass = given[2] if element.varies else element.mass(0.0)
+                M = M + self._inertia(mass, U, factor, D, K)
         return PeriodicSystem(speed, M, without_rounding(D), without_rounding(K), self._H)
 
-    @property
-    def _massive(self) -> list[tuple[Element, Terms]]:
-        """Elements with a mass, and their motions."""
-        pairs = zip(self.elements, self.motions, strict=True)
-        return [(element, U) for element, U in pairs if element.mass is not None]
+    @staticmethod
+    def _inertia(
+        mass: np.ndarray, U: Terms, factor: float | np.ndarray, D: dict, K: dict
+    ) -> np.ndarray:
+        """Return the mass matrix of a mass; add what follows as axes turn: ü = d²(U y)/dt².
 
-    @cached_property
-    def _inertia(self) -> list[tuple[np.ndarray, Terms, Terms]]:
-        """M, D over 2 Ω and K over Ω² of a kilogram of each, as the axes turn: ü = d²(U y)/dt².
-
-        Of M the mean: a mass is alike in all directions.
+        Of the mass matrix the mean: in axes that turn, a mass is alike in all directions.
         """
-        found = []
-        for _, U in self._massive:
-            size = len(next(iter(U.values())))
-            across = np.diag((np.arange(size) < 2).astype(float))
-            first = rate_of(U)
-            parts = [congruent(U, across, each) for each in (U, first, rate_of(first))]
-            found.append((parts[0][0].real, parts[1], parts[2]))
-        return found
+        first = rate_of(U)
+        if first:
+            add(D, congruent(U, mass, first), 2.0 * factor)
+            add(K, congruent(U, mass, rate_of(first)), factor**2)
+        return congruent(U, mass)[0].real
 
     @cached_property
     def _H(self) -> list[tuple[float, np.ndarray]]:
@@ -181,6 +541,7 @@ class Assembly:
             for n, X in body.H
         ]
 
+    @kept
     def seen(self, body: Body, interface: str) -> dict[int, np.ndarray]:
         """Return the motion (6, k) of an interface, seen from outside, for loads and results."""
         return self.wide(body.seen(interface), self.slices[self.bodies.index(body)])
@@ -209,10 +570,15 @@ def _without_rounding(powers: list[dict[int, np.ndarray]]) -> list[dict[int, np.
     largest = max((np.abs(X).max(initial=0.0) for X in powers[0].values()), default=0.0)
     first = without_rounding(powers[0]) if powers[0] else powers[0]
     kept = [
-        {n: X for n, X in each.items() if n == 0 or np.abs(X).max() > _ROUNDING * largest}
+        {n: X for n, X in each.items() if n == 0 or np.abs(X).max() > _CHANGE * largest}
         for each in powers[1:]
     ]
     return [first, *kept]
+
+
+def stacked_coefficients(found: Sequence[Sequence]) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return stiffness and damping of elements, known at points, as stacks over the points."""
+    return [tuple(map(np.stack, zip(*each, strict=True))) for each in zip(*found, strict=True)]
 
 
 def rotors_of(bodies: Sequence[Body]) -> list[RotorBody]:

@@ -19,13 +19,17 @@ from functools import cached_property
 import numpy as np
 import scipy.linalg as la
 
-from exudyn_rotor.cached import kept
+from exudyn_rotor.calls import kept
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import Terms, turned
-from exudyn_rotor.linear.model.points import interface_motion, radius_of_gyration
 from exudyn_rotor.linear.model.spin import Spin, spin_of
-from exudyn_rotor.linear.model.turning import Turning, turning_of
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.linear.model.turning import (
+    Turning,
+    interface_motion,
+    radius_of_gyration,
+    turning_of,
+)
+from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.rotating_axes import axes_of

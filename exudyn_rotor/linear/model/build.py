@@ -10,7 +10,7 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
-from exudyn_rotor.callers import user_level
+from exudyn_rotor.calls import user_level
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.model.body import EVEN
 from exudyn_rotor.linear.model.linear_model import AXES, ON_FOUNDATION, LinearModel

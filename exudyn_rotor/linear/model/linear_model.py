@@ -23,10 +23,16 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor import checks
-from exudyn_rotor.callers import user_level
+from exudyn_rotor.calls import user_level
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, spread, turned
-from exudyn_rotor.linear.model.assembly import Assembly, rotors_of
+from exudyn_rotor.linear.model.assembly import (
+    Assembly,
+    Element,
+    elements_of,
+    rotors_of,
+    stacked_coefficients,
+)
 from exudyn_rotor.linear.model.body import (
     EVEN,
     RotorAlone,
@@ -38,10 +44,9 @@ from exudyn_rotor.linear.model.body import (
     rotor_alone,
     rotor_body,
 )
-from exudyn_rotor.linear.model.element import Element, elements_of
-from exudyn_rotor.linear.model.links import Link
+from exudyn_rotor.linear.model.rotor_train import Link
 from exudyn_rotor.linear.model.spin import ARM
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.stiffening import LEVELS
 
@@ -259,20 +264,29 @@ class LinearModel:
 
     # ------------------------------------------------------------------ equations
 
-    def at(self, speed: float) -> PeriodicSystem:
-        """Return the equations at a spin speed [rad/s].
+    def at(self, speed: float, frequency: float | None = None) -> PeriodicSystem:
+        """Return the equations at a spin speed, and a frequency of motions [rad/s].
+
+        Supports with coefficients over the frequency have those of the spin speed by default.
 
         Raises
         ------
         NoCoefficientsError
             For a speed beyond a table, or at which a film carries nothing.
         """
-        return self.assembly(speed).system(speed)
+        return self.assembly(speed).system(speed, frequency)
 
-    def at_all(self, speeds: Sequence[float]) -> PeriodicSystem:
+    def at_all(
+        self,
+        speeds: Sequence[float],
+        within: str = "",
+        frequencies: Sequence[float] | None = None,
+    ) -> PeriodicSystem:
         """Return the equations at spin speeds (s,) [rad/s] as one stack.
 
-        NaN at speeds where there are none, of which one warning tells.
+        NaN at speeds where there are none, of which one warning tells. Of motions `within`
+        :attr:`held_basis`, 'held', or :attr:`moving_basis`, 'moving'; of all by default. With
+        motions of the frequencies (s,) [rad/s]; those of the speeds by default.
 
         Raises
         ------
@@ -283,7 +297,8 @@ class LinearModel:
         parts, refused = [], {}
         for places in (np.flatnonzero(speeds), np.flatnonzero(speeds == 0.0)):
             if places.size:
-                part, errors = self._systems(speeds[places])
+                rates = None if frequencies is None else np.asarray(frequencies)[places]
+                part, errors = self._systems(speeds[places], within, rates)
                 refused |= {int(places[i]): error for i, error in errors.items()}
                 if part is not None:
                     parts.append((np.delete(places, list(errors)), part))
@@ -292,16 +307,61 @@ class LinearModel:
         _warn_of_refused(speeds, refused)
         return spread(speeds, parts)
 
-    def _systems(self, speeds: np.ndarray) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
+    def _systems(
+        self, speeds: np.ndarray, within: str = "", frequencies: np.ndarray | None = None
+    ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         """Return the stack at speeds (s,), all zero or none, and why there are none at some."""
-        return self.assembly(speeds[0]).systems(speeds)
+        basis = getattr(self, f"{within}_basis") if within else None
+        if basis is None:
+            return self.assembly(speeds[0]).systems(speeds, frequencies)
+        key = within, bool(speeds[0])
+        if key not in self._projected:
+            self._projected[key] = self.assembly(speeds[0]).projected(basis)
+        return self._projected[key].systems(speeds, frequencies)
 
-    def matrices(self, speed: float) -> Matrices:
+    @cached_property
+    def _projected(self) -> dict[tuple[str, bool], Assembly]:
+        """What gives the equations of motions in a basis, running or at rest, once made."""
+        return {}
+
+    @property
+    def pattern(self) -> tuple:
+        """What models have in common whose equations differ in numbers of their supports alone."""
+        given = [
+            (getattr(one, "pattern", None) or id(one))
+            for each in self.supports.values()
+            for one in each
+        ]
+        parts = (*self.rotors.values(), *self.links, self.foundation)
+        rest = self.ratios.values(), self.driven, (self.stiffening_asked, self.wanted_axes)
+        kind = self.largest_unevenness, self.is_undamped, self.is_richer, self.is_full
+        return *given, *map(id, parts), *map(tuple, rest), kind
+
+    def coefficients(self, speed: float) -> list:
+        """Return what :meth:`at_points` needs of a model and a speed [rad/s].
+
+        Raises
+        ------
+        NoCoefficientsError
+            As :meth:`at`.
+        """
+        return [element.coefficients(speed) for element in self._elements[0]]
+
+    def at_points(self, speeds: np.ndarray, coefficients: Sequence) -> PeriodicSystem:
+        """Return the equations of models of one :attr:`pattern` at points, as one stack.
+
+        `speeds` (s,) [rad/s] are all zero or none; `coefficients` are those of each point.
+        """
+        return self.assembly(speeds[0]).at_points(speeds, stacked_coefficients(coefficients))
+
+    def matrices(self, speed: float, frequency: float | None = None) -> Matrices:
         """Return mass, damping and stiffness at a spin speed [rad/s].
 
         Parameters
         ----------
         speed : float
+        frequency : float, optional
+            Of motions, for supports with coefficients over it; that of the speed by default.
 
         Returns
         -------
@@ -313,7 +373,9 @@ class LinearModel:
         ValueError
             Where the equations are periodic, as of an uneven rotor on uneven supports.
         """
-        system = self.at(checks.number(speed, "speed", "rad/s"))
+        if frequency is not None:
+            checks.number(frequency, "frequency", "rad/s", least=0.0)
+        system = self.at(checks.number(speed, "speed", "rad/s"), frequency)
         if not system.is_constant:
             raise ValueError(
                 "matrices: the equations of an uneven rotor on uneven supports repeat every "
@@ -417,6 +479,49 @@ class LinearModel:
     def table_speeds(self) -> np.ndarray:
         """Ω at the points of the tables of supports [rad/s], at which there are kinks."""
         return np.unique(np.concatenate([[], *(e.table_speeds for e in self._elements[0])]))
+
+    @property
+    def table_frequencies(self) -> np.ndarray:
+        """Frequencies of the tables of supports [rad/s]; none where nothing depends on it."""
+        return np.unique(np.concatenate([[], *(e.table_frequencies for e in self._elements[0])]))
+
+    @cached_property
+    def over_frequency(self) -> bool:
+        """Whether coefficients of a support depend on the frequency of a motion."""
+        return bool(self.table_frequencies.size)
+
+    def check_without_frequency(self, what: str) -> None:
+        """Refuse coefficients over the frequency, of which motions of `what` have several.
+
+        Raises
+        ------
+        ValueError
+        """
+        for element in self._elements[0]:
+            if element.table_frequencies.size:
+                raise ValueError(
+                    f"supports: {element.what} has coefficients over the frequency, and {what} has "
+                    "several at once; give support.at_frequency(…), or a bearing with states of "
+                    "its own"
+                )
+
+    def warn_beyond(self, frequencies: np.ndarray) -> None:
+        """Warn of motions [rad/s] beyond a table over the frequency, which keeps its end there."""
+        for element in () if self.is_richer else self._elements[0]:
+            table, used = element.table_frequencies, np.asarray(frequencies)
+            if table.size and not element.held_beyond:
+                slack = _HELD * table.max()
+                used = used[(used < table.min() - slack) | (used > table.max() + slack)]
+                if used.size:
+                    warnings.warn(
+                        f"support at {element.what}: its table holds {table.min():g} to "
+                        f"{table.max():g} rad/s, and keeps its ends for motions of "
+                        f"{used.min():.5g} to {used.max():.5g} rad/s; give more of it, or "
+                        "extrapolate=True",
+                        UserWarning,
+                        stacklevel=user_level(),
+                    )
+                    return
 
     @property
     def has_structural_damping(self) -> bool:
@@ -599,9 +704,12 @@ class LinearModel:
         """The model in which forced motions are found: nothing of the rotor is averaged.
 
         Near a critical speed a forced motion stands in the rotor, where the unevenness of a mesh
-        counts to first order. It has few harmonics in the axes of the rotor.
+        counts to first order. It has few harmonics in the axes of the rotor. Coefficients over the
+        frequency need axes that stand still.
         """
-        return replace(self, wanted_axes="rotor") if self.wanted_axes == "auto" else self
+        if self.wanted_axes != "auto" or self.over_frequency:
+            return self
+        return replace(self, wanted_axes="rotor")
 
     def __repr__(self) -> str:
         lines = [f"LinearModel of {self.size} coordinates in {self.axes} axes"]

@@ -8,10 +8,169 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.bearing import bearing_of
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
-from exudyn_rotor.linear.model.link_places import check_places
-from exudyn_rotor.linear.model.links import Link
+from exudyn_rotor.bearings.rolling import RollingBearing
+from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.solid.places import OF_RADIUS, SAME_PLACE
+from exudyn_rotor.theory.rotating_axes import axes_of
+
+_SAME = 1e-9  # relative slip of gears that is rounding
+_OF_DISTANCE = 1e-3  # of the centre distance of gears
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """What connects two rotors: an inter-shaft bearing, a spring of their torsion, a gear mesh.
+
+    Parameters
+    ----------
+    first, second : str
+        Interfaces as 'rotor:interface'.
+    connection : Support or GearMesh
+        A support is at the interface of the first rotor and stands on the second instead of on the
+        ground: it acts on the difference of the two motions along (n1, n2, e), which are parallel
+        for all rotors. A tilt stiffness (3, 3) holds the torsion by its last entry. Tables are
+        over the relative speed of the rotors; frame 'rotor' is that of the first.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For names without a colon, two ends of one rotor, a support at another interface, a gear
+        mesh with backlash or a stiffness that follows the teeth, and what ``linearised()`` of a
+        bearing gives, unless that is a `RollingBearing`.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import Link, Support
+    >>> Link("LP:rear", "HP:rear", Support("rear", 2e7, damping=500.0)).ends
+    (('LP', 'rear'), ('HP', 'rear'))
+    """
+
+    first: str
+    second: str
+    connection: Support | GearMesh
+
+    def __post_init__(self) -> None:
+        (rotor, interface), (other, _) = self.ends
+        checks.instance(self.connection, "connection", (Support, GearMesh))
+        law, bearing = self.connection, bearing_of(self.connection)
+        if bearing is not None and not isinstance(bearing, RollingBearing):
+            raise ValueError(
+                f"connection: the coefficients of a {type(bearing).__name__} hold on what does not "
+                "turn; give those between two rotors as a table over Ω1 − Ω2. A journal in a round "
+                "bore has there what it has in a bore at rest at the speed Ω1 + Ω2"
+            )
+        if isinstance(law, GearMesh) and (law.backlash is not None or law.variation.size):
+            raise ValueError(
+                "connection: a GearMesh with backlash, or with a stiffness that follows the teeth, "
+                "is not linear; give one without backlash= and variation=, of the mean stiffness"
+            )
+        if isinstance(self.connection, Support) and self.connection.interface != interface:
+            raise ValueError(
+                f"connection: is at {self.connection.interface!r}, and the first end of the link "
+                f"at {self.first!r}; give a Support({interface!r}, …)"
+            )
+        if rotor == other:
+            raise ValueError(
+                f"second: {self.second!r} is of the same rotor as {self.first!r}; a link is "
+                "between two"
+            )
+
+    @property
+    def ends(self) -> tuple[tuple[str, str], tuple[str, str]]:
+        """Rotor and interface of both ends."""
+        return _end(self.first, "first"), _end(self.second, "second")
+
+    def _check_ratios(self, ratios: Mapping[str, float]) -> None:
+        """Refuse gears whose speeds are not in the ratio of their radii.
+
+        Raises
+        ------
+        ValueError
+        """
+        if not isinstance(self.connection, GearMesh):
+            return
+        first, second = (ratios[rotor] for rotor, _ in self.ends)
+        radii = self.connection.radii
+        slip = radii @ [first, second]
+        if abs(slip) > _SAME * np.abs(radii * [first, second]).max():
+            raise ValueError(
+                f"ratios: gears of radii {radii[0]:g} and {radii[1]:g} m turn with {first:g} and "
+                f"{-first * radii[0] / radii[1]:.9g}, not {second:g}, times the speed: "
+                f"{self.first} – {self.second}"
+            )
+
+
+def _end(name: str, label: str) -> tuple[str, str]:
+    rotor, colon, interface = checks.label(name, label).partition(":")
+    if not (rotor and colon and interface):
+        raise ValueError(f"{label}: needs 'rotor:interface', got {name!r}")
+    return rotor, interface
+
+
+def check_places(
+    rotors: Mapping[str, ReducedRotor],
+    links: Sequence[Link],
+    positions: Mapping[str, np.ndarray],
+) -> None:
+    """Refuse links whose ends are not in one place, along (n1, n2, e).
+
+    Raises
+    ------
+    ValueError
+    """
+    at = dict(positions)
+    left = list(links)
+    while left:
+        link = next((one for one in left if _is_known(one, at)), left[0])
+        left.remove(link)
+        (first, _), (second, _) = link.ends
+        apart = _apart(rotors, link)
+        if first not in at and second not in at:
+            at[first] = np.zeros(3)
+        if second not in at:
+            at[second] = at[first] - apart
+        elif first not in at:
+            at[first] = at[second] + apart
+        _check(rotors, link, at[second] - at[first] + apart)
+
+
+def _is_known(link: Link, at: Mapping[str, np.ndarray]) -> bool:
+    return any(rotor in at for rotor, _ in link.ends)
+
+
+def _apart(rotors: Mapping[str, ReducedRotor], link: Link) -> np.ndarray:
+    """Return how far the ends are from where they should be, of rotors at one position."""
+    places = []
+    for name, interface in link.ends:
+        axis = rotors[name].axis
+        foot = axis.project(rotors[name].interfaces[interface].reference)
+        places.append(axes_of(axis).T @ foot)
+    expected = np.zeros(3)
+    if isinstance(link.connection, GearMesh):
+        angle, distance = link.connection.line_angle, link.connection.center_distance
+        expected = distance * np.array([np.cos(angle), np.sin(angle), 0.0])
+    return places[1] - places[0] - expected
+
+
+def _check(rotors: Mapping[str, ReducedRotor], link: Link, off: np.ndarray) -> None:
+    radii = (rotors[name].interfaces[interface].radius for name, interface in link.ends)
+    allowed = max(SAME_PLACE, OF_RADIUS * max(radii))
+    what = "both ends need one place"
+    if isinstance(link.connection, GearMesh):
+        distance = link.connection.center_distance
+        allowed = max(allowed, _OF_DISTANCE * distance)
+        what = f"gears need axes {distance:.6g} m apart at line_angle, in one plane"
+    if np.linalg.norm(off) > allowed:
+        across, along = np.hypot(off[0], off[1]), off[2]
+        raise ValueError(
+            f"links: {link.first} – {link.second} is off by {across:.4g} m across and "
+            f"{along:.4g} m along the axis, as the other links or positions= place the rotors; "
+            f"{what}"
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,14 +12,13 @@ import numpy as np
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.foundations.record import BaseRecord
-from exudyn_rotor.linear import options
 from exudyn_rotor.linear.model.build import (
     Target,
     linear_model,
     warn_of_left_out_stiffening,
     warn_of_structural_damping,
 )
-from exudyn_rotor.linear.response.places import At, checked_places, places
+from exudyn_rotor.linear.response.loads import At, checked_places, places
 from exudyn_rotor.linear.response.response import DIRECTIONS
 from exudyn_rotor.linear.response.shaken_rotor import ShakenRotor
 from exudyn_rotor.results import Result, numbers, storable, words
@@ -182,7 +181,7 @@ def base_response(
     """
     checks.instance(record, "record", BaseRecord)
     speed = checks.number(speed, "speed", "rad/s")
-    tolerance = options.accuracy(tolerance, "tolerance")
+    tolerance = checks.tolerance(tolerance)
     start, end = record.times[[0, -1]]
     if end_time is not None:
         end = checks.number(end_time, "end_time", "s", above=start)

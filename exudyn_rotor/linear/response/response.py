@@ -1,21 +1,24 @@
-"""What responses have in common: harmonics of a steady motion at places of the rotor."""
+"""Results of forced responses: harmonics of a steady motion at places of the rotor."""
 
 from __future__ import annotations
 
+import warnings
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.linear.modal.basis_error import NOT_KNOWN, in_table
-from exudyn_rotor.linear.response import bode
-from exudyn_rotor.linear.response.refinement import resolved_peak, warn_of_coarse_peaks
+from exudyn_rotor.calls import user_level
+from exudyn_rotor.linear.over import NOT_KNOWN, in_table
 from exudyn_rotor.linear.response.run_start import RunStart
-from exudyn_rotor.plotting import axes_or_new, figure
-from exudyn_rotor.results import numbers, words
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.start_state import StartState
+from exudyn_rotor.plotting import COLORS, LINES, axes_or_new, figure
+from exudyn_rotor.results import numbers, storable, words
 from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.theory.stiffening import LEVELS
 from exudyn_rotor.units import Units
@@ -25,7 +28,11 @@ if TYPE_CHECKING:
 
 DIRECTIONS = ("n1", "n2", "e", "tilt n1", "tilt n2", "twist")
 CIRCULAR = ("forward", "backward")
-_STILL = 1e-12  # share of the largest frequency that is none
+HALF_POWER = np.sqrt(0.5)  # of the size at a peak
+STILL = 1e-6  # share of a peak below which a neighbour stands still, as at rest without a load
+_CONSTANT = 1e-12  # share of the largest frequency that is none
+_NO_MOTION = 1e-12  # of the largest amplitude
+_ROUNDING = 1e-9  # of an angle [rad]
 _DRAWN = (*DIRECTIONS, *CIRCULAR)
 
 
@@ -129,7 +136,7 @@ class Response(RunStart, ABC):
 
         The minor one is negative where the rotor whirls backward.
         """
-        forward, backward = bode.sizes(self.whirl(place, order), bode.least(self.motion))
+        forward, backward = _sizes(self.whirl(place, order), _least(self.motion))
         return forward + backward, forward - backward
 
     def peak(self, place: str | None = None, order: int | None = None) -> tuple[float, float]:
@@ -194,7 +201,7 @@ class Response(RunStart, ABC):
         self, place: str, order: int, values: np.ndarray, unit: str
     ) -> dict[str, np.ndarray]:
         """Return the columns of one place and harmonic."""
-        count, least = len(values), bode.least(self.motion)
+        count, least = len(values), _least(self.motion)
         columns = {
             f"{self._what} [{unit}]": values,
             "place": np.full(count, place),
@@ -204,7 +211,7 @@ class Response(RunStart, ABC):
             phasor = self.phasor(place, name, order)
             columns |= {
                 f"{name} [m]": np.abs(phasor),
-                f"{name} phase [deg]": bode.degrees(phasor, least),
+                f"{name} phase [deg]": _degrees(phasor, least),
             }
         forward, backward = np.abs(self.whirl(place, order))
         errors = np.full(count, np.nan)
@@ -232,7 +239,7 @@ class Response(RunStart, ABC):
         place, order = self._place(place), self._order(order)
         values, unit = self._shown(units)
         a, b = (self.phasor(place, name, order) for name in ("n1", "n2"))
-        phases = (bode.degrees(phasor, bode.least(self.motion)) for phasor in (a, b))
+        phases = (_degrees(phasor, _least(self.motion)) for phasor in (a, b))
         forward, backward = self.whirl(place, order)
         errors = self.basis_errors
         reduced = errors is not None and np.any(errors > 0.0)
@@ -302,7 +309,7 @@ class Response(RunStart, ABC):
         if len(pair) != 2:
             raise ValueError(f"ax: needs two Axes, for size and phase, got {len(pair)}")
         curves = {name: self._drawn(name, place, order) for name in names}
-        bode.draw_bode(*pair, values, curves, log)
+        _draw_bode(*pair, values, curves, log)
         pair[0].set_title(self._title(place, order), loc="right", fontsize=10)
         pair[1].set_xlabel(f"{self._what} [{unit}]")
         return np.array(pair)
@@ -335,7 +342,7 @@ class Response(RunStart, ABC):
         marks, shown = checks.count(marks, "marks"), self._shown(units)
         place, order = self._place(place), self._order(order)
         ax = axes_or_new(ax, (5.5, 5.5))
-        bode.draw_polar(ax, *shown, self._drawn(direction, place, order), marks)
+        _draw_polar(ax, *shown, self._drawn(direction, place, order), marks)
         ax.set_xlabel(f"in phase, {direction} [µm]")
         ax.set_title(self._title(place, order), loc="right", fontsize=10)
         return ax
@@ -372,7 +379,7 @@ class Response(RunStart, ABC):
             names = checks.labels(places, "places", self.places)
         order = self._order(order)
         ax = axes_or_new(ax, (5.5, 5.5))
-        bode.draw_orbits(ax, {name: self.orbit(value, name, order) for name in names})
+        _draw_orbits(ax, {name: self.orbit(value, name, order) for name in names})
         nearest = shown[np.argmin(np.abs(self.abscissa - value))]
         ax.set_title(f"{self._what} {nearest:.4g} {unit}", loc="right", fontsize=10)
         return ax
@@ -398,7 +405,7 @@ class Response(RunStart, ABC):
             :, self.places.index(self._place(place)), list(self.orders).index(order)
         ]
         rates = np.abs(self.rates(order))
-        constant = rates <= _STILL * np.abs(self.abscissa).max()
+        constant = rates <= _CONSTANT * np.abs(self.abscissa).max()
         return np.where(constant[:, None], motion.real, motion)
 
     def _place(self, place: str | None) -> str:
@@ -414,3 +421,289 @@ class Response(RunStart, ABC):
             known = ", ".join(str(n) for n in self.orders)
             raise ValueError(f"order: there is no harmonic {order}; there are {known}")
         return order
+
+
+@storable
+@dataclass(frozen=True, eq=False)
+class UnbalanceResponse(Response):
+    """Motion in harmonics nΩ, n ≥ 0; at t = 0 the rotor's n1 is the inertial n1.
+
+    Attributes
+    ----------
+    places, orders, motion, frame
+        See :class:`Response`.
+    speeds : ndarray, shape (s,)
+        Spin speeds Ω [rad/s].
+    loads : tuple of str
+        The unbalances in words: those given, and the rotor's own eccentricity with its amount.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import UnbalanceResponse
+    >>> circle = np.array([1e-6, -1e-6j, 0, 0, 0, 0]).reshape(1, 1, 1, 6)
+    >>> response = UnbalanceResponse(("disc",), [1], circle, "inertial", [100.0])
+    >>> forward, backward = response.whirl("disc")
+    >>> abs(forward), abs(backward)
+    (array([1.e-06]), array([0.]))
+    """
+
+    speeds: np.ndarray = numbers("abscissa")
+    loads: tuple[str, ...] = field(default=(), kw_only=True)
+
+    def table(
+        self, place: str | None = None, order: int | None = None, *, units: str = "rpm"
+    ) -> str:
+        """Return the table of :meth:`Response.table`, with the unbalances."""
+        return "\n".join([super().table(place, order, units=units), *self.loads])
+
+    @property
+    def abscissa(self) -> np.ndarray:
+        """The spin speeds [rad/s]."""
+        return self.speeds
+
+    def rates(self, order: int) -> np.ndarray:
+        """Return nΩ, shape (s,) [rad/s]."""
+        return checks.whole_number(order, "order") * self.speeds
+
+    def state(self, speed: float, body: RotorBody, *, angle: float | None = None) -> StartState:
+        """Return the state of a scene in which a run begins in this steady motion.
+
+        The scene's supports and unbalances must be those of the response; there is no transient
+        then but for the integrator's error and what linear equations leave out. Loads such as
+        gravity are not in a response: :func:`exudyn_rotor.steady_state` has them.
+
+        Parameters
+        ----------
+        speed : float
+            One of :attr:`speeds` [rad/s].
+        body : RotorBody
+            Of the reduced rotor that the response is of, or in the scene that it is of; the system
+            is assembled. Foundation and controllers of magnetic bearings start with it; bodies that
+            the response does not know stand still as they are.
+        angle : float, optional
+            Spin angle θ [rad]; the one with which the rotor starts by default.
+
+        Returns
+        -------
+        StartState
+            For :meth:`RotorBody.start_from`.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For a response of a SolidRotor, of another rotor, or with another foundation or
+            controllers, a speed at which it was not computed, or a system that is not assembled.
+        """
+        return self._start_at_speed(speed, body, angle)
+
+    @property
+    def _what(self) -> str:
+        return "spin speed"
+
+
+@storable
+@dataclass(frozen=True, eq=False)
+class HarmonicResponse(Response):
+    """Motion in harmonics ω + nΩ, at any whole n.
+
+    Attributes
+    ----------
+    places, orders, motion, frame
+        See :class:`Response`.
+    frequencies : ndarray, shape (s,)
+        Angular frequencies ω of the loads [rad/s].
+    speed : float
+        Spin speed Ω [rad/s].
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import HarmonicResponse
+    >>> circle = np.array([1e-6, -1e-6j, 0, 0, 0, 0]).reshape(1, 1, 1, 6)
+    >>> response = HarmonicResponse(("disc",), [0], circle, "inertial", [100.0], 0.0)
+    >>> forward, backward = response.whirl("disc")
+    >>> abs(forward), abs(backward)
+    (array([1.e-06]), array([0.]))
+    """
+
+    frequencies: np.ndarray = numbers("abscissa")
+    speed: float
+
+    @property
+    def abscissa(self) -> np.ndarray:
+        """The frequencies of the loads [rad/s]."""
+        return self.frequencies
+
+    def rates(self, order: int) -> np.ndarray:
+        """Return ω + nΩ, shape (s,) [rad/s]."""
+        return self.frequencies + checks.whole_number(order, "order") * self.speed
+
+    def state(self, frequency: float, body: RotorBody) -> StartState:
+        """Return the state of a scene in which a run begins in this steady motion.
+
+        It is that of t = 0 and θ = 0, where the loads have the real parts of their amplitudes; see
+        :meth:`UnbalanceResponse.state`.
+
+        Parameters
+        ----------
+        frequency : float
+            One of :attr:`frequencies` [rad/s].
+        body : RotorBody
+            With the spin speed of the response.
+
+        Raises
+        ------
+        TypeError, ValueError
+            As :meth:`UnbalanceResponse.state`.
+        """
+        frequency = checks.number(frequency, "frequency", "rad/s")
+        return self._start(frequency, body, 0.0, self.speed)
+
+    @property
+    def _what(self) -> str:
+        return "frequency"
+
+    def _shown(self, units: str) -> tuple[np.ndarray, str]:
+        return Units.of(units).frequencies(self.abscissa), Units.of(units).frequency
+
+
+# ------------------------------------------------------------------ peaks
+
+
+def resolved_peak(at: np.ndarray, size: np.ndarray, index: int) -> tuple[float, float, bool]:
+    """Return place and size of the maximum at a point by its neighbours, and if they are near.
+
+    They are not where one of them is below half of the power of the maximum.
+    """
+    near = slice(index - 1, index + 2)
+    is_near = bool(size[near].min() >= HALF_POWER * size[index])
+    return *peak_between(at[near], size[near]), is_near
+
+
+def warn_of_coarse_peaks(coarse: Sequence[tuple[str, float]], was_refined: bool) -> None:
+    """Warn of peaks [rad/s] at places whose neighbours are too far apart, once for all."""
+    if not coarse:
+        return
+    advice = "compute the response with refine=True"
+    if was_refined:
+        advice = "refine=True adds no more: give more of them there, or add damping"
+    name, at = coarse[0]
+    more = f" (and {len(coarse) - 1} more)" if len(coarse) > 1 else ""
+    warnings.warn(
+        f"{name}: the points around the peak at {at:g} rad/s{more} are too far apart to give its "
+        f"size and width; {advice}",
+        UserWarning,
+        stacklevel=user_level(),
+    )
+
+
+def peak_between(at: np.ndarray, size: np.ndarray) -> tuple[float, float]:
+    """Return place and size of a maximum by the point with the largest size and its neighbours.
+
+    Near a resonance 1/size² is a parabola, for one mode exactly. Three points, the middle one the
+    largest.
+    """
+    shift, seen = at - at[1], np.maximum(size, STILL * size[1])
+    square, slope, middle = np.polyfit(shift, (size[1] / seen) ** 2, 2)
+    if square <= 0.0:
+        return float(at[1]), float(size[1])
+    place = float(np.clip(-0.5 * slope / square, shift[0], shift[2]))
+    least = square * place**2 + slope * place + middle
+    # as close to a pole as the parabola may put it, no size follows from it
+    return float(at[1] + place), float(size[1] / np.sqrt(max(least, 0.25)))
+
+
+# ------------------------------------------------------------------ drawing
+
+
+def _draw_bode(
+    size: Axes, phase: Axes, over: np.ndarray, curves: Mapping[str, np.ndarray], log: bool
+) -> None:
+    """Draw amplitudes [m], complex, as sizes [µm] and phases over a speed or frequency."""
+    from matplotlib.ticker import MultipleLocator
+
+    marker = "." if len(over) == 1 else None  # a line of one point is not seen
+    for (name, values), color, line in zip(curves.items(), COLORS, LINES, strict=False):
+        style = {"ls": line, "color": color, "lw": 1.4, "marker": marker}
+        size.plot(over, 1e6 * np.abs(values), label=name, **style)
+        phase.plot(over, _phase(values), **style)
+    # nothing is nowhere on a log scale
+    moves = any(np.any(np.nan_to_num(values)) for values in curves.values())
+    size.set_yscale("log" if log and moves else "linear")
+    size.set_ylabel("amplitude [µm]")
+    phase.set_ylabel("phase [deg]")
+    phase.yaxis.set_major_locator(MultipleLocator(90.0))
+    for one in (size, phase):
+        one.grid(alpha=0.3, which="both")
+    size.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, frameon=False)
+
+
+def _draw_polar(ax: Axes, at: np.ndarray, unit: str, amplitudes: np.ndarray, marks: int) -> None:
+    """Draw complex amplitudes [m] in their plane [µm]; some points carry where they are."""
+    known = np.isfinite(amplitudes)
+    at, values = at[known], 1e6 * amplitudes[known]
+    ax.plot(values.real, values.imag, color=COLORS[0], lw=1.4)
+    for index in _spread(values, marks):
+        ax.plot(values.real[index], values.imag[index], "o", color=COLORS[1], ms=4)
+        ax.annotate(f"{at[index]:.5g} {unit}", (values.real[index], values.imag[index]),
+                    textcoords="offset points", xytext=(5, 4), fontsize=8)  # fmt: skip
+    ax.axhline(0.0, color="0.6", lw=0.7)
+    ax.axvline(0.0, color="0.6", lw=0.7)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_ylabel("a quarter turn ahead [µm]")
+    ax.grid(alpha=0.3)
+
+
+def _draw_orbits(ax: Axes, orbits: Mapping[str, np.ndarray]) -> None:
+    """Draw orbits, each (points, 2) [m], in µm: a dot at the first point, an arrow ahead."""
+    for (name, points), color, line in zip(orbits.items(), COLORS, LINES, strict=False):
+        x, y = 1e6 * points.T
+        ax.plot(x, y, ls=line, color=color, lw=1.4, label=name)
+        ax.plot(x[0], y[0], "o", color=color, ms=5)
+        ax.annotate("", (x[24], y[24]), (x[20], y[20]),
+                    arrowprops={"arrowstyle": "->", "color": color, "lw": 1.4})  # fmt: skip
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_xlabel("n1 [µm]")
+    ax.set_ylabel("n2 [µm]")
+    ax.grid(alpha=0.3)
+    ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, frameon=False)
+
+
+def _phase(values: np.ndarray) -> np.ndarray:
+    """Return phases [deg] without jumps; none where there is no motion."""
+    phase = np.full(len(values), np.nan)
+    sizes_of = np.nan_to_num(np.abs(values))
+    moving = sizes_of > _NO_MOTION * sizes_of.max(initial=0.0)
+    phase[moving] = np.degrees(np.unwrap(_angles(values[moving])))
+    return phase
+
+
+def _least(motion: np.ndarray) -> np.ndarray:
+    """Return up to which amplitude the displacements of a motion (s, …, 6) are rounding, (s,)."""
+    return _NO_MOTION * np.abs(motion[..., :3]).max(axis=(1, 2, 3), initial=0.0)
+
+
+def _sizes(values: ArrayLike, least: np.ndarray) -> np.ndarray:
+    """Return sizes of complex amplitudes; 0 of those up to the `least` that is told."""
+    found = np.abs(values)
+    return np.where(found <= least, 0.0, found)
+
+
+def _degrees(values: np.ndarray, least: np.ndarray) -> np.ndarray:
+    """Return phases, above −180° up to 180°; 0 of amplitudes up to the `least` that is told."""
+    return np.where(np.abs(values) <= least, 0.0, np.degrees(_angles(values)))
+
+
+def _angles(values: np.ndarray) -> np.ndarray:
+    """Return angles above −π up to π; what is −π but for rounding is π."""
+    found = np.angle(values)
+    return np.where(found <= _ROUNDING - np.pi, found + 2.0 * np.pi, found)
+
+
+def _spread(values: np.ndarray, count: int) -> np.ndarray:
+    """Return indices of points evenly spread along a curve."""
+    path = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(values)))])
+    return np.unique(
+        np.searchsorted(path, np.linspace(0.0, path[-1], count)).clip(0, len(path) - 1)
+    )

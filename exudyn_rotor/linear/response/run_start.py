@@ -19,7 +19,7 @@ from exudyn_rotor.bearings.film.void_states import COUNT
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
-from exudyn_rotor.linear.model.element import WORDS
+from exudyn_rotor.linear.model.assembly import WORDS
 from exudyn_rotor.linear.model.linear_model import ON_FOUNDATION, LinearModel
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
@@ -29,7 +29,7 @@ from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import StartState, spin_at_start
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, words
 from exudyn_rotor.theory.nodal import skew

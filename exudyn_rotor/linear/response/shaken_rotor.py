@@ -21,13 +21,12 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg
 
+from exudyn_rotor.calls import one_thread
 from exudyn_rotor.foundations.record import BaseRecord
-from exudyn_rotor.linear.equations import Terms, UnconvergedError, at_angle
+from exudyn_rotor.linear.equations import Terms, UnconvergedError, at_angle, states_of
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.response.places import Place
-from exudyn_rotor.linear.solve.state import states_of
+from exudyn_rotor.linear.response.loads import Place
 from exudyn_rotor.theory.rotating_axes import axes_of
-from exudyn_rotor.threads import one_thread
 
 _PER_TURN, _IN_ALL = 24, 200  # least numbers of steps in a revolution and in a record
 _MOST_STEPS = 2_000_000
@@ -78,6 +77,7 @@ class ShakenRotor:
         cls, model: LinearModel, speed: float, record: BaseRecord, observed: Sequence[Place]
     ) -> ShakenRotor:
         """Return the equations at a spin speed [rad/s], with a spin that nothing holds held."""
+        model.check_without_frequency("a motion of the ground")
         system, basis = model.at(speed), model.held_basis
         basis = np.eye(model.size) if basis is None else basis
         states = states_of(system.projected(basis))

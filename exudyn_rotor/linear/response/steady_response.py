@@ -14,35 +14,39 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
-from exudyn_rotor.callers import user_level
-from exudyn_rotor.linear import options
-from exudyn_rotor.linear.modal.basis_error import warn
+from exudyn_rotor.calls import one_thread, user_level
+from exudyn_rotor.linear.modal.basis_error import basis_errors, warn
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.response.basis_check import basis_errors
-from exudyn_rotor.linear.response.harmonic_loads import (
+from exudyn_rotor.linear.over import forced_over
+from exudyn_rotor.linear.response.loads import (
+    At,
     BaseAcceleration,
     HarmonicForce,
+    Place,
+    Unbalance,
+    checked_places,
     in_words,
+    places,
     total,
     unbalance_load,
 )
-from exudyn_rotor.linear.response.places import At, Place, checked_places, places
-from exudyn_rotor.linear.response.refinement import refined
-from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse
+from exudyn_rotor.linear.response.response import HarmonicResponse, UnbalanceResponse
 from exudyn_rotor.linear.response.run_start import kept_coordinates
-from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.linear.solve.forced import forced_motions
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.sweep import ascending_from_zero, checked_speeds
 from exudyn_rotor.theory.rotating_axes import FRAMES
-from exudyn_rotor.threads import one_thread
 from exudyn_rotor.units import Units
 
 Coordinates = dict[int, np.ndarray]  # harmonics (s, k) over speeds or frequencies
 Motions = dict[int, np.ndarray]  # harmonics (s, p, 6) of places
 _AT_ONCE = 2_000_000  # entries of the matrices that are solved in one call
 _PER_BAR = 16  # of speeds in a step of a progress bar
+_MOST_TURN = 0.3  # phase [rad] between neighbours: 1 − cos(0.15) = 1 % of a peak lies between
+_SMALL = 1e-3  # share of the largest motion below which a motion does not count
+_NARROWEST = 1e-7  # of the range: without damping a resonance has no width
+_MOST_ROUNDS = 30
+_MOST_ADDED = 4000
 _WHOLE = 1e-9  # of 2ω/Ω: harmonics meet but for rounding
 
 
@@ -130,7 +134,7 @@ def unbalance_response(
     >>> response.semi_axes("left")[0].round(6)  # m e Ω² / |k − mΩ² + icΩ|
     array([1.7e-05, 1.0e-03, 9.0e-05])
     """
-    values = checked_speeds(speeds, allow_negative)
+    values = checks.spin_speeds(speeds, allow_negative)
     unbalances = checks.instances(unbalances, "unbalances", Unbalance)
     checks.flag(own, "own")
     _check(frame, tolerance, refine, accuracy, progress)
@@ -144,7 +148,8 @@ def unbalance_response(
         moving = np.flatnonzero(speeds)  # at rest there is no load
         if not moving.size:
             return {0: np.zeros((len(speeds), model.size), dtype=complex)}
-        stack = model.at_all(speeds[moving])
+        stack = model.at_all(speeds[moving], "held")
+        model.warn_beyond(np.abs(speeds[moving]))
         known = moving[stack.known]
         if len(known) < len(moving):
             stack = stack[np.flatnonzero(stack.known)]
@@ -227,7 +232,7 @@ def harmonic_response(
     >>> np.abs(response.phasor("left", "n1")).round(6)
     array([6.7e-05, 1.0e-03])
     """
-    values = ascending_from_zero(
+    values = checks.ascending_from_zero(
         frequencies, "frequencies", "conjugate the loads: a negative frequency is that"
     )
     speed = checks.number(speed, "speed", "rad/s")
@@ -238,11 +243,12 @@ def harmonic_response(
     warn_of_left_out_stiffening(model, speed)
 
     def solve(model: LinearModel, frequencies: np.ndarray) -> Coordinates:
-        system, load = model.at(speed), total(loads, model, speed)
+        load = total(loads, model, speed)
+        model.warn_beyond(np.abs(np.add.outer(frequencies, speed * np.array(list(load)))))
         given = {"driven": model.free_spins, "tolerance": tolerance}
 
         def part(rows: slice) -> Coordinates:
-            return forced_motions(system, load, frequencies[rows], **given)
+            return forced_over(model, speed, load, frequencies[rows], **given)
 
         count = len(frequencies)
         every = np.arange(count)
@@ -444,7 +450,77 @@ def _check(
     frame: str, tolerance: float, refine: bool, accuracy: float | None, progress: bool
 ) -> None:
     checks.choice(frame, "frame", FRAMES)
-    options.accuracy(tolerance, "tolerance")
+    checks.tolerance(tolerance)
     checks.flag(refine, "refine")
     checks.flag(progress, "progress")
-    options.check_basis_accuracy(accuracy)
+    checks.accuracy(accuracy)
+
+
+# ------------------------------------------------------------------ points around resonances
+
+
+def refined(
+    solve: Callable[[np.ndarray], Coordinates],
+    phasors: Callable[[Coordinates], np.ndarray],
+    values: np.ndarray,
+    solved: Coordinates,
+) -> tuple[np.ndarray, Coordinates]:
+    """Add points until the phase of every motion turns little between neighbours.
+
+    No point is added where there is no steady motion, as at a resonance without damping, nor
+    beside such a value.
+
+    Parameters
+    ----------
+    solve : callable
+        Gives the solutions at an array of speeds or frequencies.
+    phasors : callable
+        Gives the complex amplitudes (s, c) of solutions.
+    values : ndarray, shape (s,)
+        Ascending speeds or frequencies [rad/s].
+    solved : mapping of int to ndarray, shape (s, k)
+        The solutions there, by their harmonics.
+
+    Returns
+    -------
+    ndarray, mapping
+        All speeds or frequencies, and their solutions.
+    """
+    narrowest, most = _NARROWEST * np.ptp(values), len(values) + _MOST_ADDED
+    given = values
+    for _ in range(_MOST_ROUNDS):
+        wide = (np.diff(values) > narrowest) & (_turns(phasors(solved)) > _MOST_TURN)
+        between = np.flatnonzero(wide)[: most - len(values)]
+        if between.size == 0:
+            break
+        added = 0.5 * (values[between] + values[between + 1])
+        order = np.argsort(np.r_[values, added], kind="stable")
+        solved = _merged(solved, solve(added), order)
+        values = np.r_[values, added][order]
+    known = np.all(np.isfinite(phasors(solved)), axis=1) | np.isin(values, given)
+    return values[known], {n: X[known] for n, X in solved.items()}
+
+
+def _merged(first: Coordinates, second: Coordinates, order: np.ndarray) -> Coordinates:
+    """Return solutions of some values and of others, in order; a harmonic may be in one of them."""
+    parts = [(each, np.zeros_like(next(iter(each.values())))) for each in (first, second)]
+    return {
+        n: np.concatenate([each.get(n, none) for each, none in parts])[order]
+        for n in sorted({*first, *second})
+    }
+
+
+def _turns(phasors: np.ndarray) -> np.ndarray:
+    """Return the largest change of phase between neighbours, shape (s − 1,) [rad]."""
+    known = np.all(np.isfinite(phasors), axis=1)
+    size = np.abs(np.where(known[:, None], phasors, 0.0))
+    matters = np.maximum(size[1:], size[:-1]) > _SMALL * size.max(initial=0.0)
+    matters &= np.minimum(size[1:], size[:-1]) > 0.0
+    turned = np.abs(np.angle(np.where(matters, phasors[1:] * phasors[:-1].conj(), 1.0)))
+    # at rest without a load there is no phase, and beside it may be a resonance
+    sizes = size.max(axis=1, initial=0.0)
+    beside_rest = (np.minimum(sizes[1:], sizes[:-1]) == 0.0) & (
+        np.maximum(sizes[1:], sizes[:-1]) > _SMALL * sizes.max(initial=0.0)
+    )
+    turned = np.where(beside_rest, np.pi, turned.max(axis=1, initial=0.0))
+    return np.where(known[1:] & known[:-1], turned, 0.0)

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.linear import options
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
@@ -203,7 +202,7 @@ def steady_state(
     >>> body.start_from(steady.state())
     """
     reduced_body(body)
-    tolerance = options.accuracy(tolerance, "tolerance")
+    tolerance = checks.tolerance(tolerance)
     body.check_assembled()
     scene = LinearScene.of(body.mbs, body)
     speed = spin_at_start(body)[1] if speed is None else checks.number(speed, "speed", "rad/s")

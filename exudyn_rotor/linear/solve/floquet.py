@@ -13,9 +13,8 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg as la
 
-from exudyn_rotor.linear.equations import PeriodicSystem
+from exudyn_rotor.linear.equations import PeriodicSystem, States
 from exudyn_rotor.linear.solve.hill import Exponents, one_of_each_family
-from exudyn_rotor.linear.solve.state import States
 
 GAUSS_POINTS = 0.5 + np.array([-1.0, 1.0]) * np.sqrt(3.0) / 6.0
 _STEPS = (64, 128, 256, 512, 1024)  # of a period

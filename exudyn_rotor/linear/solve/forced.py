@@ -12,12 +12,11 @@ of Bᵀx alone are coupled.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import product
 
 import numpy as np
+import scipy.linalg as la
 
-from exudyn_rotor.linear.equations import PeriodicSystem
-from exudyn_rotor.linear.solve.state import others
+from exudyn_rotor.linear.equations import PeriodicSystem, others
 
 Harmonics = Mapping[int, np.ndarray]
 _STILL = 1e-12  # share of ω and Ω: a frequency that is zero but for rounding
@@ -27,7 +26,7 @@ _FAR = 1e6  # of matrices with diagonals of one: size of a solution without free
 _LOADED = 1e-6  # share of a load on a free motion that is the rounding of a mesh
 _SINGULAR = 1e-14  # reciprocal condition of equations without a solution
 _ROUNDING = 1e-14  # share of a coefficient's singular values
-_MOST = 12  # harmonics that are added on either side, in steps of the coefficients
+_MOST = 16  # harmonics that are added on either side, in steps of the coefficients
 
 
 def forced_motions(
@@ -52,7 +51,7 @@ def forced_motions(
     rates : ndarray, shape (s,)
         ω [rad/s].
     held : ndarray, shape (k, r), optional
-        Motions that are possible, orthonormal; all by default.
+        Basis of motions of which the equations are; loads and motions are of all coordinates.
     driven : ndarray, shape (k, d), optional
         Momenta of motions whose constant part a drive keeps at zero: free spins.
     tolerance : float, optional
@@ -60,7 +59,7 @@ def forced_motions(
     """
     if held is not None:
         loads = {n: F @ held for n, F in loads.items()}
-        found = forced_motions(system.projected(held), loads, rates, tolerance=tolerance)
+        found = forced_motions(system, loads, rates, tolerance=tolerance)
         return {n: X @ held.T for n, X in found.items()}
     if driven is not None and not driven.shape[1]:
         driven = None
@@ -74,6 +73,12 @@ def forced_motions(
         return {
             n: _solved(*_stiffness(system, mean, rates, n), F[..., None], driven)[..., 0] + 0j
             for n, F in acting.items()
+        }
+    if not np.any(rates):  # only the real part of all harmonics together is a load
+        none = np.zeros(shape)
+        acting = {
+            n: 0.5 * (acting.get(n, none) + acting.get(-n, none).conj())
+            for n in {*acting, *(-n for n in acting)}
         }
     found = {}
     for first in {n % system.step for n in acting}:  # harmonics that are coupled
@@ -126,6 +131,9 @@ def _solved(Z: np.ndarray, nu: np.ndarray, F: np.ndarray, driven: np.ndarray | N
 
 def _one_by_one(A: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Return solutions (s, k, c), NaN of singular matrices."""
+    if np.isrealobj(A) and np.iscomplexobj(b):
+        both = _one_by_one(A, np.concatenate([b.real, b.imag], axis=2))
+        return both[..., : b.shape[2]] + 1j * both[..., b.shape[2] :]
     try:
         return np.linalg.solve(A, b)
     except np.linalg.LinAlgError:
@@ -187,22 +195,25 @@ def _beside_free(A: np.ndarray, b: np.ndarray) -> np.ndarray:
 # ------------------------------------------------------------------ periodic equations
 
 
-def reach(system: PeriodicSystem) -> int:
+def _reach(system: PeriodicSystem) -> int:
     """Return to how many neighbours harmonics are coupled."""
     return max(abs(n) for terms in (system.D, system.K) for n in terms) // system.step
 
 
 def _acting(system: PeriodicSystem) -> np.ndarray:
     """Return a basis (k, r) of the forces that repeat, and of the motions that they depend on."""
-    rows, weights = [], np.random.default_rng(0).uniform(0.5, 1.5, np.size(system.speed))
+    weights, rows = np.random.default_rng(0), []
     for terms in (system.K, system.D):
         for n, X in terms.items():
-            if n > 0 and np.any(X):
-                mean = np.tensordot(weights, X, axes=(0, 0)) if X.ndim == 3 else X
-                mean = mean / np.abs(mean).max()
+            if n > 0:  # over speeds, a sum with any weights has the rows and columns of all
+                each = weights.uniform(0.5, 1.5, np.size(system.speed))
+                mean = np.tensordot(each, X, axes=(0, 0)) if X.ndim == 3 else X * each
+                mean = mean / (np.abs(mean).max() or 1.0)
                 rows += [part for Y in (mean, mean.T) for part in (Y.real, Y.imag)]
-    _, values, V = np.linalg.svd(np.vstack(rows), full_matrices=False)
-    return V[values > _ROUNDING * values[0]].T
+    rows = np.hstack(rows)
+    Q, R, _ = la.qr(rows, mode="economic", pivoting=True)
+    values = np.abs(R.diagonal())
+    return Q[:, values > _ROUNDING * values[0]]
 
 
 def _coupled(
@@ -211,131 +222,100 @@ def _coupled(
     rates: np.ndarray,
     driven: np.ndarray | None,
     tolerance: float,
+    more: int = 2,
 ) -> dict[int, np.ndarray]:
     """Return the harmonics of periodic equations, as many as the tolerance needs.
 
-    The next ones follow from the last two by the ratio of these.
+    At first so many `more` than the loads have, on either side in steps of the coefficients, then
+    twice as many where these do not suffice. The next ones follow from the last two by the ratio
+    of these.
     """
-    far, s = reach(system), len(rates)
-    chain = _Chain(system, loads, rates, driven)
-    found: dict[int, np.ndarray] = {}
-    for more in range(1, _MOST):
-        most = more * far * system.step
-        orders = range(min(loads) - most, max(loads) + most + 1, system.step)
-        X = chain.solved(orders)
-        sizes = np.abs(X).max(axis=2)
-        whole = sizes.max(axis=1)
-        last = np.maximum(sizes[:, :far].max(axis=1), sizes[:, -far:].max(axis=1))
-        inner = sizes[:, far : len(orders) - far]
-        before = np.maximum(inner[:, :far].max(axis=1), inner[:, -far:].max(axis=1))
-        done = ~(last * np.minimum(last, before) > tolerance * whole * before)
-        for n, motion in zip(orders, X.swapaxes(0, 1), strict=True):
-            found.setdefault(n, np.zeros((s, system.size), dtype=complex))
-            found[n][chain.rows[done]] = motion[done]
-        chain = chain.of(~done)
-        if not len(chain.rows):
-            return found
-    for X in found.values():
-        X[chain.rows] = np.nan
+    far = _reach(system)
+    most = more * far * system.step
+    orders = list(range(min(loads) - most, max(loads) + most + 1, system.step))
+    X = _chain(system, loads, rates, driven, orders)
+    sizes = np.abs(X).max(axis=2)
+    last = np.maximum(sizes[:, :far].max(axis=1), sizes[:, -far:].max(axis=1))
+    inner = sizes[:, far : len(orders) - far]
+    before = np.maximum(inner[:, :far].max(axis=1), inner[:, -far:].max(axis=1))
+    left = last * np.minimum(last, before) > tolerance * sizes.max(axis=1) * before
+    found = dict(zip(orders, X.swapaxes(0, 1), strict=True))
+    if not np.any(left):
+        return found
+    X[left] = np.nan
+    if 2 * more <= _MOST:
+        some = {n: F[left] for n, F in loads.items()}
+        rest = system[left] if np.ndim(system.speed) else system
+        for n, x in _coupled(rest, some, rates[left], driven, tolerance, 2 * more).items():
+            found.setdefault(n, np.zeros_like(X[:, 0]))[left] = x
     return found
 
 
-class _Chain:
-    """Coupled harmonics of some of the motions, and the solutions with each Z_m by itself.
+def _chain(
+    system: PeriodicSystem,
+    loads: Harmonics,
+    rates: np.ndarray,
+    driven: np.ndarray | None,
+    orders: Sequence[int],
+) -> np.ndarray:
+    """Return the harmonics (s, h, k) of a chain of them.
 
-    Attributes
-    ----------
-    rows : ndarray of int
-        Which of the motions.
+    Each harmonic is solved by itself under its load and under the forces B. Those forces follow
+    from the motions of all harmonics.
     """
+    s, h, B = len(rates), len(orders), _acting(system)
+    r = B.shape[1]
+    mean, alone = (system.M, system.D[0].real, system.K[0].real), {}
+    for n in sorted(orders, key=lambda n: (abs(n), n < 0)):
+        if n < 0 and -n in alone and not np.any(rates):  # frequencies ±nΩ, loads are conjugate
+            alone[n] = alone[-n].conj()
+            continue
+        F = np.zeros((s, system.size, 1 + r), dtype=complex if np.any(rates) or n else float)
+        F[..., 1:] = B
+        if n in loads:
+            F[..., 0] = loads[n] if F.dtype == complex else loads[n].real
+        alone[n] = _solved(*_stiffness(system, mean, rates, n), F, driven)
+    each = np.stack([alone[n] for n in orders], axis=1)  # (s, h, k, 1 + r)
+    seen = B.T @ each
+    forces = np.zeros((s, h, r, h, r), dtype=complex)
+    for terms, power in ((system.K, 0), (system.D, 1)):
+        for m, X in terms.items():
+            if m == 0:
+                continue
+            acting = B.T @ X @ B
+            for b, n in enumerate(orders):
+                if n + m in orders:
+                    nu = _rate(rates, n, system.speed)[:, None, None]
+                    forces[:, orders.index(n + m), :, b] += (1j * nu) ** power * acting
+    A = (seen[..., 1:] @ forces.reshape(s, h, r, h * r)).reshape(s, h * r, h * r) + np.eye(h * r)
+    y = _one_by_one(A, seen[..., 0].reshape(s, h * r, 1))
+    pushed = (forces.reshape(s, h * r, h * r) @ y).reshape(s, h, r, 1)
+    X = each[..., 0] - (each[..., 1:] @ pushed)[..., 0]
+    for i in np.flatnonzero(~np.all(np.isfinite(X), axis=(1, 2))):  # Z_m by itself is singular
+        one = system[i] if np.ndim(system.speed) else system
+        X[i] = _whole(one, {n: F[i] for n, F in loads.items()}, rates[i], driven, orders)
+    return X
 
-    def __init__(
-        self,
-        system: PeriodicSystem,
-        loads: Harmonics,
-        rates: np.ndarray,
-        driven: np.ndarray | None,
-    ) -> None:
-        self.system, self.loads, self.rates, self.driven = system, loads, rates, driven
-        self.rows, self.mean = np.arange(len(rates)), (system.M, system.D[0].real, system.K[0].real)
-        self.B = _acting(system)
-        self.K, self.D = (
-            {n: self.B.T @ X @ self.B for n, X in terms.items() if n}
-            for terms in (system.K, system.D)
-        )
-        self.alone: dict[int, np.ndarray] = {}
 
-    def of(self, left: np.ndarray) -> _Chain:
-        """Return the chain of some of its motions."""
-        if np.all(left):
-            return self
-        other = object.__new__(_Chain)
-        other.__dict__.update(self.__dict__)
-        other.rows, other.rates = self.rows[left], self.rates[left]
-        other.loads = {n: F[left] for n, F in self.loads.items()}
-        other.alone = {n: X[left] for n, X in self.alone.items()}
-        if np.ndim(self.system.speed):
-            other.system = self.system[left]
-            other.mean = tuple(X[left] if X.ndim == 3 else X for X in self.mean)
-            other.K, other.D = ({n: X[left] for n, X in t.items()} for t in (self.K, self.D))
-        return other
-
-    def _solve(self, n: int) -> None:
-        """Solve the equations of a harmonic by itself under its load and the forces B.
-
-        At the frequencies ±nΩ solutions are conjugate.
-        """
-        none = np.zeros((len(self.rates), self.system.size))
-        own, mirror = (self.loads.get(m, none)[..., None] for m in (n, -n))
-        both = bool(n) and not np.any(self.rates)
-        columns = [own, mirror.conj()] if both else [own]
-        B = np.broadcast_to(self.B, (len(none), *self.B.shape))
-        F = np.concatenate([*columns, B], axis=2)
-        X = _solved(*_stiffness(self.system, self.mean, self.rates, n), F, self.driven)
-        if both:
-            self.alone[-n] = X[..., 1:].conj()
-            X = np.delete(X, 1, axis=2)
-        self.alone[n] = X
-
-    def solved(self, orders: Sequence[int]) -> np.ndarray:
-        """Return the harmonics (s, h, k) in a chain of them."""
-        for n in orders:
-            if n not in self.alone:
-                self._solve(n)
-        s, h, r = len(self.rates), len(orders), self.B.shape[1]
-        own = np.stack([self.alone[n][..., 0] for n in orders], axis=1)
-        each = np.stack([self.alone[n][..., 1:] for n in orders], axis=1)  # (s, h, k, r)
-        seen = self.B.T @ each
-        nu = np.stack([_rate(self.rates, n, self.system.speed) for n in orders], axis=1)
-        forces = np.zeros((s, h, r, h, r), dtype=complex)
-        for a, b in product(range(h), range(h)):
-            n = orders[a] - orders[b]
-            if n in self.K:
-                forces[:, a, :, b] += self.K[n]
-            if n in self.D:
-                forces[:, a, :, b] += 1j * nu[:, b, None, None] * self.D[n]
-        A = (seen @ forces.reshape(s, h, r, h * r)).reshape(s, h * r, h * r) + np.eye(h * r)
-        y = _one_by_one(A, (own @ self.B).reshape(s, h * r, 1))
-        pushed = (forces.reshape(s, h * r, h * r) @ y).reshape(s, h, r, 1)
-        X = own - (each @ pushed)[..., 0]
-        for i in np.flatnonzero(~np.all(np.isfinite(X), axis=(1, 2))):  # Z_m by itself is singular
-            X[i] = self._whole(i, orders)
-        return X
-
-    def _whole(self, i: int, orders: Sequence[int]) -> np.ndarray:
-        """Return the harmonics (h, k) of one motion from one matrix."""
-        system = self.system[i] if np.ndim(self.system.speed) else self.system
-        A, nu = coupled_stiffness(system, float(self.rates[i]), orders)
-        none, momenta = np.zeros(system.size), None
-        F = np.concatenate([self.loads[n][i] if n in self.loads else none for n in orders])
-        still = np.flatnonzero(np.array(nu) == 0.0)
-        if still.size and self.driven is not None:
-            momenta = np.zeros((len(orders), *self.driven.shape))
-            momenta[still[0]] = self.driven
-            momenta = momenta.reshape(len(F), -1)
-        kind = np.array([0.0 if still.size else 1.0])
-        X = _solved(A[None], kind, F[None, :, None] + 0j, momenta)
-        return X.reshape(len(orders), system.size)
+def _whole(
+    system: PeriodicSystem,
+    loads: Harmonics,
+    rate: float,
+    driven: np.ndarray | None,
+    orders: Sequence[int],
+) -> np.ndarray:
+    """Return the harmonics (h, k) of one motion from one matrix."""
+    A, nu = coupled_stiffness(system, float(rate), orders)
+    none, momenta = np.zeros(system.size), None
+    F = np.concatenate([loads.get(n, none) for n in orders])
+    still = np.flatnonzero(np.array(nu) == 0.0)
+    if still.size and driven is not None:
+        momenta = np.zeros((len(orders), *driven.shape))
+        momenta[still[0]] = driven
+        momenta = momenta.reshape(len(F), -1)
+    kind = np.array([0.0 if still.size else 1.0])
+    X = _solved(A[None], kind, F[None, :, None] + 0j, momenta)
+    return X.reshape(len(orders), system.size)
 
 
 def coupled_stiffness(

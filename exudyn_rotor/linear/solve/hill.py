@@ -12,11 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from exudyn_rotor.linear.equations import PeriodicSystem
-from exudyn_rotor.linear.solve.state import States
+from exudyn_rotor.linear.equations import PeriodicSystem, States
 
 _SIZES = (2, 3, 4, 6)  # harmonics on either side, in steps of the coefficients
-_LARGEST = 420  # unknowns, beyond which harmonics are not added
+_LARGEST = 300  # unknowns, beyond which harmonics are not added
 _FAST = 30.0  # decay over Ω above which a motion is over before the coefficients change
 # energy at the edge of the sum that counts as none, over the tolerance, which is the error of λ
 # where no two motions meet; and energy that is too much

@@ -12,13 +12,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_rotor.linear.equations import PeriodicSystem
+from exudyn_rotor.linear.equations import (
+    EPSILON,
+    PeriodicSystem,
+    States,
+    free_directions,
+    others,
+    states_of,
+)
 from exudyn_rotor.linear.solve.floquet import floquet_motions
 from exudyn_rotor.linear.solve.hill import Exponents, hill_motions
-from exudyn_rotor.linear.solve.state import EPSILON, States, free_directions, others, states_of
 
 METHODS = ("auto", "hill", "floquet")
-_ROUNDING = 20.0 * EPSILON  # of the size of a state matrix: what a real part may be off by
+_ROUNDING = 100.0 * EPSILON  # of the size of a state matrix: what a real part may be off by
 _REAL = 1e-9  # share of |λ|: a frequency that is rounding
 _AT_ONCE = 2_000_000  # entries of matrices that are solved at once
 
@@ -128,20 +134,21 @@ def margins_of(stack: PeriodicSystem, method: str = "auto", tolerance: float = 1
     The same as from :func:`motions_of` for the least stable motion, of constant equations without
     shapes.
     """
-    margins, known = np.full(len(stack.speed), np.nan), np.flatnonzero(stack.known)
+    found, known = np.full(len(stack.speed), np.nan), np.flatnonzero(stack.known)
     reduced, _, _ = _resisted(stack[known])
     if not reduced.size:
-        margins[known] = -0.0
+        found[known] = -0.0
     elif reduced.is_constant:
         made = states_of(reduced)
-        margins[known] = _margins(np.linalg.eigvals(made.A[0]), _bounds(made))
+        found[known] = margins(np.linalg.eigvals(made.A[0]), _bounds(made))
     else:
         for places, part in _periodic(reduced, method, tolerance, True, None):
-            margins[known[places]] = _margins(part.values, part.bounds)
-    return margins
+            found[known[places]] = margins(part.values, part.bounds)
+    return found
 
 
-def _margins(values: np.ndarray, bounds: np.ndarray) -> np.ndarray:
+def margins(values: np.ndarray, bounds: np.ndarray) -> np.ndarray:
+    """Return by how much the least stable of motions (s, k) grows beyond its bound (s,) [1/s]."""
     moves = np.abs(values.real) > bounds[:, None]
     growth = np.where(moves, values.real, -np.inf).max(axis=1, initial=-np.inf)
     return np.where(np.any(moves, axis=1), growth, 0.0) - bounds

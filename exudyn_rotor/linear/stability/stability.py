@@ -8,16 +8,26 @@ on any supports, or of an uneven one on supports alike in all directions, else F
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from exudyn_rotor import checks
+from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given
-from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal import basis_error
-from exudyn_rotor.linear.modal.tracking import track
-from exudyn_rotor.linear.modal.whirl import Content, Named, rounded
+from exudyn_rotor.linear.modal.basis_error import relative_errors
+from exudyn_rotor.linear.modal.whirl import (
+    FAMILIES,
+    WHIRLS,
+    Content,
+    Named,
+    damping_of,
+    families,
+    rounded,
+    track,
+)
 from exudyn_rotor.linear.model.build import (
     Target,
     linear_model,
@@ -25,14 +35,301 @@ from exudyn_rotor.linear.model.build import (
     warn_of_structural_damping,
 )
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.over import motions_over
+from exudyn_rotor.linear.over import ModelResult, in_table, motions_over
 from exudyn_rotor.linear.solve.motions import METHODS, Motions
-from exudyn_rotor.linear.stability.stability_result import Stability
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.sweep import ascending_from_zero
+from exudyn_rotor.results import numbers, storable
 from exudyn_rotor.units import Units
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_EXACT = 1e-8  # share of a motion's rate: bounds below it are rounding of the last digits
+_SHOWN = 4.0  # times the strongest decay of lateral motions: what is drawn reaches down to there
 WHAT = "stability finds exponents"  # of structural damping, for the warning
+
+
+@storable
+@dataclass(frozen=True, eq=False)
+class Stability(ModelResult):
+    """Exponents over spin speed.
+
+    A speed without values, as beyond a table, has a row of NaN and is not stable.
+
+    Attributes
+    ----------
+    speeds : ndarray, shape (s,)
+        Spin speeds [rad/s].
+    exponents : ndarray, shape (s, k)
+        λ, the least stable first: growth [1/s], and i times the frequency of the motion's strongest
+        wave in the rotor frame [rad/s]. One of each conjugate pair, and of real ones the less
+        damped half. NaN where harmonics do not converge.
+    growth : ndarray, shape (s,)
+        Largest real part [1/s].
+    stable : ndarray of bool, shape (s,)
+        No motion grows by more than :attr:`bounds`.
+    bounds : ndarray, shape (s,)
+        By how much rounding can change a real part [1/s]: motions that neither grow nor decay by
+        more are neutral.
+    frequencies_inertial : ndarray, shape (s, k)
+        Frequency of the motion's strongest wave seen from outside [rad/s].
+    whirl_codes, nodal_diameters : ndarray of int, shape (s, k)
+        As those of :class:`Campbell`; see :attr:`whirl` and :attr:`families`.
+    tolerance : float
+        Largest relative error of λ by harmonics that are left out.
+    basis_shifts : ndarray, shape (s,), or None
+        Estimated ``λ − λ_reduced`` of the least stable motion with λ of the full model, as
+        :attr:`Campbell.basis_shifts`; NaN where the motion is not found again.
+    stiffening : str or None
+        Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
+    axes : {'inertial', 'rotor'}
+        Axes in which the equations were solved.
+    unevenness : float
+        Largest share of a rotor that differs around its axis and is averaged over a turn.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import Stability
+    >>> names = {"frequencies_inertial": [[150.0]], "whirl_codes": [[0]], "nodal_diameters": [[1]]}
+    >>> result = Stability([50.0], [[-1.0 + 100.0j]], [-1.0], [True], [1e-9], **names)
+    >>> print(result.table())
+    speed [rpm]  lateral [1/s]    torsional        axial  frequency [Hz]  n  whirl      verdict
+        477.465             -1            -            -          23.873  1  forward    stable
+    least stable lateral motion: -1 1/s at 477.465 rpm, 23.873 Hz, forward, n = 1, log decrement ...
+    error of the basis: not known
+    """
+
+    speeds: np.ndarray = numbers("speeds")
+    exponents: np.ndarray = numbers("speeds", "modes", dtype=complex, finite=False)
+    growth: np.ndarray = numbers("speeds", finite=False)
+    stable: np.ndarray = numbers("speeds", dtype=bool)
+    bounds: np.ndarray = numbers("speeds", finite=False, least=0.0)
+    frequencies_inertial: np.ndarray = numbers("speeds", "modes", finite=False)
+    whirl_codes: np.ndarray = numbers("speeds", "modes", dtype=int, least=0, most=len(WHIRLS) - 1)
+    nodal_diameters: np.ndarray = numbers("speeds", "modes", dtype=int, least=-1)
+    tolerance: float = 1e-6
+    basis_shifts: np.ndarray | None = numbers("speeds", dtype=complex, finite=False, optional=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        checks.number(self.tolerance, "tolerance", least=0.0)
+
+    def plot(self, ax: Axes | None = None, *, units: str = "rpm") -> Axes:
+        """Draw the growth over the spin speed, of each family and of the least stable motion.
+
+        Unstable speeds are shaded; families that decay far faster than lateral motions, which would
+        hide these, are in the legend only. `units` are 'rpm', 'Hz' or 'SI', rad/s.
+        """
+        shown = Units.of(units)
+        ax = plotting.axes_or_new(ax)
+        speeds = shown.speeds(self.speeds)
+        found = {family: self.growth_of(family) for family in FAMILIES}
+        moving = [growth for growth in found.values() if np.any(np.nan_to_num(growth))]
+        if moving:  # others are free or rest at all speeds
+            ax.plot(speeds, np.fmax.reduce(moving), color="0.8", lw=6.0, label="least stable")
+        lowest = _SHOWN * np.fmin.reduce(found["lateral"], initial=0.0)
+        for (family, growth), color in zip(found.items(), plotting.COLORS, strict=True):
+            if np.all(np.isnan(growth)):
+                continue
+            hidden = np.nanmax(growth) < lowest < 0.0
+            drawn = np.full(len(speeds), np.nan) if hidden else growth
+            label = f"{family}: {np.nanmax(growth):.3g} at most" if hidden else family
+            ax.plot(speeds, drawn, ".-", color=color, lw=1.3, label=label)
+        low, high = ax.get_ylim()
+        ax.fill_between(
+            speeds,
+            low,
+            high,
+            where=~self.stable & self.known,
+            color=plotting.COLORS[1],
+            alpha=0.2,
+            lw=0.0,
+        )
+        ax.set_ylim(low, high)
+        ax.axhline(0.0, color="0.3", lw=0.8)
+        ax.set_xlabel(f"spin speed [{shown.speed}]")
+        ax.set_ylabel("largest growth [1/s]")
+        ax.grid(alpha=0.3)
+        plotting.legend_above(ax, 4)
+        return ax
+
+    @property
+    def whirl(self) -> np.ndarray:
+        """Sense of every motion, shape as exponents; the words of :attr:`Campbell.whirl`."""
+        return np.array(WHIRLS)[self.whirl_codes]
+
+    @property
+    def families(self) -> np.ndarray:
+        """Kind of every motion, shape as exponents.
+
+        'lateral', 'torsional', 'axial', 'disc' (two nodal diameters and more), or 'other'.
+        """
+        return families(self.whirl_codes, self.nodal_diameters)
+
+    @property
+    def damping_ratio(self) -> np.ndarray:
+        """``−Re λ / |Re λ + iω|`` at the inertial frequency ω, from −1 to 1."""
+        return damping_of(self.exponents.real, self.frequencies_inertial)[0]
+
+    @property
+    def log_decrement(self) -> np.ndarray:
+        """``−2π Re λ / ω`` at the inertial frequency ω; NaN for motions that do not oscillate."""
+        return damping_of(self.exponents.real, self.frequencies_inertial)[1]
+
+    @property
+    def known(self) -> np.ndarray:
+        """Whether a speed has values, shape (s,)."""
+        return np.isfinite(self.growth)
+
+    @property
+    def _moving(self) -> np.ndarray:
+        """Whether motions grow or decay by more than rounding, shape (s, k)."""
+        return np.abs(self.exponents.real) > self.bounds[:, None]
+
+    @property
+    def least_stable(self) -> np.ndarray:
+        """Column of the least stable motion at each speed, of those that are not neutral, (s,)."""
+        return np.argmax(self._moving, axis=1)
+
+    @property
+    def neutral(self) -> np.ndarray:
+        """Whether no motion grows or decays by more than :attr:`bounds`, shape (s,)."""
+        return ~np.any(self._moving, axis=1)
+
+    @property
+    def basis_errors(self) -> np.ndarray | None:
+        """Estimated relative error of the least stable motion by the basis, shape (s,).
+
+        As :attr:`Campbell.basis_errors`; NaN where all are neutral, None where it is not known.
+        """
+        if self.basis_shifts is None:
+            return None
+        rows = np.arange(len(self.speeds)), self.least_stable
+        given = self.exponents[rows].real, self.frequencies_inertial[rows]
+        columns = (each[:, None] for each in (self.basis_shifts, *given))
+        errors = relative_errors(*columns, self.speeds)[:, 0]
+        return np.where(np.isnan(self.basis_shifts) | self.neutral, np.nan, errors)
+
+    def growth_of(self, family: str) -> np.ndarray:
+        """Return the largest real part within a family [1/s], shape (s,).
+
+        0 for motions that are neutral within :attr:`bounds`, NaN where the family has none.
+
+        Parameters
+        ----------
+        family : {'lateral', 'torsional', 'axial', 'disc', 'other', 'foundation'}
+        """
+        checks.choice(family, "family", FAMILIES)
+        growth = np.where(self._moving, self.exponents.real, 0.0)
+        own = (self.families == family) & ~np.isnan(self.exponents)
+        largest = np.where(own, growth, -np.inf).max(axis=1, initial=-np.inf)
+        return np.where(np.isfinite(largest), largest, np.nan)
+
+    def least_stable_of(self, family: str) -> tuple[int, int] | None:
+        """Return row and column of a family's least stable motion over all speeds.
+
+        The first of several that are one but for their bounds; None where the family has no motion,
+        or only neutral ones.
+
+        Parameters
+        ----------
+        family : {'lateral', 'torsional', 'axial', 'disc', 'other', 'foundation'}
+        """
+        checks.choice(family, "family", FAMILIES)
+        told = (self.families == family) & self._moving
+        growth = np.where(told, self.exponents.real, -np.inf)
+        most = np.unravel_index(np.argmax(growth), growth.shape)
+        # the first of those that only rounding tells apart
+        largest = growth[most] - np.nan_to_num(self.bounds[most[0]])
+        row, column = np.unravel_index(np.argmax(growth >= largest), growth.shape)
+        return (int(row), int(column)) if told[row, column] else None
+
+    def _least_stable_line(self, family: str, shown: Units) -> str | None:
+        """Return what the table says of a family's least stable motion."""
+        found = self.least_stable_of(family)
+        if found is None:
+            return None
+        n, decrement = self.nodal_diameters[found], self.log_decrement[found]
+        parts = [
+            f"{self.exponents[found].real:.4g} 1/s at {shown.speeds(self.speeds[found[0]]):.6g} "
+            f"{shown.speed}",
+            f"{shown.frequencies(self.frequencies_inertial[found]):.5g} {shown.frequency}",
+            f"{self.whirl[found]}" + (f", n = {n}" if n >= 0 else ""),
+        ]
+        if np.isfinite(decrement):
+            parts.append(f"log decrement {decrement:.3g}")
+        return f"least stable {family} motion: " + ", ".join(parts)
+
+    def _written(self, family: str) -> list[str]:
+        """Return the growth of a family for the table: '±' its bound where that hides it."""
+        bounds = self.bounds[:, None]
+        own = (self.families == family) & ~self._moving
+        rates = np.maximum(np.abs(self.exponents), self.speeds[:, None])
+        hidden = np.where(own & (bounds > _EXACT * rates), bounds, 0.0).max(axis=1)
+        growth = zip(self.growth_of(family), hidden, strict=True)
+        return [
+            "-" if np.isnan(g) else f"±{bound:.1g}" if g == 0.0 and bound else f"{g:.4g}"
+            for g, bound in growth
+        ]
+
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+        """Return the table as columns; `units` are those of :meth:`plot`.
+
+        Where all motions are neutral none is the least stable: no growth, frequency NaN, '-'.
+        """
+        shown = Units.of(units)
+        rows, none = (np.arange(len(self.speeds)), self.least_stable), self.neutral
+        errors = self.basis_errors
+        heard = np.where(none, np.nan, shown.frequencies(self.frequencies_inertial[rows]))
+        growth = {f"{name} [1/s]": self.growth_of(name) for name in FAMILIES}
+        return {
+            f"speed [{shown.speed}]": shown.speeds(self.speeds),
+            "growth [1/s]": np.where(none & self.known, 0.0, self.exponents[rows].real),
+            **growth,
+            f"inertial [{shown.frequency}]": heard,
+            "nodal diameters": np.where(none, -1, self.nodal_diameters[rows]),
+            "whirl": np.where(none, "-", self.whirl[rows]),
+            "stable": self.stable,
+            "basis error": np.full(len(self.speeds), np.nan) if errors is None else errors,
+        }
+
+    def table(self, *, units: str = "rpm") -> str:
+        """Return speed, growth of the families, the least stable motion and verdict as text.
+
+        Below, the least stable motion of each family over all speeds: an undamped torsion, say, is
+        the least stable of all motions at every speed, and would hide which lateral one is.
+
+        A family whose growth is below its bound has '±' and the bound, but for rounding of the last
+        digits, which is 0. Where all are neutral no motion is named.
+
+        `units` are those of :meth:`plot`.
+        """
+        shown = Units.of(units)
+        speed, frequency = f"speed [{shown.speed}]", f"frequency [{shown.frequency}]"
+        errors = self.basis_errors
+        reduced = errors is not None and np.any(errors > 0.0)
+        growth = [self._written(name) for name in FAMILIES[:3]]
+        lines = [
+            f"{speed:>11}  {'lateral [1/s]':>13}  {'torsional':>11}  {'axial':>11}  "
+            f"{frequency:>14}  n  {'whirl':9}  {'verdict':8}" + ("  basis error" if reduced else "")
+        ]
+        for row, column in enumerate(self.least_stable):
+            parts = [family[row] for family in growth]
+            n, at = self.nodal_diameters[row, column], shown.speeds(self.speeds[row])
+            heard = f"{shown.frequencies(self.frequencies_inertial[row, column]):.5g}"
+            whirl = self.whirl[row, column]
+            if self.neutral[row]:
+                heard, n, whirl = "-", -1, "-"
+            verdict = "stable" if self.stable[row] else "unstable" if self.known[row] else "-"
+            lines.append(
+                f"{at:11.6g}  {parts[0]:>13}  {parts[1]:>11}  {parts[2]:>11}  {heard:>14}  "
+                f"{n if n >= 0 else '-'}  {whirl:9}  {verdict:8}"
+            )
+            if reduced:
+                lines[-1] += f"{in_table(errors[row]):>13}"
+        lines = [line.rstrip() for line in lines]
+        lines += filter(None, (self._least_stable_line(family, shown) for family in FAMILIES))
+        return "\n".join([*lines, *self._closing(errors)])
 
 
 def stability(
@@ -101,7 +398,7 @@ def stability(
     >>> result.stable.tolist()
     [True, False]
     """
-    values = ascending_from_zero(speeds, "speeds")
+    values = checks.ascending_from_zero(speeds, "speeds")
     check_options(method, tolerance, accuracy)
     checks.flag(progress, "progress")
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening, axes=axes)
@@ -119,8 +416,8 @@ def stability(
 def check_options(method: str, tolerance: float, accuracy: float | None) -> None:
     """Check the options that all analyses of stability have."""
     checks.choice(method, "method", METHODS)
-    options.accuracy(tolerance, "tolerance")
-    options.check_basis_accuracy(accuracy)
+    checks.tolerance(tolerance)
+    checks.accuracy(accuracy)
 
 
 def least_stable_of(motions: Motions) -> np.ndarray:

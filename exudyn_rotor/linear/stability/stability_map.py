@@ -12,10 +12,9 @@ from numpy.typing import ArrayLike
 from tqdm import tqdm
 
 from exudyn_rotor import checks, plotting
+from exudyn_rotor.calls import one_thread
 from exudyn_rotor.checks import ascending
-from exudyn_rotor.linear.equations import PeriodicSystem, joined
 from exudyn_rotor.linear.modal import basis_error
-from exudyn_rotor.linear.modal.basis_error import NOT_KNOWN
 from exudyn_rotor.linear.modal.whirl import (
     UNKNOWN,
     WHIRLS,
@@ -26,15 +25,13 @@ from exudyn_rotor.linear.modal.whirl import (
 )
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_structural_damping
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.over import warn_of_refused
-from exudyn_rotor.linear.solve.motions import Motions, motions_of
+from exudyn_rotor.linear.over import NOT_KNOWN, motions_in, warn_of_refused
 from exudyn_rotor.linear.stability.stability import (
     WHAT,
     check_options,
     least_stable_of,
 )
 from exudyn_rotor.results import Result, numbers, storable, words
-from exudyn_rotor.threads import one_thread
 from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:
@@ -229,7 +226,7 @@ def _is_geometric(values: np.ndarray) -> bool:
 
 @one_thread()
 def stability_map(
-    build: Callable[[float, float], PeriodicSystem | tuple[Target, float]],
+    build: Callable[[float, float], tuple[Target, float]],
     x: ArrayLike,
     y: ArrayLike,
     *,
@@ -245,8 +242,8 @@ def stability_map(
     ----------
     build : callable
         ``build(x, y)`` returns a target of :func:`stability` and the speed [rad/s], e.g.
-        ``(linear_model(rotor, supports=[Support('left', x)]), y)``, or a
-        :class:`PeriodicSystem`, which is taken as it is.
+        ``(linear_model(rotor, supports=[Support('left', x)]), y)``. Points whose models differ in
+        numbers of their supports alone are solved together.
     x, y : array_like, shapes (a,), (b,)
         Ascending.
     labels : tuple of str
@@ -289,36 +286,36 @@ def stability_map(
     shape = len(grid[0]), len(grid[1])
     judged = {(a, b) for a in (0, shape[0] - 1) for b in (0, shape[1] - 1)}
     judged.add((shape[0] // 2, shape[1] // 2))
-    refused, alike, worst = [], {}, (0.0, "", None)
+    refused, alike = [], {}
     for at in tqdm(list(np.ndindex(*shape)), desc="stability map", disable=not progress):
         point = float(grid[0][at[0]]), float(grid[1][at[1]])
         shown = f"({point[0]:.5g}, {point[1]:.5g})"
         try:
-            one = _Point.of(at, shown, _built(build, point))
+            model, speed = _built(build, point)
+            one = _Point(at, shown, model, speed, model.coefficients(speed))
         except ValueError as error:
             refused.append((shown, error))
         else:
-            alike.setdefault(one.kind, []).append(one)
+            alike.setdefault((*model.pattern, speed == 0.0), []).append(one)
     warn_of_refused(refused, shape[0] * shape[1])
-    models = [one.model for points in alike.values() for one in points if one.model is not None]
+    models = [points[0].model for points in alike.values()]
     lossy = next((model for model in models if model.has_structural_damping), None)
     if lossy is not None:
         warn_of_structural_damping(lossy, WHAT)
     made = {name: np.full(shape, np.nan) for name in ("growth", "least", "inertial", "errors")}
     stable, codes = np.zeros(shape, dtype=bool), np.full(shape, UNKNOWN, dtype=np.int64)
-    diameters = np.full(shape, -1, dtype=np.int64)
+    diameters, worst = np.full(shape, -1, dtype=np.int64), (0.0, "", None)
     for points in alike.values():
-        places = tuple(np.array([one.at for one in points]).T)
-        motions = _motions(points, method, tolerance)
-        which = least_stable_of(motions)[:, None]
+        places, model = tuple(np.array([one.at for one in points]).T), points[0].model
+        speeds = np.array([one.speed for one in points])
+        stack = model.at_points(speeds, [one.coefficients for one in points])
+        motions = motions_in(model, stack, method, tolerance, held=True, least_stable=True)
+        named = Content.of(model).named(motions)
+        which = least_stable_of(named.motions)[:, None]
+        found = named.columns(which)
         made["growth"][places] = np.fmax.reduce(motions.values.real, axis=1, initial=np.nan)
         stable[places] = made["growth"][places] <= motions.bounds
-        value = np.take_along_axis(motions.values, which, 1)[:, 0]
-        made["least"][places], made["inertial"][places] = value.real, np.abs(value.imag)
-        if points[0].model is None:
-            continue
-        named = Content.of(points[0].model).named(motions)
-        found = named.columns(which)
+        made["least"][places] = found.motions.values[:, 0].real
         made["inertial"][places], codes[places] = found.inertial[:, 0], found.codes[:, 0]
         diameters[places] = found.diameters[:, 0]
         for row, one in enumerate(points):
@@ -342,59 +339,21 @@ def stability_map(
 
 
 class _Point(NamedTuple):
-    """A point of a map: its place, its name, its model, its equations without what nothing holds.
-
-    `basis` has the motions of these, `neutral` the others; points of one `kind` have equally many
-    of both, in the same coordinates.
-    """
+    """A point of a map: its place, its name, its model, speed, and coefficients of supports."""
 
     at: tuple[int, int]
     shown: str
-    model: LinearModel | None
-    system: PeriodicSystem
-    basis: np.ndarray
-    neutral: np.ndarray
-    kind: tuple
-
-    @classmethod
-    def of(
-        cls, at: tuple[int, int], shown: str, built: PeriodicSystem | tuple[LinearModel, float]
-    ) -> _Point:
-        """Make a point of a model and a speed, or of equations."""
-        if isinstance(built, PeriodicSystem):
-            kept = np.eye(built.size)
-            return cls(at, shown, None, built, kept, kept[:, :0], (built.size, built.step))
-        model, speed = built
-        system, basis, neutral = model.at(speed), model.moving_basis, model.neutral_motions
-        neutral = neutral[:, : neutral.shape[1] - model.free_spins.shape[1]]
-        if basis is None:
-            basis = np.eye(system.size)
-        else:
-            system = system.projected(basis)
-        same = *map(id, model.rotors.values()), *model.ratios.values(), id(model.foundation)
-        kind = *same, model.axes, model.coordinates, basis.shape, neutral.shape[1], system.step
-        return cls(at, shown, model, system, basis, neutral, kind)
+    model: LinearModel
+    speed: float
+    coefficients: Sequence
 
 
-def _motions(points: Sequence[_Point], method: str, tolerance: float) -> Motions:
-    """Return the motions at points of one kind."""
-    stack = joined([one.system for one in points])
-    found = motions_of(stack, method, tolerance, least_stable=True)
-    bases, neutral = (np.array([each[i] for each in points]) for i in (4, 5))
-    return found.in_all(bases, neutral)
-
-
-def _built(
-    build: Callable, point: tuple[float, float]
-) -> PeriodicSystem | tuple[LinearModel, float]:
-    """Return the model and the speed of a point, or its equations."""
+def _built(build: Callable, point: tuple[float, float]) -> tuple[LinearModel, float]:
+    """Return the model and the speed of a point."""
     built = build(*point)
-    if isinstance(built, PeriodicSystem):
-        return built
     if not isinstance(built, tuple) or len(built) != 2:
         raise TypeError(
-            "build: needs to return a target of stability and the speed, or a PeriodicSystem, "
-            f"got {checks.shown(built)}"
+            "build: needs to return a target of stability and the speed, got " + checks.shown(built)
         )
     speed = checks.number(built[1], "build: the speed it returns", "rad/s", least=0.0)
     return linear_model(built[0]), speed

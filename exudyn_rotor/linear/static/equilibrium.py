@@ -25,9 +25,8 @@ from exudyn_rotor.bearings.resting import (
     starting_place,
     unloaded,
 )
-from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.linear.equations import UnconvergedError, others
 from exudyn_rotor.linear.solve.forced import static_motion
-from exudyn_rotor.linear.solve.state import others
 
 _MOST, _CONVERGED = 100, 1e-10  # of Newton's steps; of the largest force and place
 _SLOW = 15  # steps from which they are halved: contacts that open and close by turns

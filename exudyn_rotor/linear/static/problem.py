@@ -19,12 +19,12 @@ from exudyn_rotor.bearings.given import Given, check_interfaces
 from exudyn_rotor.bearings.resting import Nonlinear
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.equations import Terms, turned
+from exudyn_rotor.linear.model.assembly import Element
 from exudyn_rotor.linear.model.body import RotorBody, rigid_columns_of
 from exudyn_rotor.linear.model.build import linear_model
-from exudyn_rotor.linear.model.element import Element
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
-from exudyn_rotor.linear.response.places import At, place, places
+from exudyn_rotor.linear.response.loads import At, place, places
 from exudyn_rotor.linear.static.equilibrium import Journal, equilibrium
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_skew
@@ -107,7 +107,7 @@ class Problem:
         ValueError
             Where it changes as the rotor turns.
         """
-        system = self.model.at(self.speed)
+        system = self.model.at(self.speed, 0.0)
         if not system.is_constant:
             raise ValueError(
                 "frame: the supports are not alike in all directions, so that no motion stands "
@@ -257,7 +257,7 @@ class Problem:
 
     def _resistance(self, element: Element) -> np.ndarray:
         """Return the stiffness of an element in the axes of the loads, past which it may turn."""
-        K, D = element.matrices(self.speed)
+        K, D = element.matrices(self.speed, 0.0)
         return K + (self._turns - element.turns) * self.speed * D @ axial_skew(len(D))
 
     def _label(self, ends: Sequence[tuple[str, str]]) -> str:

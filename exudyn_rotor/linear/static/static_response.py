@@ -10,13 +10,11 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
-from exudyn_rotor.linear import options
-from exudyn_rotor.linear.modal.basis_error import is_known, warn
+from exudyn_rotor.linear.modal.basis_error import is_known, motion_error, warn
 from exudyn_rotor.linear.model.build import warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
-from exudyn_rotor.linear.response.basis_check import motion_error
-from exudyn_rotor.linear.response.places import At, checked_places
+from exudyn_rotor.linear.response.loads import At, checked_places
 from exudyn_rotor.linear.static.problem import Problem, with_supports
 from exudyn_rotor.linear.static.static_result import StaticResponse
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -112,7 +110,7 @@ def static_response(
     checks.choice(frame, "frame", FRAMES)
     checks.choice(stiffening, "stiffening", CHOICES)
     checks.flag(stress, "stress")
-    options.check_basis_accuracy(accuracy)
+    checks.accuracy(accuracy)
     named = _checked_loads(loads)
     g = np.zeros(3) if gravity is None else checks.vector(gravity, "gravity", "m/s²")
     at = checked_places(at)
@@ -153,7 +151,7 @@ def _checked_loads(loads: Loads | None) -> dict[At, np.ndarray]:
         vector = checks.vector(value, name, "N", size=None)
         if len(vector) not in (3, 6):
             raise ValueError(f"{name}: needs 3 or 6 numbers [N], [N m], got {checks.shown(value)}")
-        found[options.place(key, "loads")] = np.r_[vector, np.zeros(6 - len(vector))]
+        found[checks.place(key, "loads")] = np.r_[vector, np.zeros(6 - len(vector))]
     return found
 
 

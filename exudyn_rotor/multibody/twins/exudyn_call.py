@@ -86,7 +86,8 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
             rotor, at half the Python calls of a step; see exudyn_rotor.add_rotor
         stiffening: centrifugal stiffening, 'tilt' or 'none' (the paper's equations); 'full' needs
             prestress; 'auto' is 'full' with prestress, else 'tilt'
-        locking: 'auto', 'constraints', or 'mass' for explicit solvers; see exudyn_rotor.add_rotor
+        locking: 'auto', 'constraints', or 'mass' for explicit solvers and a prescribed spin; see
+            exudyn_rotor.add_rotor
         markers: kind of the markers, 'rigid' or 'position'; the latter serves springs and forces
             at a fraction of the cost
         condense_markers: whether mbs.Assemble() moves the script's own markers on many mesh nodes
@@ -136,28 +137,31 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     from exudyn.FEM import FEMinterface
 
     from exudyn_rotor import checks
-    from exudyn_rotor.multibody.rotor import inputs
-    from exudyn_rotor.multibody.twins import swapped_body
+    from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS, main_system, marker_name
+    from exudyn_rotor.multibody.twins.swapped_body import (
+        State,
+        add_swapped_body,
+        checked_options,
+        numbers,
+        solid_rotor,
+    )
 
     given = locals()
-    inputs.main_system(mbs)
+    main_system(mbs)
     checks.instance(femInterface, "femInterface", FEMinterface)
     checks.flag(showMarkers, "showMarkers")
     checks.flag(verbose, "verbose")
-    checks.choice(markers, "markers", inputs.MARKER_KINDS)
+    checks.choice(markers, "markers", MARKER_KINDS)
     own = (translation, spin, spin_coupling, stiffening, locking)
-    options = swapped_body.checked_options(*own, markers, condense_markers, prestress)
-    start = swapped_body.State.checked("referencePosition", "referenceRotationMatrix", given)
-    rotor = swapped_body.solid_rotor(femInterface, axis, start)
+    options = checked_options(*own, markers, condense_markers, prestress)
+    start = State.checked("referencePosition", "referenceRotationMatrix", given)
+    rotor = solid_rotor(femInterface, axis, start)
     offsets = _offsets(list(rotor.interfaces), superElementRigidMarkersOffsets)
-    body = swapped_body.add_swapped_body(
-        mbs, name, femInterface, rotor, start, options, offsets, showMarkers
-    )
+    body = add_swapped_body(mbs, name, femInterface, rotor, start, options, offsets, showMarkers)
     if verbose:
         exudyn.Print(body.report())
-    return {"FFRFReducedOrderObjectDict": swapped_body.numbers(body)} | {
-        inputs.marker_name(body.name, interface): marker
-        for interface, marker in body.markers.items()
+    return {"FFRFReducedOrderObjectDict": numbers(body)} | {
+        marker_name(body.name, interface): marker for interface, marker in body.markers.items()
     }
 
 

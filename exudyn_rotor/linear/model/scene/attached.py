@@ -14,8 +14,7 @@ import numpy as np
 
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.journal_bearing import FilmLaw, JournalBearing, tangent_of
-from exudyn_rotor.multibody.supports.bearing_connector import BearingConnector, FilmPoint
-from exudyn_rotor.multibody.supports.connector import Connector, Force
+from exudyn_rotor.multibody.supports.connector import BearingConnector, Connector, FilmPoint, Force
 
 
 class Attached:

@@ -22,7 +22,7 @@ from exudyn_rotor.bearings.annular_seal import AnnularSeal
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.magnetic import MagneticBearing
-from exudyn_rotor.cached import kept
+from exudyn_rotor.calls import kept
 from exudyn_rotor.linear.model.body import RotorAlone
 from exudyn_rotor.linear.model.linear_model import beside
 from exudyn_rotor.linear.model.scene.equilibrium import motion_at_rest
@@ -35,7 +35,7 @@ from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import spin_at_start
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 from exudyn_rotor.multibody.supports.ends import BaseEnd
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.fields import ModeKind
 
 _HELD = 1e-8  # share of a motion of the rotor that is none of the scene
 

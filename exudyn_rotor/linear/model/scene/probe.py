@@ -11,6 +11,7 @@ from typing import NamedTuple
 import exudyn
 import numpy as np
 
+from exudyn_rotor.linear.equations import EPSILON
 from exudyn_rotor.linear.model.scene.attached import Attached
 from exudyn_rotor.linear.model.scene.differences import (
     CURVATURE,
@@ -19,7 +20,6 @@ from exudyn_rotor.linear.model.scene.differences import (
     slopes,
 )
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
-from exudyn_rotor.linear.solve.state import EPSILON
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
 from exudyn_rotor.multibody.rotor.equations import without_forces
 from exudyn_rotor.multibody.rotor.start_state import spin_at_start

@@ -19,9 +19,8 @@ from exudyn_rotor.bearings.given import Given, linear_supports
 from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.equations import PeriodicSystem, add, joined
-from exudyn_rotor.linear.model.assembly import NO_EQUATIONS, Assembly
+from exudyn_rotor.linear.model.assembly import NO_EQUATIONS, Assembly, Element, End, elements_of
 from exudyn_rotor.linear.model.body import RotorAlone, RotorBody, StandingBody
-from exudyn_rotor.linear.model.element import Element, End, elements_of
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.scene.attached import Attached
 from exudyn_rotor.linear.model.scene.equilibrium import equilibrium
@@ -152,8 +151,10 @@ class SceneModel(LinearModel):
         alike = self.about == "given" or not self.scene.follows_loads
         return alike and not self.scene.foreign and not self.scene.body.drives
 
-    def at(self, speed: float) -> PeriodicSystem:
-        """Return the equations at a spin speed [rad/s], about the equilibrium there.
+    def at(self, speed: float, frequency: float | None = None) -> PeriodicSystem:
+        """Return the equations at a spin speed, and a frequency of motions [rad/s].
+
+        About the equilibrium at this speed.
 
         Raises
         ------
@@ -161,26 +162,45 @@ class SceneModel(LinearModel):
             For a speed beyond a table, at which a film carries nothing, or without an equilibrium.
         """
         if self._is_list:
-            return super().at(speed)
+            return super().at(speed, frequency)
         assembly = self.assembly(speed)
         with probing(self.scene, speed) as probe:
             z, seen = self._equilibrium(probe)
             foreign = self._foreign(probe, seen, z)
             elements, _ = self._elements_for(self.turns, supports=self._under_loads(probe, seen, z))
-            system = replace(assembly, elements=tuple(elements)).system(speed)
+            system = replace(assembly, elements=tuple(elements)).system(speed, frequency)
             self._add_foreign(system, probe, foreign, assembly)
         return system
 
-    def _systems(self, speeds: np.ndarray) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
+    def _systems(
+        self, speeds: np.ndarray, within: str = "", frequencies: np.ndarray | None = None
+    ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         if self._is_list:
-            return super()._systems(speeds)
+            return super()._systems(speeds, within, frequencies)
         found, refused = [], {}
-        for place, speed in enumerate(speeds.tolist()):
+        basis = getattr(self, f"{within}_basis") if within else None
+        rates = [None] * len(speeds) if frequencies is None else frequencies.tolist()
+        for place, (speed, rate) in enumerate(zip(speeds.tolist(), rates, strict=True)):
             try:
-                found.append(self.at(speed))
+                one = self.at(speed, rate)
             except NO_EQUATIONS as error:
                 refused[place] = error
+            else:
+                found.append(one if basis is None else one.projected(basis))
         return joined(found) if found else None, refused
+
+    @property
+    def pattern(self) -> tuple:
+        """The model: another scene may have any forces."""
+        return (id(self),)
+
+    def coefficients(self, speed: float) -> list | PeriodicSystem:
+        """Return what :meth:`at_points` needs: the equations where more than laws is in them."""
+        return super().coefficients(speed) if self._is_list else self.at(speed)
+
+    def at_points(self, speeds: np.ndarray, coefficients: Sequence) -> PeriodicSystem:
+        """Return equations at speeds as one stack."""
+        return super().at_points(speeds, coefficients) if self._is_list else joined(coefficients)
 
     def _seen(self, assembly: Assembly, speed: float) -> Seen:
         return Seen.of(self.scene, assembly, self._with_own, speed)

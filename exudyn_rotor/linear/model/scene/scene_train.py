@@ -16,8 +16,7 @@ from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.drives.coupling import FlexibleCoupling
 from exudyn_rotor.drives.gear_mesh import GearMesh
-from exudyn_rotor.linear.model.links import Link
-from exudyn_rotor.linear.model.rotor_train import RotorTrain
+from exudyn_rotor.linear.model.rotor_train import Link, RotorTrain
 from exudyn_rotor.linear.model.scene.scene_checks import check_body, rotors_in
 from exudyn_rotor.multibody.drives.connect_rotors import SceneConnection
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody

@@ -18,11 +18,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_rotor.linear.equations import Terms, add, turned
-from exudyn_rotor.linear.model.assembly import Assembly
+from exudyn_rotor.linear.model.assembly import Assembly, OwnBody, PadBody
 from exudyn_rotor.linear.model.body import RotorBody, StandingBody
-from exudyn_rotor.linear.model.element import OwnBody, PadBody
-from exudyn_rotor.linear.model.points import interface_motion, radius_of_gyration
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
+from exudyn_rotor.linear.model.turning import interface_motion, radius_of_gyration
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 from exudyn_rotor.theory.rotating_axes import axial_skew
 

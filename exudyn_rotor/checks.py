@@ -1,0 +1,480 @@
+"""Checks of input: every refusal names the argument, shows the value and says what is expected.
+
+A wrong kind of value (text for a number, a list for a rotor) is a TypeError, a value out of its
+range a ValueError. Arrays that are kept are copies and read-only.
+"""
+
+from __future__ import annotations
+
+import copyreg
+import operator
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, TypeVar
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import ArrayLike
+
+Kind = TypeVar("Kind")
+Shape = tuple[int | None, ...]
+
+LARGEST = 1e150  # squares of numbers stay finite
+MOST = 2**31 - 1  # nodes, modes or points: more than any machine holds
+_SIGNS = {">": operator.gt, "≥": operator.ge, "<": operator.lt, "≤": operator.le}
+_SYMMETRY = 1e-8  # of the largest entry: above the rounding of sums, far below a wrong matrix
+_LONGEST = 80  # characters of a value in a message
+
+
+# ------------------------------------------------------------------ messages
+
+
+def shown(value: object) -> str:
+    """Return a value as a message shows it: arrays by shape and kind, long texts cut."""
+    if isinstance(value, np.ndarray) and value.size > 6:
+        return f"an array of shape {value.shape}, {value.dtype}"
+    if sp.issparse(value):
+        return f"a sparse matrix of shape {value.shape}"
+    try:
+        text = repr(value)
+    # repr of a foreign object, or of an integer beyond Python's limit of digits
+    except Exception:
+        return f"a value of type {type(value).__name__}"
+    text = " ".join(text.split())
+    text = text[: _LONGEST - 1] + "…" if len(text) > _LONGEST else text
+    return text if isinstance(value, _PLAIN) else f"{text} ({type(value).__name__})"
+
+
+_PLAIN = (str, bool, int, float, complex, type(None), list, tuple, np.ndarray, np.number)
+
+
+def told(name: str, needed: str, value: object) -> str:
+    """Return the message of a refusal: which argument, what it needs, and what it got."""
+    return f"{name}: needs {needed}, got {shown(value)}"
+
+
+def of_unit(unit: str) -> str:
+    """Return a unit in brackets, after a blank; nothing for none."""
+    return f" [{unit}]" if unit else ""
+
+
+# ------------------------------------------------------------------ single numbers and flags
+
+
+def number(
+    value: float,
+    name: str,
+    unit: str = "",
+    *,
+    above: float | None = None,
+    least: float | None = None,
+    below: float | None = None,
+    most: float | None = None,
+) -> float:
+    """Return a finite real number; `above` and `below` are excluded, `least` and `most` not."""
+    if type(value) is float and above is least is below is most is None and abs(value) < LARGEST:
+        return value  # functions of time call this in every step
+    given = zip(_SIGNS.items(), (above, least, below, most), strict=True)
+    limits = [(sign, holds, n) for (sign, holds), n in given if n is not None]
+    words = " and ".join(f"{sign} {n:g}" for sign, _, n in limits)
+    needed = f"a finite number{of_unit(unit)}{' ' if words else ''}{words}"
+    result = _scalar(value, name, needed)
+    if not np.isfinite(result) or not all(holds(result, n) for _, holds, n in limits):
+        raise ValueError(told(name, needed, value))
+    if abs(result) > LARGEST:
+        raise ValueError(f"{name}: needs a number below {LARGEST:g} in size, got {shown(value)}")
+    return result
+
+
+def _scalar(value: object, name: str, needed: str) -> float:
+    if value is np.ma.masked:
+        raise ValueError(f"{name}: needs {needed}, got a masked value")
+    if isinstance(value, np.ndarray | np.generic):
+        if value.ndim or value.dtype.kind not in "uif":
+            raise TypeError(told(name, needed, value))
+    elif isinstance(value, bool) or not isinstance(value, int | float):
+        raise TypeError(told(name, needed, value))
+    try:
+        return float(value)
+    except OverflowError as error:
+        raise ValueError(told(name, needed, value)) from error
+
+
+def keep_numbers(item: object, units: Mapping[str, str], **bounds: float) -> None:
+    """Check attributes of a frozen object, given with their units, and keep them as floats."""
+    for name, unit in units.items():
+        object.__setattr__(item, name, number(getattr(item, name), name, unit, **bounds))
+
+
+def tolerance(value: float, name: str = "tolerance") -> float:
+    """Return a relative tolerance: a number above 0 and below 1."""
+    return number(value, name, above=0.0, below=1.0)
+
+
+def accuracy(value: float | None) -> None:
+    """Check the largest error by the basis of a reduced rotor, `accuracy`; None for no estimate."""
+    if value is not None:
+        tolerance(value, "accuracy")
+
+
+def count(value: int, name: str, *, least: int = 0, most: int = MOST) -> int:
+    """Return a whole number within limits, both included."""
+    limits = f" ≥ {least}" + (f" and ≤ {most}" if most < MOST else "")
+    return _whole(value, name, f"a whole number{limits}", least, most)
+
+
+def whole_number(value: int, name: str) -> int:
+    """Return a whole number of either sign."""
+    return _whole(value, name, "a whole number", -MOST, MOST)
+
+
+def _whole(value: object, name: str, needed: str, least: int, most: int) -> int:
+    if isinstance(value, np.ndarray | np.generic):
+        is_whole = value.ndim == 0 and value.dtype.kind in "ui" and not np.ma.is_masked(value)
+    else:
+        is_whole = isinstance(value, int) and not isinstance(value, bool)
+    if not is_whole:
+        raise TypeError(told(name, needed, value))
+    if not least <= value <= most:
+        raise ValueError(told(name, needed, value))
+    return int(value)
+
+
+def flag(value: bool, name: str) -> bool:
+    """Return True or False; words and numbers are refused."""
+    if not isinstance(value, bool | np.bool_):
+        raise TypeError(told(name, "True or False", value))
+    return bool(value)
+
+
+# ------------------------------------------------------------------ objects, functions, paths
+
+
+def instance(value: object, name: str, kinds: type[Kind] | tuple[type, ...], how: str = "") -> Kind:
+    """Return an object of one of the `kinds`; `how` says how to make one."""
+    if not isinstance(value, kinds):
+        raise TypeError(told(name, _named(kinds), value) + (f"; {how}" if how else ""))
+    return value
+
+
+def instances(
+    values: Iterable[Kind] | Kind, name: str, kinds: type[Kind] | tuple[type, ...], how: str = ""
+) -> tuple[Kind, ...]:
+    """Return objects of some kinds, given as one or as a sequence."""
+    if isinstance(values, kinds):
+        return (values,)
+    if isinstance(values, list | tuple) and all(isinstance(value, kinds) for value in values):
+        return tuple(values)
+    needed = f"a {_named(kinds)} or a sequence of them" + (f" ({how})" if how else "")
+    return tuple(
+        instance(value, f"{name}[{index}]", kinds, how)
+        for index, value in enumerate(items(values, name, needed))
+    )
+
+
+def items(values: Iterable[Any], name: str, needed: str) -> tuple:
+    """Return what a sequence holds; text and mappings are none. `needed` is for the message."""
+    try:
+        if not isinstance(values, str | bytes | Mapping) and isinstance(values, Iterable):
+            return tuple(values)
+    # an array without dimensions, an iterator that breaks off
+    except Exception as error:
+        raise TypeError(told(name, needed, values)) from error
+    raise TypeError(told(name, needed, values))
+
+
+def _named(kinds: type | tuple[type, ...]) -> str:
+    several = kinds if isinstance(kinds, tuple) else (kinds,)
+    return " or ".join(kind.__name__ for kind in several)
+
+
+def function(value: Callable, name: str) -> Callable:
+    """Return something that can be called."""
+    if not callable(value):
+        raise TypeError(told(name, "a function", value))
+    return value
+
+
+def executor(value: Any) -> Any:
+    """Return an executor with a ``submit`` method, or None."""
+    if value is None or (callable(getattr(value, "submit", None)) and not isinstance(value, type)):
+        return value
+    raise TypeError(told("executor", "an executor of concurrent.futures or alike, or None", value))
+
+
+def path(value: str | os.PathLike, name: str = "path") -> Path:
+    """Return the path of a file."""
+    needed = "the path of a file (text or Path)"
+    text = os.fspath(value) if isinstance(value, str | os.PathLike) else None
+    if not isinstance(text, str):
+        raise TypeError(told(name, needed, value))
+    if not text or "\0" in text:
+        raise ValueError(told(name, needed, value))
+    return Path(text)
+
+
+def read_only_mapping(values: Mapping[str, Kind]) -> Mapping[str, Kind]:
+    """Return a copy that cannot be written to; it can be pickled and copied."""
+    return MappingProxyType(dict(values))
+
+
+# results and rotors go to other processes; Python itself does not pickle a read-only mapping
+copyreg.pickle(MappingProxyType, lambda view: (read_only_mapping, (dict(view),)))
+
+
+# ------------------------------------------------------------------ words and names
+
+
+def choice(value: str, name: str, options: Iterable[str]) -> str:
+    """Return one of a few words."""
+    known = ", ".join(repr(option) for option in options)
+    if not isinstance(value, str):
+        raise TypeError(f"{name}: needs one of {known}, got {shown(value)}")
+    if value not in options:
+        raise ValueError(f"{name}: {shown(value)} is unknown; use one of {known}")
+    return value
+
+
+def label(value: str, name: str) -> str:
+    """Return a name: text that is not empty."""
+    if not isinstance(value, str):
+        raise TypeError(told(name, "a name (text)", value))
+    if not value.strip():
+        raise ValueError(told(name, "a name that is not empty", value))
+    if not value.isprintable():  # line breaks, half characters that no file or library takes
+        raise ValueError(told(name, "printable characters", value))
+    return str(value)
+
+
+def labels(
+    values: Iterable[str] | str, name: str, known: Iterable[str] | None = None
+) -> tuple[str, ...]:
+    """Return names, given as one or as a sequence; each one of `known`, if that is given."""
+    listed = (values,) if isinstance(values, str) else items(values, name, "names (a sequence)")
+    result = tuple(label(value, name) for value in listed)
+    there = result if known is None else tuple(known)
+    for value in (one for one in result if one not in there):
+        names = ", ".join(repr(item) for item in there) or "none"
+        raise ValueError(f"{name}: {shown(value)} is unknown; there are: {names}")
+    return result
+
+
+def different(names: tuple[str, ...], name: str) -> tuple[str, ...]:
+    """Return names, of which none may be given twice."""
+    for value in names:
+        if names.count(value) > 1:
+            raise ValueError(f"{name}: {value!r} is given twice")
+    return names
+
+
+def mapping(
+    value: Mapping[str, Kind], name: str, what: str = "", known: Iterable[str] | None = None
+) -> Mapping[str, Kind]:
+    """Return a mapping whose keys are names, `known` ones if given, to what `what` says."""
+    if not isinstance(value, Mapping):
+        raise TypeError(told(name, f"a dictionary of name to {what or 'value'}", value))
+    labels(tuple(value), name, known)
+    return value
+
+
+# ------------------------------------------------------------------ arrays and matrices
+
+
+def array(
+    values: ArrayLike,
+    name: str,
+    unit: str = "",
+    *,
+    shape: Shape | None = None,
+    finite: bool = True,
+    dtype: type = float,
+) -> np.ndarray:
+    """Return numbers as a read-only array of the wanted shape; None in `shape` is any length.
+
+    `dtype` is float, complex, int or bool. Text, masks, imaginary parts of numbers that must be
+    real, and fractions of numbers that must be whole are refused. What can be written to is copied.
+    """
+
+    def needed() -> str:
+        return f"{_kind_of(dtype, finite)}{of_unit(unit)}{_of_shape(shape)}"
+
+    exact = type(values) is np.ndarray and values.dtype == dtype
+    result = read_only(values if exact else _numbers(values, name, needed(), dtype), dtype)
+    if shape is not None and not _has_shape(result.shape, shape):
+        raise ValueError(told(name, needed(), values) + f" with the shape {result.shape}")
+    largest = MOST if dtype is int else LARGEST
+    if finite and not np.abs(result).max(initial=0) <= largest:  # NaN is not
+        if not np.all(np.isfinite(result)):
+            raise ValueError(told(name, needed(), values))
+        raise ValueError(f"{name}: needs numbers below {largest:g} in size, got {shown(values)}")
+    return result
+
+
+def vector(values: ArrayLike, name: str, unit: str = "", size: int | None = 3) -> np.ndarray:
+    """Return a read-only array of `size` finite numbers, of any length for None."""
+    return array(values, name, unit, shape=(size,))
+
+
+def whole_numbers(values: ArrayLike, name: str, *, least: int = 0, most: int = MOST) -> np.ndarray:
+    """Return a read-only array (k,) of whole numbers within limits, both included."""
+    result = array(values, name, shape=(None,), dtype=int)
+    outside = result[(result < least) | (result > most)]
+    if outside.size:
+        upper = f" and ≤ {most}" if most < MOST else ""
+        raise ValueError(f"{name}: needs whole numbers ≥ {least}{upper}, got {outside[0]}")
+    return result
+
+
+def matrix(values: Any, name: str, unit: str = "", *, shape: Shape = (None, None)) -> Any:
+    """Return a matrix of finite numbers: a read-only array, or a sparse one as ``csr_array``."""
+    if not sp.issparse(values):
+        return array(values, name, unit, shape=shape)
+    if not _has_shape(values.shape, shape):
+        raise ValueError(told(name, f"finite numbers{of_unit(unit)}{_of_shape(shape)}", values))
+    result = sp.csr_array(values)
+    if not result.has_canonical_format:  # later, in place, it could not be put into it
+        result = result.copy()
+        result.sum_duplicates()
+    result.data = array(result.data, f"{name}: its entries", unit, shape=(None,))
+    result.indices = read_only(result.indices, result.indices.dtype)
+    result.indptr = read_only(result.indptr, result.indptr.dtype)
+    return result
+
+
+def symmetric(values: Any, name: str, unit: str = "", *, size: int, sign: int = 1) -> Any:
+    """Return a symmetric matrix (sign −1: skew-symmetric); sparse ones are trusted to be so."""
+    result = matrix(values, name, unit, shape=(size, size))
+    if sp.issparse(result):
+        return result
+    wrong, largest = (np.abs(m).max(initial=0.0) for m in (result - sign * result.T, result))
+    if wrong > _SYMMETRY * largest:
+        kind = f"a {'symmetric' if sign > 0 else 'skew-symmetric'} matrix"
+        raise ValueError(f"{name}: needs {kind}; {wrong:.3g} of {largest:.3g} is not")
+    return result
+
+
+def rotation(values: ArrayLike, name: str = "rotation") -> np.ndarray:
+    """Return a proper rotation matrix, shape (3, 3), read-only."""
+    result = array(values, name, shape=(3, 3))
+    # a user's rounding to nine digits, 2 √3 · 5e-10 in R Rᵀ, is meant to be a rotation
+    if np.abs(result @ result.T - np.eye(3)).max() > 2e-9 or np.linalg.det(result) < 0.0:
+        raise ValueError(told(name, "a rotation matrix (R Rᵀ = 1, det R = 1)", result.tolist()))
+    return result
+
+
+def ascending(
+    values: Sequence[float], name: str, unit: str = "", of_table: bool = False
+) -> np.ndarray:
+    """Return one or more finite numbers in ascending order, each once, read-only.
+
+    Those `of_table` have values beside them, which must not be left behind when they are sorted.
+    """
+    if isinstance(values, int | float | np.number):
+        values = [values]
+    result = vector(values, name, unit, size=None)
+    if result.size == 0 or np.any(np.diff(result) <= 0.0):
+        needed = f"at least one number{of_unit(unit)}, in ascending order without repetition"
+        remedy = "np.unique makes them so"
+        if of_table:
+            remedy = "np.unique(…, return_index=True) gives the places of the values to take along"
+        raise ValueError(told(name, f"{needed} ({remedy})", values))
+    return result
+
+
+def ascending_from_zero(
+    values: ArrayLike, name: str, otherwise: str = "turn the spin axis round for the other sense"
+) -> np.ndarray:
+    """Return ascending values, none of them negative; `otherwise` says what else to do."""
+    result = ascending(values, name)
+    if result[0] < 0.0:
+        raise ValueError(f"{name}: {result[0]:g} is negative; give values ≥ 0, or {otherwise}")
+    return result
+
+
+def spin_speeds(speeds: ArrayLike, allow_negative: bool) -> np.ndarray:
+    """Return ascending spin speeds, none of them negative unless that is allowed."""
+    if flag(allow_negative, "allow_negative"):
+        return ascending(speeds, "speeds")
+    turn = "pass allow_negative=True if the rotor is meant to spin the other way round"
+    return ascending_from_zero(speeds, "speeds", turn)
+
+
+def read_only(values: ArrayLike, dtype: type = float) -> np.ndarray:
+    """Return an array that cannot be written to: as it is if so already, else a copy."""
+    shared = type(values) is np.ndarray and values.dtype == dtype
+    if shared and values.flags.owndata and not values.flags.writeable:
+        return values
+    copy = np.array(values, dtype=dtype)
+    copy.flags.writeable = False
+    return copy
+
+
+def _numbers(values: object, name: str, needed: str, dtype: type) -> np.ndarray:
+    """Return `values` as an array of numbers that `dtype` can hold without loss."""
+    foreign = str | bytes | Mapping | set | frozenset | None
+    if isinstance(values, foreign) or sp.issparse(values):
+        raise TypeError(told(name, needed, values))
+    if np.ma.isMaskedArray(values) and np.ma.is_masked(values):
+        raise ValueError(f"{name}: needs {needed}, got an array with masked entries; fill them")
+    try:
+        result = np.asarray(values)
+    # ragged lists, foreign objects with broken array protocols
+    except Exception as error:
+        raise TypeError(told(name, needed, values)) from error
+    if result.size == 0 and result.dtype.kind in "buif":
+        # an empty list has no type, an empty array of numbers holds no flags
+        if dtype is bool and isinstance(values, np.ndarray) and result.dtype.kind != "b":
+            raise TypeError(told(name, needed, values))
+        return result
+    if result.dtype.kind == "c" and dtype is not complex:
+        if np.any(result.imag):
+            raise ValueError(f"{name}: needs real numbers, got imaginary parts: {shown(values)}")
+        return result.real
+    # flags are no numbers: True for a stiffness is a slip
+    if result.dtype.kind not in {complex: "uifc", bool: "b"}.get(dtype, "uif"):
+        raise TypeError(told(name, needed, values))
+    if dtype is int and result.dtype.kind == "f":
+        if not np.all(np.isfinite(result)) or np.any(result != np.round(result)):
+            raise ValueError(told(name, needed, values))
+        raise TypeError(f"{name}: needs {needed} of an integer type, got {shown(values)}")
+    return result
+
+
+def _kind_of(dtype: type, finite: bool) -> str:
+    if dtype in (int, bool):
+        return {int: "whole numbers", bool: "flags (True, False)"}[dtype]
+    kind = {float: "numbers", complex: "complex numbers"}[dtype]
+    return f"finite {kind}" if finite else kind
+
+
+def _of_shape(shape: Shape | None) -> str:
+    return "" if shape is None else f" of shape {shape}".replace("None", "any")
+
+
+def _has_shape(found: tuple[int, ...], wanted: Shape) -> bool:
+    return len(found) == len(wanted) and all(
+        size is None or size == there for there, size in zip(found, wanted, strict=True)
+    )
+
+
+def place(value: str | int | Sequence[float], name: str) -> str | int | tuple[float, float, float]:
+    """Return a place of the rotor: an interface's name, a node's number or a position [m].
+
+    Raises
+    ------
+    TypeError, ValueError
+        For anything else.
+    """
+    if isinstance(value, str):
+        return label(value, name)
+    if isinstance(value, int | np.integer):
+        return count(value, name)
+    try:
+        return tuple(vector(value, name, "m").tolist())
+    except (TypeError, ValueError) as error:
+        raise type(error)(
+            f"{name}: needs the name of an interface, a node number or a position of three finite "
+            f"numbers [m], got {shown(value)}"
+        ) from error

@@ -1,0 +1,468 @@
+"""Loads on rotors and where they act: places, unbalances, harmonic forces, ground that shakes.
+
+Balance quality grades are those of ISO 21940-11:2016, "Mechanical vibration — Rotor balancing —
+Part 11: Procedures and tolerances for rotors with rigid behaviour", Sect. 5 and 6: grade
+G = e_per Ω in mm/s, with the permissible residual specific unbalance e_per and the highest service
+speed Ω.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks
+from exudyn_rotor.linear.equations import Terms, turned
+from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.theory.rotating_axes import FRAMES, turning_harmonics
+
+At = str | int | Sequence[float]
+_BALANCED = 1e-13  # rounding leaves this much of the unbalance of a perfectly balanced mesh
+
+# ------------------------------------------------------------------ places
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """A point of a model.
+
+    Attributes
+    ----------
+    label : str
+        Name of the interface, or 'node 12'.
+    seen : mapping of int to ndarray, shape (6, k)
+        Fourier terms of displacement and rotation along (n1, n2, e) per coordinate, in axes that
+        stand still.
+    is_node : bool
+        True for a mesh node, which has no rotation: those rows are zero.
+    ratio : float
+        Speed of the body over the speed of the analysis; 0 of a foundation.
+    """
+
+    label: str
+    seen: Terms
+    is_node: bool
+    ratio: float = 1.0
+
+    def motion(self, coordinates: Mapping[int, np.ndarray], frame: str) -> dict[int, np.ndarray]:
+        """Return the harmonics (…, 6) of the motion, given the harmonics (…, k) of coordinates.
+
+        In axes that stand still, or in axes that turn with the speed of the analysis.
+        """
+        seen = self.seen if frame == "inertial" else turned(self.seen, -1)
+        motion: dict[int, np.ndarray] = {}
+        for m, U in seen.items():
+            for n, x in coordinates.items():
+                motion[m + n] = motion.get(m + n, 0.0) + x @ U.T
+        return motion
+
+
+def place(model: LinearModel, at: At, speed: float = 1.0) -> Place:
+    """Find an interface by its name, a mesh node by its number or by a position [m].
+
+    The motion is seen at a speed [rad/s]: at rest, or at any other.
+
+    Raises
+    ------
+    ValueError
+        If there is no such interface or node, or the rotor was stored without mode shapes.
+    """
+    if isinstance(at, str):
+        known = model.interfaces
+        if at not in known:
+            raise ValueError(
+                f"at: {at!r}: no such interface; the rotor has: {', '.join(known) or 'none'}"
+            )
+        body, _ = model.owner(at)
+        return Place(at, model.seen(at, speed), False, getattr(body, "ratio", 0.0))
+    [first, *others] = model.rotors.values()
+    if others:
+        raise ValueError(f"at: {at!r}: of several rotors, name an interface")
+    if first.shapes is None:
+        raise ValueError(
+            f"at: {at!r}: mesh nodes need a rotor with mode shapes; reduce with "
+            "keep_shapes=True, or name an interface"
+        )
+    number = _node_number(at, first.shapes.nodes)
+    return Place(f"node {number}", model.seen_at_node(number, speed), is_node=True)
+
+
+def checked_places(at: Sequence[At] | At | None) -> tuple[At, ...] | None:
+    """Return places as a tuple; None for all interfaces.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If one is neither a name, nor a number, nor a position.
+    """
+    if at is None:
+        return None
+    if isinstance(at, str | int | np.integer):
+        at = (at,)
+    listed = checks.items(at, "at", "places of the rotor in a sequence")
+    return tuple(checks.place(one, f"at[{index}]") for index, one in enumerate(listed))
+
+
+def places(model: LinearModel, at: Sequence[At] | None, speed: float = 1.0) -> list[Place]:
+    """Return the places asked for; by default all interfaces."""
+    observed = [place(model, one, speed) for one in (model.interfaces if at is None else at)]
+    if not observed:
+        raise ValueError("at: the rotor has no interfaces; name mesh nodes or positions to look at")
+    labels = [one.label for one in observed]
+    if len(set(labels)) < len(labels):
+        raise ValueError(f"at: a place is named twice: {', '.join(labels)}")
+    return observed
+
+
+def _node_number(at: int | Sequence[float], nodes: np.ndarray) -> int:
+    """Return a node's number; the nearest one to a position."""
+    if isinstance(at, int):
+        if at >= len(nodes):
+            raise ValueError(f"at: {at}: no such node; the mesh has nodes 0 to {len(nodes) - 1}")
+        return at
+    return int(np.argmin(np.linalg.norm(nodes - np.asarray(at), axis=1)))
+
+
+# ------------------------------------------------------------------ unbalances
+
+
+def permissible_unbalance(grade: float, mass: float, speed: float) -> float:
+    """Return the permissible residual unbalance of a rotor, ``U = G m / Ω`` [kg m].
+
+    Parameters
+    ----------
+    grade : float
+        Balance quality grade G [mm/s]: 2.5 for G 2.5.
+    mass : float
+        Mass of the rotor [kg].
+    speed : float
+        Highest service speed [rad/s].
+
+    Raises
+    ------
+    TypeError, ValueError
+        If one of them is not a positive number.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import permissible_unbalance
+    >>> permissible_unbalance(2.5, mass=40.0, speed=500.0)
+    0.0002
+    """
+    grade = checks.number(grade, "grade", "mm/s", above=0.0)
+    mass = checks.number(mass, "mass", "kg", above=0.0)
+    speed = checks.number(speed, "speed", "rad/s", above=0.0)
+    return 1e-3 * grade * mass / speed
+
+
+@dataclass(frozen=True)
+class Unbalance:
+    """A small excess mass at a radius: a load ``Ω² U`` that stands still in the rotor frame.
+
+    Parameters
+    ----------
+    at : str, int, or sequence of three floats
+        Interface, mesh node, or the node nearest to a position in mesh coordinates [m]. Where on
+        the radius the mass sits is in the amount already: the load acts on the mean motion of the
+        interface.
+    amount : float
+        Mass times eccentricity U [kg m], positive.
+    angle : float, optional
+        Direction in the rotor frame, from n1 to n2 of :attr:`SpinAxis.plane` [rad].
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the place is of another kind, the amount not positive, or a number not finite.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import Unbalance
+    >>> Unbalance.from_grade("disc", 2.5, mass=40.0, speed=500.0, share=0.5)
+    Unbalance(at='disc', amount=0.0001, angle=0.0)
+    """
+
+    at: str | int | Sequence[float]
+    amount: float
+    angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "at", checks.place(self.at, "at"))
+        where = f"unbalance at {self.at!r}"
+        amount = checks.number(self.amount, f"{where}: amount", "kg m")
+        if amount <= 0.0:
+            raise ValueError(
+                f"{where}: amount needs a positive number [kg m], got {self.amount!r}; turn it by "
+                "its angle, leave it out if there is none"
+            )
+        object.__setattr__(self, "amount", amount)
+        angle = checks.number(self.angle, f"{where}: angle", "rad")
+        object.__setattr__(self, "angle", angle)
+
+    @classmethod
+    def from_grade(
+        cls,
+        at: str | int | Sequence[float],
+        grade: float,
+        mass: float,
+        speed: float,
+        *,
+        angle: float = 0.0,
+        share: float = 1.0,
+    ) -> Unbalance:
+        """Return the largest unbalance that a balance quality grade permits.
+
+        Parameters
+        ----------
+        at : str, int, or sequence of three floats
+        grade, mass, speed : float
+            See :func:`permissible_unbalance`.
+        angle : float, optional
+            In the rotor frame [rad].
+        share : float, optional
+            Part of the whole in this plane: 0.5 where two tolerance planes lie at equal distances
+            from the centre of mass (ISO 21940-11:2016, Sect. 7).
+
+        Raises
+        ------
+        TypeError, ValueError
+            If `share` is not between 0 and 1, or another argument is refused.
+        """
+        share = checks.number(share, "share", above=0.0, most=1.0)
+        return cls(at, share * permissible_unbalance(grade, mass, speed), angle)
+
+    def __str__(self) -> str:
+        """Return place, amount [g mm] and angle [deg] in words."""
+        amount, angle = 1e6 * self.amount, np.degrees(self.angle)
+        return f"unbalance of {amount:.4g} g mm at {self.at!r}, angle {angle:.4g} deg"
+
+    @property
+    def vector(self) -> np.ndarray:
+        """Unbalance along (n1, n2, e), rotor frame, shape (3,) [kg m]."""
+        return self.amount * np.array([np.cos(self.angle), np.sin(self.angle), 0.0])
+
+
+# ------------------------------------------------------------------ loads over a frequency
+
+
+@dataclass(frozen=True, eq=False)
+class HarmonicForce:
+    """A force and a moment ``Re(F exp(iωt))`` at a place of the rotor.
+
+    Parameters
+    ----------
+    at : str, int, or sequence of three floats
+        Interface, mesh node, or the node nearest to a position in mesh coordinates [m].
+    force : array_like, shape (2,) or (3,)
+        Complex amplitude along (n1, n2[, e]) of :attr:`SpinAxis.plane` [N]. A force of constant
+        size that circles forward is (1, −1j).
+    moment : array_like, shape (2,) or (3,), optional
+        About (n1, n2[, e]), at an interface only [N m].
+    frame : {'inertial', 'rotor'}
+        Whether its direction is fixed in space or in the rotor; it acts on the same material
+        points either way.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For an unknown frame, a place of another kind, a wrong shape, or an entry that is not
+        finite.
+
+    Examples
+    --------
+    A force of 10 N that circles forward in space:
+
+    >>> from exudyn_rotor import HarmonicForce
+    >>> HarmonicForce("disc", (10.0, -10.0j)).force
+    array([10. +0.j, -0.-10.j,  0. +0.j])
+    """
+
+    at: At
+    force: ArrayLike = (0.0, 0.0, 0.0)
+    moment: ArrayLike = (0.0, 0.0, 0.0)
+    frame: str = "inertial"
+
+    def __post_init__(self) -> None:
+        checks.choice(self.frame, "frame", FRAMES)
+        object.__setattr__(self, "at", checks.place(self.at, "at"))
+        for name, unit in (("force", "N"), ("moment", "N m")):
+            vector = _vector(getattr(self, name), f"{name} at {self.at!r}", unit)
+            object.__setattr__(self, name, vector)
+
+    def _harmonics(self, model: LinearModel, speed: float) -> dict[int, np.ndarray]:
+        """Return the harmonics (k,) of the load."""
+        point = place(model, self.at, speed)
+        if point.is_node and np.any(self.moment):
+            raise ValueError(
+                f"moment at {self.at!r}: a mesh node has no rotation; use an interface"
+            )
+        parts = {0: np.concatenate([self.force, self.moment])}
+        if self.frame == "rotor":
+            _check_turning(model, point)
+            if speed:
+                parts = {n: R @ parts[0] for n, R in turning_harmonics(6).items()}
+        return _pulled(point, parts)
+
+
+@dataclass(frozen=True, eq=False)
+class BaseAcceleration:
+    """An acceleration ``Re(a exp(iωt))`` of the ground under all supports, fixed in space.
+
+    The response is the motion relative to the ground: ``f = −Sᵀ Aᵀ τ̈`` (109). The ground's own
+    displacement is ``−a/ω²``. Gravity g acts as the acceleration −g of the ground does, at
+    frequency zero: ground that accelerates upward presses as weight does.
+
+    Parameters
+    ----------
+    acceleration : array_like, shape (2,) or (3,)
+        Complex amplitude along (n1, n2[, e]) of :attr:`SpinAxis.plane` [m/s²].
+
+    Raises
+    ------
+    TypeError, ValueError
+        For a wrong shape or an entry that is not finite.
+
+    Examples
+    --------
+    Weight in the direction −n2 makes a rotor of 4 kg sag by m g/k:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import BaseAcceleration, SolidRotor, Support, harmonic_response
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> supports = [Support(name, 2e4) for name in ("left", "right")]
+    >>> weight = BaseAcceleration((0.0, +9.81))
+    >>> response = harmonic_response(rotor, [0.0], weight, supports=supports)
+    >>> response.phasor("left", "n2").real
+    array([-0.000981])
+    """
+
+    acceleration: ArrayLike
+
+    def __post_init__(self) -> None:
+        vector = _vector(self.acceleration, "acceleration", "m/s²")
+        object.__setattr__(self, "acceleration", vector)
+
+    def _harmonics(self, model: LinearModel, speed: float) -> dict[int, np.ndarray]:
+        """Return the harmonics (k,) of the load."""
+        loads = model.base_loads(speed)
+        if loads is None:
+            raise ValueError(
+                "base acceleration needs a rotor with supports, and a foundation with its "
+                "participation; in a scene, put a force on the moving parts"
+            )
+        return {n: each.T @ self.acceleration for n, each in loads.items()}
+
+
+def unbalance_load(
+    model: LinearModel, unbalances: Sequence[Unbalance], own: bool
+) -> dict[int, np.ndarray]:
+    """Return the load per Ω² of all unbalances, as harmonics (k,).
+
+    Raises
+    ------
+    ValueError
+        If there is no unbalance at all.
+    """
+    turning = [rotor for name, rotor in model.rotors.items() if model.ratios[name] == 1.0]
+    balanced = all(map(_is_balanced, turning))
+    if not unbalances and (balanced or not own):
+        reason = "the rotor itself is balanced" if own else "own=False leaves out the rotor's own"
+        raise ValueError(f"no unbalance, so no response: {reason}; give unbalances=[Unbalance(…)]")
+    load = dict(model.unbalance()) if own else {0: np.zeros(model.size)}
+    for unbalance in unbalances:
+        point = place(model, unbalance.at)
+        if point.ratio == 0.0:
+            raise ValueError(f"unbalance at {unbalance.at!r}: a foundation does not turn")
+        _check_turning(model, point)
+        for n, force in model.unbalance_at(point.seen, unbalance.vector).items():
+            load[n] = load.get(n, 0.0) + force
+    return load
+
+
+def in_words(model: LinearModel, unbalances: Sequence[Unbalance], own: bool) -> tuple[str, ...]:
+    """Return the unbalances as text, the own one with its amount beside those that are given."""
+    found = tuple(map(str, unbalances))
+    if not own:
+        return found
+    given = sum(unbalance.amount for unbalance in unbalances)
+    for name, rotor in model.rotors.items():
+        if model.ratios[name] == 1.0:
+            amount = float(np.linalg.norm(_static_unbalance(rotor)))
+            share = f", {amount / given:.2g} of the amount given" if given else ""
+            whose = f"rotor {name!r}" if name else "the rotor"
+            found += (f"eccentricity of {whose}, with its mesh: {1e6 * amount:.4g} g mm{share}",)
+    return found
+
+
+def _static_unbalance(rotor: ReducedRotor) -> np.ndarray:
+    """Return mass times eccentricity (3,) [kg m]."""
+    off = rotor.center_of_mass - rotor.axis.project(rotor.center_of_mass)
+    return rotor.invariants.mass * off
+
+
+def _is_balanced(rotor: ReducedRotor) -> bool:
+    """Return whether centre of mass and principal axis are on the spin axis but for rounding."""
+    inv, e = rotor.invariants, rotor.axis.direction
+    static, couple = _static_unbalance(rotor), inv.J @ e
+    couple = couple - e * (e @ couple)
+    second = np.trace(inv.J)
+    arm = np.sqrt(second / inv.mass)
+    return bool(np.linalg.norm(static) * arm + np.linalg.norm(couple) <= _BALANCED * second)
+
+
+def total(
+    loads: Sequence[HarmonicForce | BaseAcceleration], model: LinearModel, speed: float
+) -> dict[int, np.ndarray]:
+    """Return the harmonics (k,) of the sum of all loads at a spin speed [rad/s].
+
+    Raises
+    ------
+    ValueError
+        If there is no load or all of them are zero.
+    """
+    harmonics: dict[int, np.ndarray] = {}
+    for load in loads:
+        for n, force in load._harmonics(model, speed).items():
+            harmonics[n] = harmonics.get(n, 0.0) + force
+    if not any(np.any(force) for force in harmonics.values()):
+        raise ValueError(
+            "no load, so no response: give loads=[HarmonicForce(…)] that move the rotor"
+        )
+    return harmonics
+
+
+def _check_turning(model: LinearModel, point: Place) -> None:
+    """Refuse what turns with a rotor of another speed than that of the analysis."""
+    if point.ratio not in (0.0, 1.0):
+        owner, _, _ = point.label.partition(":")
+        raise ValueError(
+            f"at: {point.label!r}: turns with {point.ratio:g} times the speed of the analysis; "
+            f"give train.relative_to({owner!r}), over the speed of that rotor"
+        )
+
+
+def _pulled(point: Place, wrench: dict[int, np.ndarray]) -> dict[int, np.ndarray]:
+    """Return the generalised force (k,) of harmonics of a force and moment that stand still."""
+    load: dict[int, np.ndarray] = {}
+    for n, force in wrench.items():
+        for m, U in point.seen.items():
+            load[m + n] = load.get(m + n, 0.0) + U.T @ force
+    return load
+
+
+def _vector(value: ArrayLike, name: str, unit: str) -> np.ndarray:
+    """Return an amplitude along (n1, n2, e), shape (3,), complex and read-only."""
+    vector = checks.array(value, name, unit, dtype=complex)
+    if vector.shape not in ((2,), (3,)):
+        raise ValueError(
+            f"{name}: needs two or three numbers [{unit}] along (n1, n2[, e]), got "
+            f"{checks.shown(value)}"
+        )
+    return checks.read_only(np.r_[vector, np.zeros(3 - len(vector))], complex)

@@ -1,0 +1,194 @@
+"""A scene as a rotor, or a train of rotors, on supports and laws: what harmonic balance takes.
+
+Laws are known by what :func:`exudyn_rotor.add_supports` added, and Exudyn's own springs and forces
+by their constants. Anything else might be nonlinear, and is refused by its name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import exudyn
+import numpy as np
+
+from exudyn_rotor.bearings.given import Given
+from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.foundations.foundation import Foundation
+from exudyn_rotor.linear.model.build import Target
+from exudyn_rotor.linear.model.scene.scene_checks import check_scene
+from exudyn_rotor.linear.model.scene.scene_train import scene_train
+from exudyn_rotor.linear.response.loads import HarmonicForce
+from exudyn_rotor.multibody.full.full_body import reduced_body
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation
+
+_SAME_PLACE = 1e-9  # m, of the ends of a spring
+_SPRING = "ConnectorCartesianSpringDamper"
+_INSTEAD = (
+    "periodic_response takes laws of add_supports on the ground or on one foundation, Exudyn's "
+    f"{_SPRING}s between an interface and the ground, and constant forces at interfaces; leave "
+    "it out, or look at a run"
+)
+
+
+class Listed(NamedTuple):
+    """A scene as it is given by lists; gravity is in axes of the (first) rotor's mesh."""
+
+    target: Target
+    supports: tuple[Given, ...]
+    foundation: Foundation | None
+    gravity: np.ndarray
+    loads: tuple[HarmonicForce, ...]
+    stiffening: str
+
+
+def as_lists(target: Target, body: RotorBody | Sequence[RotorBody] | None, *given: Any) -> Listed:
+    """Return what is given by lists, in the order of :class:`Listed`; of a scene, what it has.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As :func:`listed`, and for a scene and lists together.
+    """
+    if isinstance(target, exudyn.MainSystem):
+        if any(np.any(each) if isinstance(each, np.ndarray) else each for each in given[:4]):
+            raise ValueError(
+                "supports, foundation, gravity, loads: a scene has its own; leave these out"
+            )
+        return listed(target, body)
+    if body is not None:
+        raise TypeError("body: is only for an exudyn.MainSystem, not for the rotor itself")
+    return Listed(target, *given)
+
+
+def listed(mbs: exudyn.MainSystem, body: RotorBody | Sequence[RotorBody]) -> Listed:
+    """Return what an assembled scene consists of, with constant speeds in place of its drives.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For rotors of another system, and for an item that might be nonlinear or vary with time.
+    """
+    if isinstance(body, list | tuple):
+        target, level = scene_train(mbs, body)
+        bodies, base, supports, foundation = list(body), None, (), None
+    else:
+        check_scene(mbs, reduced_body(body, how="the rotor in the scene, of add_rotor"))
+        base = _foundation(body)
+        springs = list(_springs(body, base))
+        target, level, bodies = body.selection.source, body.stiffening, [body]
+        supports = (*(one.support for one in body.supports), *springs)
+        foundation = None if base is None else _in_mesh(base, body)
+    for one in bodies:
+        if one.formulation.moves_origin:
+            raise ValueError(f"body: rotor {one.name!r} is moved with its place; {_INSTEAD}")
+    gravity = bodies[0].plan.setup.gravity
+    if any(np.any(one.plan.setup.gravity != gravity) for one in bodies):
+        raise ValueError("body: the rotors of this scene have different gravity; give all the same")
+    gravity = bodies[0].plan.setup.placement.rotation.T @ gravity
+    loads = tuple(_loads(mbs, bodies, base))
+    return Listed(target, supports, foundation, gravity, loads, level)
+
+
+def _foundation(body: RotorBody) -> SceneFoundation | None:
+    """Return what carries all supports of a rotor; None for the ground."""
+    bases = [one.base for one in body.supports]
+    for one in body.supports:
+        if one.base is not bases[0] or not isinstance(one.base, SceneFoundation | None):
+            raise ValueError(f"body: the support at {one.support.interface!r} stands on something "
+                             f"else; {_INSTEAD}")  # fmt: skip
+    return bases[0] if bases else None
+
+
+def _in_mesh(base: SceneFoundation, body: RotorBody) -> Foundation:
+    """Return a foundation of a scene in axes of the rotor's mesh."""
+    placement, found = body.plan.setup.placement, base.foundation
+    back = placement.rotation.T
+    if base.gravity_load is None:  # it does not sag, in lists either
+        found = replace(found, participation=np.zeros((3, found.size)))
+    return found.turned(back, -back @ placement.position)
+
+
+def _springs(body: RotorBody, base: SceneFoundation | None) -> Iterator[Support]:
+    """Yield Exudyn's own springs at the rotor, and refuse all other objects but known ones."""
+    mbs = body.mbs
+    known = {
+        int(number)
+        for numbers in (
+            body.objects.values(),
+            body.constraints.values(),
+            *(one.objects for one in body.supports),
+            () if base is None else base.objects.values(),
+        )
+        for number in numbers
+    }
+    frame = None if base is None else mbs.GetObject(base.objects["marker_body"])["nodeNumbers"][0]
+    for number in set(range(mbs.systemData.NumberOfObjects())) - known:
+        item = mbs.GetObject(number)
+        if item["objectType"] == "Ground" or (frame is not None and _holds(mbs, item, int(frame))):
+            continue
+        support = _spring(body, item) if item["objectType"] == _SPRING and base is None else None
+        if support is None:
+            raise ValueError(
+                f"mbs: object {number} ({item['objectType']} {item['name']!r}) is no law of this "
+                f"package; {_INSTEAD}"
+            )
+        yield support
+
+
+def _holds(mbs: exudyn.MainSystem, item: dict, frame: int) -> bool:
+    """Return whether an object belongs to what holds the frame of a foundation."""
+    if item["objectType"] == "GenericODE2":
+        return [int(node) for node in item["nodeNumbers"]] == [frame]
+    if item["objectType"] != "ConnectorCoordinate":
+        return False
+    markers = (mbs.GetMarker(int(number)) for number in item["markerNumbers"])
+    return any(int(marker.get("nodeNumber", -1)) == frame for marker in markers)
+
+
+def _spring(body: RotorBody, item: dict) -> Support | None:
+    """Return a linear spring of Exudyn between an interface and the ground; None of others."""
+    mbs, kinds = body.mbs, exudyn.OutputVariableType
+    ends = [int(number) for number in item["markerNumbers"]]
+    named = {int(marker): name for name, marker in body.markers.items()}
+    known = [number for number in ends if number in named]
+    if len(known) != 1 or item["springForceUserFunction"] or not item["activeConnector"]:
+        return None
+    [other] = [number for number in ends if number not in named]
+    carrier = mbs.GetMarker(other).get("bodyNumber")
+    if carrier is None or mbs.GetObject(int(carrier))["objectType"] != "Ground":
+        return None
+    places = [
+        mbs.GetMarkerOutput(number, kinds.Position, exudyn.ConfigurationType.Reference)
+        for number in ends
+    ]
+    if np.linalg.norm(places[1] - places[0] - item["offset"]) > _SAME_PLACE:
+        return None  # a spring that is not relaxed
+    A = body.standing_axes
+    K, D = (A.T @ np.diag(item[name]) @ A for name in ("stiffness", "damping"))
+    return Support(named[known[0]], K, D)
+
+
+def _loads(
+    mbs: exudyn.MainSystem, bodies: Sequence[RotorBody], base: SceneFoundation | None
+) -> Iterator[HarmonicForce]:
+    """Yield constant forces at interfaces, and refuse all loads but these and weights."""
+    weights = [one.gravity_load for one in (*bodies, *([] if base is None else [base]))]
+    weights = {int(number) for number in weights if number is not None}
+    named = {
+        int(marker): (f"{one.name}:{name}" if len(bodies) > 1 else name, one.standing_axes)
+        for one in bodies
+        for name, marker in one.markers.items()
+    }
+    for number in set(range(mbs.systemData.NumberOfLoads())) - weights:
+        load = mbs.GetLoad(number)
+        is_known = load["loadType"] == "ForceVector" and int(load["markerNumber"]) in named
+        if not is_known or load["bodyFixed"] or load["loadVectorUserFunction"]:
+            raise ValueError(
+                f"mbs: load {number} ({load['loadType']} {load['name']!r}) is no constant force at "
+                f"an interface; {_INSTEAD}"
+            )
+        at, axes = named[int(load["markerNumber"])]
+        yield HarmonicForce(at, axes.T @ load["loadVector"])

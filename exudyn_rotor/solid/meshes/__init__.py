@@ -1,0 +1,1 @@
+"""Meshes and matrices of other programs as files: Abaqus, CalculiX, ANSYS, Nastran, meshio."""

@@ -1,0 +1,108 @@
+"""Meshes in the memory or in the formats of meshio: Gmsh, MED, VTK and others."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from exudyn_rotor.solid.meshes.mesh_data import ElementGroup, MeshData
+from exudyn_rotor.solid.shapes import KINDS
+
+if TYPE_CHECKING:
+    import meshio
+
+_SURFACES = ("triangle", "quad")
+_IGNORED = ("vertex", "line")
+
+
+def load(path: Path) -> meshio.Mesh:
+    """Return the mesh of a file.
+
+    Raises
+    ------
+    ImportError
+        Without meshio.
+    ValueError
+        If meshio cannot read the file.
+    """
+    try:
+        import meshio
+    except ImportError as error:
+        raise ImportError(
+            'mesh files need the package meshio: python -m pip install "exudyn-rotor[meshes]"'
+        ) from error
+    try:
+        return meshio.read(path)
+    except (Exception, SystemExit) as error:  # meshio raises all kinds, and exits where it gives up
+        raise ValueError(f"{path.name}: meshio cannot read it: {error}") from error
+
+
+def convert(mesh: meshio.Mesh) -> MeshData:
+    """Return nodes, solids and named sets; numbers count from zero.
+
+    Physical groups of Gmsh, and sets of cells: those of solids are element sets and name regions,
+    those of surfaces are node sets.
+
+    Raises
+    ------
+    ValueError
+        For solids of kinds that are not held, such as pyramids and hexahedra of 27 nodes.
+    """
+    count = len(mesh.points)
+    points = np.zeros((count, 3))
+    points[:, : mesh.points.shape[1]] = mesh.points
+    data = MeshData(list(range(count)), points.tolist())
+    data.node_sets = {name: np.asarray(set_).tolist() for name, set_ in mesh.point_sets.items()}
+    first = 0
+    for i, cells in enumerate(mesh.cells):
+        numbers = np.arange(first, first + len(cells.data))
+        first += len(cells.data)
+        names = _names(mesh, i)
+        if cells.type in KINDS:
+            regions = np.full(len(numbers), "solid", dtype=object)
+            for name, chosen in names:
+                regions[chosen] = name
+                data.element_sets.setdefault(name, []).extend(numbers[chosen].tolist())
+            for region in dict.fromkeys(regions):
+                chosen = regions == region
+                data.groups.append(
+                    ElementGroup(cells.type, numbers[chosen], cells.data[chosen], region)
+                )
+        elif cells.type.startswith(_SURFACES):
+            for name, chosen in names:
+                nodes = np.unique(cells.data[chosen]).tolist()
+                data.node_sets.setdefault(name, []).extend(nodes)
+        elif not cells.type.startswith(_IGNORED):
+            raise ValueError(
+                f"mesh: holds {cells.type} cells; needs {', '.join(_kinds())} (in Gmsh: "
+                "Mesh.SecondOrderIncomplete = 1)"
+            )
+    return data
+
+
+def _names(mesh: meshio.Mesh, block: int) -> list[tuple[str, np.ndarray]]:
+    """Return the named sets of a block of cells, and which cells they hold."""
+    found = []
+    if "gmsh:physical" in mesh.cell_data:
+        tags = np.asarray(mesh.cell_data["gmsh:physical"][block])
+        names = {int(tag): name for name, (tag, _) in _physical(mesh, block).items()}
+        found += [(names.get(int(tag), str(tag)), tags == tag) for tag in np.unique(tags)]
+    else:
+        for name, sets in mesh.cell_sets.items():
+            chosen = np.zeros(len(mesh.cells[block].data), dtype=bool)
+            if sets[block] is not None and len(sets[block]):
+                chosen[np.asarray(sets[block], dtype=np.int64)] = True
+                found.append((name, chosen))
+    return found
+
+
+def _physical(mesh: meshio.Mesh, block: int) -> dict[str, np.ndarray]:
+    """Return the physical groups of the dimension of a block."""
+    dim = mesh.cells[block].dim
+    return {name: entry for name, entry in mesh.field_data.items() if entry[1] == dim}
+
+
+def _kinds() -> list[str]:
+    return [name for name in KINDS if " " not in name]

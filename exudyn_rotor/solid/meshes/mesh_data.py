@@ -1,0 +1,94 @@
+"""What a file of another program holds of a solid, by the numbers of the file."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from exudyn_rotor.calls import user_level
+
+
+@dataclass(eq=False)
+class ElementGroup:
+    """Elements of one kind, in the order of meshio.
+
+    Attributes
+    ----------
+    kind : str
+        One of ``exudyn_rotor.solid.shapes.KINDS``.
+    numbers : ndarray of int, shape (e,)
+    nodes : ndarray of int, shape (e, n)
+        Numbers of nodes.
+    region : str
+        What their material goes by.
+    """
+
+    kind: str
+    numbers: np.ndarray
+    nodes: np.ndarray
+    region: str
+
+
+@dataclass(eq=False)
+class MeshData:
+    """Nodes, solid elements, sets and materials of a file.
+
+    Attributes
+    ----------
+    numbers, nodes : list
+        Numbers of nodes, and their positions (3,), lengths of the file.
+    groups : list of ElementGroup
+    node_sets, element_sets : dict of str to list of int
+    surfaces : dict of str to list of (element, face)
+        Faces are counted from zero, in the order of ``ElementKind.faces``.
+    materials : dict
+        Region name → 'youngsModulus', 'poissonsRatio', 'density', in units of the file.
+    """
+
+    numbers: list[int] = field(default_factory=list)
+    nodes: list[Sequence[float]] = field(default_factory=list)
+    groups: list[ElementGroup] = field(default_factory=list)
+    node_sets: dict[str, list[int]] = field(default_factory=dict)
+    element_sets: dict[str, list[int]] = field(default_factory=dict)
+    surfaces: dict[str, list[tuple[int, int]]] = field(default_factory=dict)
+    materials: dict[str, dict[str, float]] = field(default_factory=dict)
+
+
+class Refusals:
+    """What a file holds that a solid rotor does not, unless it is to be left out.
+
+    Parameters
+    ----------
+    label : str
+        Of the file, in messages.
+    leave_out : iterable of str
+        Keywords and types of elements that the user does without.
+    """
+
+    def __init__(self, label: str, leave_out: Iterable[str]) -> None:
+        self.label = label
+        self._left_out = {name.upper().lstrip("*") for name in leave_out}
+        self._replaced: dict[str, str] = {}
+
+    def leaves_out(self, name: str, what: str) -> bool:
+        """Return True if `name` is to be left out; raise ValueError else."""
+        if name.upper().lstrip("*") in self._left_out:
+            return True
+        raise ValueError(
+            f"{self.label}: holds {name} ({what}), which a rotor of solid elements does not have; "
+            f"pass leave_out=[{name!r}] to do without, and join what it joined by interfaces, "
+            "supports, add_disc or add_point_mass"
+        )
+
+    def replaces(self, name: str, how: str) -> None:
+        """Note that elements `name` are taken as others."""
+        self._replaced[name] = how
+
+    def warn(self) -> None:
+        """Warn once of what was replaced."""
+        if self._replaced:
+            told = "; ".join(f"{name}: {how}" for name, how in sorted(self._replaced.items()))
+            warnings.warn(f"{self.label}: {told}", UserWarning, stacklevel=user_level())

@@ -1,0 +1,191 @@
+"""Finite-element models on meshes of other programs."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from exudyn_rotor import checks
+from exudyn_rotor.solid import units
+from exudyn_rotor.solid.elements import Block, SolidElements
+from exudyn_rotor.solid.meshes import abaqus, ansys, by_meshio, matrix_files, nastran
+from exudyn_rotor.solid.meshes.mesh_data import ElementGroup, MeshData, Refusals
+from exudyn_rotor.solid.meshes.skin import face_nodes, skin
+from exudyn_rotor.solid.model import FiniteElementModel, NodeSet
+from exudyn_rotor.solid.shapes import KINDS
+from exudyn_rotor.solid.surface import area_weights, flat_triangles
+
+if TYPE_CHECKING:
+    import meshio
+
+_READERS = {
+    ".inp": abaqus.read,
+    ".cdb": ansys.read,
+    ".bdf": nastran.read,
+    ".nas": nastran.read,
+    ".dat": nastran.read,
+}
+# lengths, moduli and densities in SI of one unit of the file: of m, N, kg or of mm, N, t
+_SI = {"m": (1.0, 1.0, 1.0), "mm": (1e-3, 1e6, 1e12)}
+
+
+def import_model(
+    mesh: str | os.PathLike | meshio.Mesh,
+    materials: Mapping[str, Any] | None,
+    *,
+    interfaces: Sequence[str] | None,
+    length_unit: str,
+    leave_out: Sequence[str],
+    matrices: str | os.PathLike | None,
+    check_units: bool,
+) -> FiniteElementModel:
+    """Return the model of a mesh; parameters as ``SolidRotor.from_mesh``."""
+    checks.flag(check_units, "check_units")
+    lengths, moduli, densities = _SI[checks.choice(length_unit, "length_unit", _SI)]
+    if isinstance(leave_out, str):
+        raise TypeError(f"leave_out: needs a list of names, got the text {leave_out!r}")
+    refusals = Refusals("mesh", checks.items(leave_out, "leave_out", "names"))
+    data = _read(mesh, refusals)
+    if not data.groups:
+        raise ValueError("mesh: needs tetrahedra, wedges or hexahedra, got no solid element")
+    numbers, nodes = _used_nodes(data)
+    places = {number: i for i, number in enumerate(numbers)}
+    regions = _regions(data, materials)
+    blocks, names = _blocks(data.groups, regions, numbers)
+    triangles = skin(blocks)
+    sets = _node_sets(data, interfaces, places, lengths * nodes, triangles)
+    if matrices is not None:
+        pair = matrix_files.read(checks.path(matrices, "matrices"), numbers)
+        mass, stiffness = (matrix / lengths for matrix in pair)  # t, N/mm → kg, N/m
+        return FiniteElementModel(lengths * nodes, mass, stiffness, None, sets, triangles)
+    if materials is None:
+        materials = {
+            name: {
+                "youngsModulus": moduli * values.get("youngsModulus", np.nan),
+                "poissonsRatio": values.get("poissonsRatio", np.nan),
+                "density": densities * values.get("density", np.nan),
+            }
+            for name, values in data.materials.items()
+        }
+    by_name = units.materials_by_region(names, materials)
+    if check_units:
+        for name, material in by_name.items():
+            units.check_material_units(name, material)
+    elements = SolidElements(
+        lengths * nodes,
+        blocks,
+        names,
+        np.array([units.lame_parameters(by_name[name]) for name in names]),
+        np.array([by_name[name]["density"] for name in names]),
+    )
+    elements.check_shapes()
+    refusals.warn()
+    return FiniteElementModel.of_elements(elements, sets, triangles)
+
+
+def _read(mesh: str | os.PathLike | meshio.Mesh, refusals: Refusals) -> MeshData:
+    if hasattr(mesh, "cells_dict"):
+        return by_meshio.convert(mesh)
+    path = checks.path(mesh, "mesh")
+    if not path.is_file():
+        raise ValueError(f"mesh: there is no file {str(path)!r}")
+    reader = _READERS.get(path.suffix.lower())
+    return by_meshio.convert(by_meshio.load(path)) if reader is None else reader(path, refusals)
+
+
+def _used_nodes(data: MeshData) -> tuple[list[int], np.ndarray]:
+    """Return the numbers of the nodes that elements have, in the order of the file, and places."""
+    table = dict(zip(data.numbers, data.nodes, strict=True))
+    used = set(np.concatenate([group.nodes.ravel() for group in data.groups]).tolist())
+    missing = sorted(used - table.keys())
+    if missing:
+        raise ValueError(f"mesh: elements have nodes that the file lacks: {missing[:5]}")
+    numbers = [number for number in table if number in used]
+    return numbers, np.array([table[number] for number in numbers], dtype=float)
+
+
+def _regions(data: MeshData, materials: Mapping[str, Any] | None) -> dict[int, str]:
+    """Return the region of elements by number, of the element sets that materials are given for."""
+    regions: dict[int, str] = {}
+    if materials is None or not isinstance(materials, Mapping):
+        return regions
+    own = {group.region for group in data.groups}
+    for name in materials:
+        if name in data.element_sets and name not in own:
+            twice = [number for number in data.element_sets[name] if number in regions]
+            if twice:
+                raise ValueError(
+                    f"materials: element {twice[0]} is in {regions[twice[0]]!r} and in {name!r}"
+                )
+            regions.update(dict.fromkeys(data.element_sets[name], name))
+    return regions
+
+
+def _blocks(
+    groups: Sequence[ElementGroup], regions: Mapping[int, str], numbers: Sequence[int]
+) -> tuple[list[Block], list[str]]:
+    """Return the elements of each kind by the places of their nodes, and the names of regions."""
+    order = np.argsort(numbers)
+    names: dict[str, int] = {}
+    kinds: dict[str, list[tuple[np.ndarray, np.ndarray]]] = {}
+    for group in groups:
+        nodes = order[np.searchsorted(np.asarray(numbers)[order], group.nodes)]
+        called = [regions.get(number, group.region) for number in group.numbers.tolist()]
+        chosen = np.array([names.setdefault(name, len(names)) for name in called])
+        kinds.setdefault(group.kind, []).append((nodes, chosen))
+    blocks = [
+        Block(kind, *(np.concatenate(parts) for parts in zip(*pieces, strict=True)))
+        for kind, pieces in kinds.items()
+    ]
+    return blocks, list(names)
+
+
+def _node_sets(
+    data: MeshData,
+    interfaces: Sequence[str] | None,
+    places: Mapping[int, int],
+    nodes: np.ndarray,
+    triangles: np.ndarray,
+) -> dict[str, NodeSet]:
+    """Return places and weights of sets; by default of all that are not empty and not the whole."""
+    sets = {**data.node_sets, **_surface_nodes(data)}
+    known = {}
+    for name, entries in sets.items():
+        chosen = np.unique([places[number] for number in entries if number in places])
+        if chosen.size and (interfaces is not None or chosen.size < len(places)):
+            known[name] = chosen.astype(np.int64)
+    if isinstance(interfaces, str):
+        raise TypeError(f"interfaces: needs a list of names of sets, got the text {interfaces!r}")
+    wanted = checks.labels(list(known) if interfaces is None else interfaces, "interfaces", known)
+    flat = flat_triangles(triangles)
+    return {name: _weighted(known[name], nodes, flat) for name in wanted}
+
+
+def _weighted(chosen: np.ndarray, nodes: np.ndarray, flat: np.ndarray) -> NodeSet:
+    """Return nodes with their shares of the surface, equal ones where they are no part of it."""
+    inside = flat[np.isin(flat, chosen).all(axis=1)]
+    if np.array_equal(np.unique(inside), chosen):
+        return area_weights(nodes, inside)
+    return chosen, None
+
+
+def _surface_nodes(data: MeshData) -> dict[str, list[int]]:
+    """Return the nodes of the faces of elements in every surface."""
+    if not data.surfaces:
+        return {}
+    elements = {
+        number: (group.kind, row)
+        for group in data.groups
+        for number, row in zip(group.numbers.tolist(), group.nodes, strict=True)
+    }
+    found: dict[str, list[int]] = {}
+    for name, faces in data.surfaces.items():
+        found[name] = []
+        for number, face in faces:
+            if number in elements:
+                kind, row = elements[number]
+                found[name] += row[face_nodes(KINDS[kind], face)].tolist()
+    return found

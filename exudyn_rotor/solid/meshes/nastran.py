@@ -1,0 +1,177 @@
+"""Bulk data of Nastran (.bdf, .dat, .nas): mesh, solid properties, materials, DMIG matrices."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import scipy.sparse as sp
+
+from exudyn_rotor.solid.meshes.mesh_data import ElementGroup, MeshData, Refusals
+
+# Kinds by card and number of nodes, and the order of meshio: mid nodes on top before upright ones.
+_SOLIDS = {
+    ("CTETRA", 4): ("tetra", range(4)),
+    ("CTETRA", 10): ("tetra10", range(10)),
+    ("CPENTA", 6): ("wedge", range(6)),
+    ("CPENTA", 15): ("wedge15", [*range(9), 12, 13, 14, 9, 10, 11]),
+    ("CHEXA", 8): ("hexahedron", range(8)),
+    ("CHEXA", 20): ("hexahedron20", [*range(12), 16, 17, 18, 19, 12, 13, 14, 15]),
+}
+_CORNERS = {"CTETRA": 4, "CPENTA": 6, "CHEXA": 8}
+_REFUSED = {
+    "MPC": "equations between nodes",
+    "RBE1": "a rigid element",
+    "RBE2": "a rigid element",
+    "RBE3": "a weighted mean",
+    "RBAR": "a rigid bar",
+    "RROD": "a rigid bar",
+    "CONM1": "a point mass",
+    "CONM2": "a point mass",
+}
+# Cards with C that are no elements.
+_NO_ELEMENTS = ("CORD", "CMASS", "CTYPE")
+
+
+def read(path: Path, refusals: Refusals) -> MeshData:
+    """Return mesh and materials of a bulk data file; a region is called as its property."""
+    data = MeshData()
+    elements: dict[tuple[str, str], list[list[int]]] = {}
+    properties, materials = {}, {}
+    for place, fields in cards(path):
+        card = fields[0]
+        try:
+            if card == "GRID":
+                if fields[2] not in ("", "0"):
+                    raise ValueError("positions must be in the basic system of coordinates")
+                data.numbers.append(int(fields[1]))
+                data.nodes.append([_real(value) for value in fields[3:6]])
+            elif card in _CORNERS:
+                entries = [int(value) for value in fields[3:] if value]
+                _, order = _SOLIDS[card, len(entries)]
+                row = [int(fields[1]), *(entries[i] for i in order)]
+                elements.setdefault((_SOLIDS[card, len(entries)][0], fields[2]), []).append(row)
+            elif card == "PSOLID":
+                properties[fields[1]] = fields[2]
+            elif card == "MAT1":
+                materials[fields[1]] = _material(fields)
+            elif card in _REFUSED:
+                refusals.leaves_out(card, _REFUSED[card])
+            elif card.startswith("C") and not card.startswith(_NO_ELEMENTS):
+                refusals.leaves_out(card, "no tetrahedron, wedge or hexahedron")
+        except (ValueError, IndexError, KeyError) as error:
+            if str(error).startswith(refusals.label):
+                raise
+            told = f"nodes of an element are missing: {error}" if card in _CORNERS else error
+            raise ValueError(f"{refusals.label}: {place}: {card} cannot be read: {told}") from error
+    for (kind, region), rows in elements.items():
+        table = np.array(rows, dtype=np.int64)
+        data.groups.append(ElementGroup(kind, table[:, 0], table[:, 1:], region))
+        if materials.get(properties.get(region)):
+            data.materials[region] = materials[properties[region]]
+    return data
+
+
+def read_dmig(path: Path, nodes: list[int], name: str) -> sp.csr_array:
+    """Return the symmetric real matrix `name` of DMIG cards on the displacements of `nodes`.
+
+    Raises
+    ------
+    ValueError
+        If there is none, it is not symmetric and real, or it holds rotations or other nodes.
+    """
+    places = {number: 3 * i for i, number in enumerate(nodes)}
+    rows, columns, values = [], [], []
+    known = set()
+    for place, fields in cards(path):
+        if fields[0] != "DMIG":
+            continue
+        known.add(fields[1])
+        if fields[1] != name:
+            continue
+        if fields[2] == "0":
+            if fields[3] != "6" or fields[4] not in ("1", "2"):
+                raise ValueError(
+                    f"{path.name}: {place}: matrix {name} must be symmetric and real (IFO 6, TIN "
+                    f"1 or 2), got IFO {fields[3]}, TIN {fields[4]}"
+                )
+            continue
+        column = _place(places, fields[2], fields[3], f"{path.name}: {place}")
+        for start in range(5, len(fields) - 2, 4):
+            if fields[start]:
+                columns.append(column)
+                rows.append(_place(places, *fields[start : start + 2], f"{path.name}: {place}"))
+                values.append(_real(fields[start + 2]))
+    if not values:
+        raise ValueError(f"{path.name}: has no matrix {name!r}; it has {sorted(known)}")
+    return symmetric(rows, columns, values, 3 * len(nodes))
+
+
+def symmetric(rows: list, columns: list, values: list, size: int) -> sp.csr_array:
+    """Return the symmetric matrix of one triangle (either, or some of both)."""
+    first, second = np.minimum(rows, columns), np.maximum(rows, columns)
+    upper = sp.csr_array((np.asarray(values, float), (first, second)), shape=(size, size))
+    return sp.csr_array(upper + upper.T - sp.diags_array(upper.diagonal()))
+
+
+def cards(path: Path) -> Iterator[tuple[str, list[str]]]:
+    """Return place and fields of every card; small, large and free fields, continued lines."""
+    text = path.read_text(encoding="utf-8", errors="replace")
+    lines = text.splitlines()
+    start = next((i for i, x in enumerate(lines) if x.upper().startswith("BEGIN BULK")), -1)
+    place, fields = "", []
+    for number, line in enumerate(lines[start + 1 :], start + 2):
+        line = line.partition("$")[0].rstrip().expandtabs(8)
+        if not line:
+            continue
+        found = _split(line)
+        if fields and found[0][:1] in ("", "+", "*"):
+            fields += found[1:]
+            continue
+        if fields:
+            yield place, fields
+        if found[0].upper() == "ENDDATA":
+            return
+        if found[0].upper().startswith("INCLUDE"):
+            raise ValueError(f"{path.name}: line {number}: INCLUDE is not read; join the files")
+        place, fields = f"line {number}", [found[0].upper().rstrip("*").strip(), *found[1:]]
+    if fields:
+        yield place, fields
+
+
+def _split(line: str) -> list[str]:
+    """Return the fields of one line but the last one, which names the continuation."""
+    if "," in line:
+        fields = [field.strip() for field in line.split(",")]
+        fields += [""] * (9 - len(fields))
+        return fields[:9]
+    width, count = (16, 4) if "*" in line[:8] else (8, 8)
+    line = line.ljust(80)
+    cuts = [line[8 + i * width : 8 + (i + 1) * width].strip() for i in range(count)]
+    return [line[:8].strip(), *cuts]
+
+
+def _place(places: dict[int, int], node: str, direction: str, label: str) -> int:
+    if int(node) not in places or direction not in ("1", "2", "3"):
+        raise ValueError(
+            f"{label}: node {node}, direction {direction}: is no displacement (1, 2, 3) of the "
+            "nodes given"
+        )
+    return places[int(node)] + int(direction) - 1
+
+
+def _material(fields: list[str]) -> dict[str, float]:
+    fields = fields + [""] * 6
+    young, shear, ratio = (_real(value) for value in fields[2:5])
+    if not fields[4]:
+        ratio = 0.5 * young / shear - 1.0
+    return {"youngsModulus": young, "poissonsRatio": ratio, "density": _real(fields[5])}
+
+
+def _real(text: str) -> float:
+    """Return a number, also of the form 1.5-3 for 1.5e-3."""
+    text = text.upper().replace("D", "E")
+    if "E" not in text:
+        text = text[:1] + text[1:].replace("-", "E-").replace("+", "E+")
+    return float(text or 0.0)
