@@ -15,6 +15,7 @@ from exudyn_rotor.bearings.bearing import Bearing, Linearised
 from exudyn_rotor.bearings.coefficient_table import CoefficientTable
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.magnetic import MagneticBearing
+from exudyn_rotor.bearings.series import FloatingRingBearing, SeriesSupport
 from exudyn_rotor.bearings.support import COEFFICIENTS, Support, acts
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.model.linear_model import LinearModel
@@ -24,7 +25,7 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.summary import directions
 from exudyn_rotor.solid_rotor import SolidRotor
 
-SUPPORTS = (Support, Bearing, MagneticBearing)
+SUPPORTS = (Support, Bearing, MagneticBearing, SeriesSupport, FloatingRingBearing)
 DESCRIBED = (ReducedRotor, SolidRotor, RotorTrain, Foundation, LinearModel)
 _FEW = 4  # entries of an array that is written out
 _WIDTH = 66  # of the last column

@@ -21,6 +21,7 @@ from exudyn_rotor.bearings.controlled_support import (
     PadSupport,
 )
 from exudyn_rotor.bearings.given import linear_supports
+from exudyn_rotor.bearings.series import SeriesSupport
 from exudyn_rotor.bearings.support import NoCoefficientsError, OutsideTableError, Support, acts
 from exudyn_rotor.calls import kept
 from exudyn_rotor.drives.gear_mesh import GearMesh
@@ -46,7 +47,12 @@ _CHANGE = 1e-14  # share of a stiffness that is the rounding of its change by th
 _ROUNDING = 1e-12  # share of a matrix by which it may differ after a turn and be isotropic
 End = tuple[str, str]  # names of a body and of its interface
 Seen = Callable[[End], Terms]  # what a support acts on, seen from outside
-WORDS = {ControlledSupport: "controller", FilmSupport: "voids", PadSupport: "pads"}
+WORDS = {
+    ControlledSupport: "controller",
+    FilmSupport: "voids",
+    PadSupport: "pads",
+    SeriesSupport: "ring",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -255,6 +261,8 @@ def with_own(
 ) -> list[Element]:
     """Return the elements of a support with coordinates of its own."""
     at = _part(_relative(end, bases.get(one.interface)), slice(0, 3))
+    if isinstance(one, SeriesSupport):
+        return _series_elements(one, end, bases.get(one.interface), rate, own)
     if isinstance(one, PadSupport):
         return [_pad_element(one, place, at, end, rate, own) for place in range(one.size)]
     ports = [at]
@@ -278,6 +286,22 @@ def with_own(
     if isinstance(one, ControlledSupport):
         return [Element(ends, matrices, motion, law=one)]
     return [Element((end,), of_film, motion, varies=True, stiffness_varies=True)]
+
+
+def _series_elements(
+    one: SeriesSupport, end: End, base: End | None, rate: float, own: OwnBody
+) -> list[Element]:
+    """Return what acts between a rotor and a ring, and between the ring and its base."""
+
+    def ring(seen: Seen) -> Terms:
+        return {n: np.vstack([U, 0.0 * U]) for n, U in seen((own.name, "")).items()}
+
+    inner = support_element(one.inner, end, None, rate, rate)
+    outer = support_element(one.outer, end, base, rate, rate)
+    return [
+        replace(inner, motion=lambda seen: difference(seen(end), ring(seen))),
+        replace(outer, motion=ring if base is None else lambda s: difference(ring(s), s(base))),
+    ]
 
 
 def _pad_element(
@@ -320,7 +344,7 @@ def elements_of(
         Axes of the own coordinates.
     kind : {'full', 'static', 'undamped'}
         'static' elements have their static stiffness in the place of own coordinates; 'undamped'
-        ones are also without damping and the skew part of their stiffness.
+        ones are also without damping and the skew part of their stiffness, and keep rings.
     begun : int
         Number of own coordinates' bodies that there are already.
 
@@ -333,8 +357,10 @@ def elements_of(
     for name, given in supports.items():
         plain, controlled = linear_supports(given)
         if kind != "full":
-            plain = [*plain, *(Support(c.interface, c.static_stiffness) for c in controlled)]
-            controlled = ()
+            rings = [c for c in controlled if isinstance(c, SeriesSupport) and kind == "undamped"]
+            others = (c for c in controlled if c not in rings)
+            plain = [*plain, *(Support(c.interface, c.static_stiffness) for c in others)]
+            controlled = [ring.undamped() for ring in rings]
         if kind == "undamped":
             plain = [one.undamped() for one in plain]
         ratio = ratios[name]

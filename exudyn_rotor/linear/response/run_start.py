@@ -36,7 +36,7 @@ from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.rotating_axes import axes_of
 
 BASES = ("rotor", "scene")
-_OWN = dict(zip((MagneticBearing, JournalBearing, TiltingPadBearing), WORDS.values(), strict=True))
+_OWN = dict(zip((MagneticBearing, JournalBearing, TiltingPadBearing), WORDS.values(), strict=False))
 _SAME_SPEED = 1e-9  # share by which a wanted speed may differ from a computed one
 _SAME_MOTION = 1e-4  # share of the largest motion of an interface by small harmonics left out
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from exudyn_rotor.bearings.given import Given, check_interfaces
 from exudyn_rotor.bearings.resting import Nonlinear
+from exudyn_rotor.bearings.series import FloatingRingBearing, SeriesSupport
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.equations import Terms, turned
 from exudyn_rotor.linear.model.assembly import Element
@@ -81,6 +82,8 @@ class Problem:
         for name, supports in model.supports.items():
             plain[name] = []
             for one in supports:
+                if isinstance(one, SeriesSupport | FloatingRingBearing):
+                    one = Support(one.interface, one.linearised().static_stiffness)
                 linear = isinstance(one, Support)
                 if not linear and frame == "rotor" and speed:
                     raise ValueError(

@@ -19,6 +19,7 @@ from exudyn_rotor.bearings.bearing import Bearing, bearing_of
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.rolling import RollingBearing
+from exudyn_rotor.bearings.series import FloatingRingBearing, SeriesSupport
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
@@ -198,6 +199,12 @@ def add_supports(
         )
     check_interfaces(supports, body.selection.source.interfaces)
     for support in supports:
+        if isinstance(support, SeriesSupport | FloatingRingBearing):
+            raise ValueError(
+                f"supports: what is in series at {support.interface!r} has a ring, which is a body "
+                "of a scene: add the ring as a rotor with the outer bearing, and give the inner "
+                "one base=ring.marker(…)"
+            )
         if isinstance(support, Bearing):
             _check_law(body, support)
         elif isinstance(support, Support):
