@@ -16,6 +16,7 @@ from ngsolve import Mesh
 
 import exudyn_rotor as er
 from exudyn_rotor.theory.stiffening import stiffening
+from tests.ross_models import example
 
 # ------------------------------------------------------------------ small objects
 
@@ -288,6 +289,7 @@ CALLS = {
     "SaturatingActuator.force": {"place": 1e-5},
     "SaturatingActuator.place_under": {"load": 100.0},
     "ShortJournalBearing": {"load": [0.0, -500.0]},
+    "from_ross": lambda w: {"rotor": example()},
     "SolidRotor.add_disc": {"position": 0.15, "mass": 1.0, "inertia": [0.02, 0.02], "width": 0.4},
     "SolidRotor.clamped": {"names": ["left"]},
     "SolidRotor.from_matrices": lambda w: {
