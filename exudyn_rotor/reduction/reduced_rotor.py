@@ -136,7 +136,7 @@ class ReducedRotor:
         if self.attached is not None:
             checks.instance(self.attached, "attached", Attached, "SolidRotor.reduce(…) makes one")
 
-    @property
+    @cached_property
     def with_attachments(self) -> ReducedRotor | None:
         """The same rotor with more columns, without shapes: how much the modes leave out.
 
@@ -145,7 +145,7 @@ class ReducedRotor:
         """
         return None if self.attached is None else self.attached.rotor
 
-    @property
+    @cached_property
     def in_attached(self) -> np.ndarray | None:
         """The columns of this rotor in the basis of :attr:`with_attachments`, shape (l, k).
 
@@ -156,7 +156,7 @@ class ReducedRotor:
     @property
     def size(self) -> int:
         """Number of columns k, rigid motions included."""
-        return self.invariants.size
+        return self.invariants.S.shape[1]
 
     @cached_property
     def frequencies(self) -> np.ndarray:

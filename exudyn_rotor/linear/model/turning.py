@@ -89,6 +89,7 @@ def _rings(rotor: ReducedRotor, axes: np.ndarray) -> tuple[np.ndarray, np.ndarra
     return np.vstack(points), np.vstack(motion)
 
 
+@kept
 def radius_of_gyration(invariants: Invariants) -> float:
     """Return the radius of gyration about the centre of mass [m]."""
     return float(np.sqrt(np.trace(invariants.J) / invariants.mass))
