@@ -336,7 +336,7 @@ class MagneticConnector(Connector):
         realised = bearing.controller.realisation()
         super().__init__(*ends, own, 2 * len(realised.inertia))
         self.bearing, self.parts, self.outside = bearing, [bearing], False
-        self._sensor, self._sensor_base = sensors
+        self._sensor, self.sensor_base = sensors
         self._turn, self._offset = bearing.control_axes, bearing.sensor_offset
         parts = realised.by_place, realised.by_rate
         self._by_place, self._by_rate = (np.kron(part, self._turn) for part in parts)
@@ -349,8 +349,8 @@ class MagneticConnector(Connector):
         first, second = self._first, self._second
         if self._sensor is not self.end:
             self._sensor.read(q[:first], q_t[:first])
-        if self._sensor_base is not self.base:
-            self._sensor_base.read(q[first:second], q_t[first:second])
+        if self.sensor_base is not self.base:
+            self.sensor_base.read(q[first:second], q_t[first:second])
         self._currents = -self._by_place.dot(q[second:]) - self._by_rate.dot(q_t[second:])
 
     def motions(self) -> list[tuple[float, ...]]:
@@ -370,8 +370,8 @@ class MagneticConnector(Connector):
         law = self.bearing.actuator.law
         force = self._turn.T @ [law(*state) for state in self.axes_states]
         seen = np.array(self._sensor.place[:2])
-        if self._sensor_base is not None:
-            seen = seen - self._sensor_base.place[:2]
+        if self.sensor_base is not None:
+            seen = seen - self.sensor_base.place[:2]
         own = np.outer(self._shares, seen + self._offset).ravel()
         return float(force[0]), float(force[1]), 0.0, None, own
 
@@ -387,8 +387,8 @@ class MagneticConnector(Connector):
         J = np.zeros((4 + self.own, self.size))
         J[:2] = self.rows()[:2]
         J[2:4, : self._first] = self._sensor.rows()[:2]
-        if self._sensor_base is not None:
-            J[2:4, self._first : self._second] = -self._sensor_base.rows()[:2]
+        if self.sensor_base is not None:
+            J[2:4, self._first : self._second] = -self.sensor_base.rows()[:2]
         J[4:, self._second :] = np.eye(self.own)
         L = np.zeros_like(J)
         L[:2, : self._first] = self.end.rate_rows()[:2]
