@@ -103,7 +103,7 @@ def _model(model: LinearModel) -> str:
     uneven = f", {model.unevenness:.2g} of it averaged" if model.unevenness > _ROUNDING else ""
     stiffening = f"centrifugal stiffening: {model.stiffening}"
     if isinstance(model, SceneModel):
-        about = f"scene of {axes}{uneven}, about its {model.scene.about} motion"
+        about = f"scene of {axes}{uneven}, about its {model.about} state"
         return "\n".join([about, model.scene.body.report(), stiffening])
     lines = [_ratios(model, model.driven)] if len(model.rotors) > 1 else []
     lines += [axes + uneven, _acting(model)]

@@ -328,6 +328,7 @@ def elements_of(
     bases: Mapping[str, End],
     turns: int,
     kind: str = "full",
+    begun: int = 0,
 ) -> tuple[list[Element], list[OwnBody]]:
     """Return the elements of a model, and the coordinates that some of them bring.
 
@@ -344,6 +345,8 @@ def elements_of(
     kind : {'full', 'static', 'undamped'}
         'static' elements have their static stiffness in the place of own coordinates; 'undamped'
         ones are also without damping and the skew part of their stiffness, and keep rings.
+    begun : int
+        Number of own coordinates' bodies that there are already.
 
     Raises
     ------
@@ -365,7 +368,7 @@ def elements_of(
             base = bases.get(one.interface)
             elements.append(support_element(one, (name, one.interface), base, ratio, ratio))
         for one in sorted(controlled, key=lambda each: list(WORDS).index(type(each))):
-            own.append(own_body(one, len(own) + 1, turns))
+            own.append(own_body(one, begun + len(own) + 1, turns))
             elements += with_own(one, (name, one.interface), bases, ratio, own[-1])
     for link in links:
         first, second = link.ends

@@ -377,4 +377,5 @@ def rigid_columns_of(alone: RotorAlone) -> tuple[list[str], np.ndarray]:
     if alone.spin is not None and ModeKind.SPIN in alone.rotor.rigid_kinds:
         columns = columns.copy()
         columns[:, alone.rotor.rigid_kinds.index(ModeKind.SPIN)] = alone.spin.momentum
-    return names, columns
+    present = np.linalg.norm(columns, axis=0) > 0.5  # a scene may prescribe some
+    return [name for name, yes in zip(names, present, strict=True) if yes], columns[:, present]

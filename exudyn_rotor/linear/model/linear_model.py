@@ -180,10 +180,16 @@ class LinearModel:
         if not all(each.is_isotropic(0.0) for each in turning):
             return 1
         # a basis with halves of pairs is taken whole where that is constant, too
-        constant = self.foundation is None and not self._elements[1] and len(self._used) == 1
-        constant = constant and not any(e.varies or not e.is_isotropic(0.0) for e in elements)
         halves = any(self._alone(name, False).has_halves for name in self._used)
-        return int(constant and halves)
+        return int(self._is_alike and halves)
+
+    @property
+    def _is_alike(self) -> bool:
+        """Whether what acts on the only rotor is constant and the same in all directions."""
+        elements, own = self._elements
+        if own or self._standing_bodies or len(self._used) > 1:
+            return False
+        return not any(one.varies or not one.is_isotropic(0.0) for one in elements)
 
     @property
     def axes(self) -> str:
@@ -195,6 +201,11 @@ class LinearModel:
         if not at_rest:
             for element in elements:
                 element.check_axes(turns)
+        bodies = (*self._bodies(turns, at_rest), *own)
+        return Assembly(bodies, tuple(elements), 0 if at_rest else turns)
+
+    def _bodies(self, turns: int, at_rest: bool) -> list[RotorBody | StandingBody]:
+        """Return rotors and what stands beside them."""
         bodies = []
         for name in self._used:
             ratio = self.ratios[name]
@@ -208,9 +219,13 @@ class LinearModel:
             bodies.append(
                 rotor_body(name, alone, ratio, turns, is_apart=not self._holds_spin(name, alone))
             )
-        if self.foundation is not None:
-            bodies.append(foundation_body(self.foundation, next(iter(self._used.values()))))
-        return Assembly((*bodies, *own), tuple(elements), 0 if at_rest else turns)
+        return bodies + self._standing_bodies
+
+    @cached_property
+    def _standing_bodies(self) -> list[StandingBody]:
+        if self.foundation is None:
+            return []
+        return [foundation_body(self.foundation, next(iter(self._used.values())))]
 
     def _check_round(self, name: str) -> None:
         uneven = self._own_unevenness[name]

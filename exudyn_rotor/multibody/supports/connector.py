@@ -336,7 +336,7 @@ class MagneticConnector(Connector):
         realised = bearing.controller.realisation()
         super().__init__(*ends, own, 2 * len(realised.inertia))
         self.bearing, self.parts, self.outside = bearing, [bearing], False
-        self._sensor, self._sensor_base = sensors
+        self._sensor, self.sensor_base = sensors
         self._turn, self._offset = bearing.control_axes, bearing.sensor_offset
         parts = realised.by_place, realised.by_rate
         self._by_place, self._by_rate = (np.kron(part, self._turn) for part in parts)
@@ -349,8 +349,8 @@ class MagneticConnector(Connector):
         first, second = self._first, self._second
         if self._sensor is not self.end:
             self._sensor.read(q[:first], q_t[:first])
-        if self._sensor_base is not self.base:
-            self._sensor_base.read(q[first:second], q_t[first:second])
+        if self.sensor_base is not self.base:
+            self.sensor_base.read(q[first:second], q_t[first:second])
         self._currents = -self._by_place.dot(q[second:]) - self._by_rate.dot(q_t[second:])
 
     def motions(self) -> list[tuple[float, ...]]:
@@ -370,8 +370,8 @@ class MagneticConnector(Connector):
         law = self.bearing.actuator.law
         force = self._turn.T @ [law(*state) for state in self.axes_states]
         seen = np.array(self._sensor.place[:2])
-        if self._sensor_base is not None:
-            seen = seen - self._sensor_base.place[:2]
+        if self.sensor_base is not None:
+            seen = seen - self.sensor_base.place[:2]
         own = np.outer(self._shares, seen + self._offset).ravel()
         return float(force[0]), float(force[1]), 0.0, None, own
 
@@ -387,8 +387,8 @@ class MagneticConnector(Connector):
         J = np.zeros((4 + self.own, self.size))
         J[:2] = self.rows()[:2]
         J[2:4, : self._first] = self._sensor.rows()[:2]
-        if self._sensor_base is not None:
-            J[2:4, self._first : self._second] = -self._sensor_base.rows()[:2]
+        if self.sensor_base is not None:
+            J[2:4, self._first : self._second] = -self.sensor_base.rows()[:2]
         J[4:, self._second :] = np.eye(self.own)
         L = np.zeros_like(J)
         L[:2, : self._first] = self.end.rate_rows()[:2]
@@ -501,10 +501,6 @@ class BearingConnector(Connector):
         count = 3 + self.own
         force, (K, D) = np.zeros(count), np.zeros((2, count, count))
         for number, (values, k, d, by_speed) in enumerate(parts):
-            B = np.zeros((2, count))
-            B[:, :2] = np.eye(2)
-            if self.levers is not None:
-                B[:, 3 + number] = -self.levers[number]
             if self.feels:
                 w = self.base.speed
                 k = k + w * d @ np.array([[0.0, 1.0], [-1.0, 0.0]])
@@ -512,17 +508,40 @@ class BearingConnector(Connector):
                     c, s = self._turn
                     R = np.array([[c, -s], [s, c]])
                     k, d, values = R @ k @ R.T, R @ d @ R.T, [*(R @ values[:2]), *values[2:]]
-            force += B.T @ values[:2]
-            K += B.T @ k @ B
-            D += B.T @ d @ B
+            force[:2] += values[:2]
+            K[:2, :2] += k
+            D[:2, :2] += d
             if len(values) > 2:
                 force[2] += values[2]
-                D[:, 2] += B.T @ by_speed[:2]
+                D[:2, 2] += by_speed[:2]
                 D[2, 2] += by_speed[2]
+            if self.levers is not None:
+                self._add_pad(number, values, k, d, by_speed, force, K, D)
         J, L = np.zeros((2, count, self.size))
         J[:3], L[:3] = self.rows()[[0, 1, 5]], self.rate_rows()[[0, 1, 5]]
         J[3:, self._second :] = np.eye(self.own)
         return Force(force, J, L, K, D)
+
+    def _add_pad(
+        self,
+        number: int,
+        values: np.ndarray,
+        k: np.ndarray,
+        d: np.ndarray,
+        by_speed: np.ndarray | None,
+        force: np.ndarray,
+        K: np.ndarray,
+        D: np.ndarray,
+    ) -> None:
+        """Add what the film of a pad does to its tilt, by the lever on its journal's motion."""
+        lever, own = -self.levers[number], 3 + number
+        force[own] += lever @ values[:2]
+        for total, part in ((K, k), (D, d)):
+            total[own, :2] += lever @ part
+            total[:2, own] += part @ lever
+            total[own, own] += lever @ part @ lever
+        if by_speed is not None:
+            D[own, 2] += lever @ by_speed[:2]
 
     @property
     def has_mass(self) -> bool:
