@@ -293,7 +293,9 @@ def _added(model: LinearModel, names: Sequence[str]) -> dict[int, np.ndarray]:
         for count in (None, 0)
     )
     basis = np.eye(model.size) if model.moving_basis is None else model.moving_basis
-    return {n: basis.T @ (X - none.get(n, 0.0)) @ basis for n, X in stiff.items()}
+    added = {n: X - none.get(n, 0.0) for n, X in stiff.items()}
+    own = model.size - len(added[0])  # rings of supports in series, whose coordinates are the last
+    return {n: basis.T @ np.pad(X, (0, own)) @ basis for n, X in added.items()}
 
 
 def _collected(
