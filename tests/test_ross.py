@@ -4,9 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from ross_models import EXAMPLE, bearing, example
 
 from exudyn_rotor import campbell, craig_bampton_modes, from_ross
-from tests.ross_models import EXAMPLE, bearing, example
 
 
 def test_frequencies_are_those_of_ross():

@@ -13,10 +13,10 @@ from exudyn.FEM import FEMinterface
 from models import STEEL
 from netgen.occ import Box, OCCGeometry, Pnt, Z
 from ngsolve import Mesh
+from ross_models import example
 
 import exudyn_rotor as er
 from exudyn_rotor.theory.stiffening import stiffening
-from tests.ross_models import example
 
 # ------------------------------------------------------------------ small objects
 

@@ -15,6 +15,7 @@ from exudyn_rotor import (
     add_rotor,
     add_supports,
     campbell,
+    critical_speed_map,
     critical_speeds,
     harmonic_response,
     linear_model,
@@ -66,6 +67,15 @@ def test_a_ring_is_a_body_between_two_supports():
         ).phasor("left", "n2"),
     ):
         assert analysis(model) == pytest.approx(analysis(on_bodies()), rel=1e-6, abs=1e-12)
+
+
+def test_a_map_adds_springs_beside_rings():
+    given = {"supports": in_series(), "max_speed": 4e3, "accuracy": None}
+    found = critical_speed_map(rotor(), ["left"], [1e6, 1e7], **given)
+    spring = Support("left", 1e7)
+    alone = critical_speeds(rotor(), **given | {"supports": [*in_series(), spring]}).speeds
+    row = found.speeds[1]
+    assert np.sort(row[np.isfinite(row)]) == pytest.approx(np.sort(alone), rel=1e-6)
 
 
 def test_static_deflection_is_that_of_springs_in_series():
@@ -153,3 +163,42 @@ def test_scenes_ask_for_the_ring_as_a_body():
     body = add_rotor(exu.SystemContainer().AddSystem(), rotor().reduce(0), spin=50.0)
     with pytest.raises(ValueError, match="has a ring, which is a body"):
         add_supports(body, in_series())
+
+
+def solid_ring(mass, radius):
+    """A stiff ring of eight masses in two planes."""
+    angles = np.repeat(0.5 * np.pi * np.arange(4), 2)
+    heights = 0.004 * (-1.0) ** np.arange(8)
+    nodes = np.column_stack([radius * np.cos(angles), radius * np.sin(angles), heights])
+    K = np.zeros((24, 24))
+    for i, j in zip(*np.triu_indices(8, 1), strict=True):
+        d = np.zeros((8, 3))
+        d[i] = (nodes[i] - nodes[j]) / np.linalg.norm(nodes[i] - nodes[j])
+        d[j] = -d[i]
+        K += 1e9 * np.outer(d, d)
+    made = SolidRotor.from_matrices(mass / 8.0 * np.eye(24), K, nodes, "z")
+    return made.with_interface("left", range(8)).reduce(0)
+
+
+def test_films_take_a_ring_along_in_a_scene():
+    """As a rotor of its own between two films: its angular momentum grows by their torque."""
+    made, speed, start, mass, radius, end = floating(), 2e3, 8e2, 0.01, 0.0065, 2e-4
+    mbs = exu.SystemContainer().AddSystem()
+    shaft, ring = (
+        add_rotor(mbs, solid_ring(m, r), name=name, spin="free", initial_speed=first)
+        for name, m, r, first in (
+            ("shaft", 0.2, 0.5, speed),
+            ("ring", mass, radius, start),
+        )
+    )
+    add_supports(ring, made.outer)
+    add_supports(shaft, made.inner, base=ring.marker("left"))
+    spin = ring.add_spin_sensor()
+    mbs.Assemble()
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 10, end
+    settings.timeIntegration.verboseMode = 0
+    mbs.SolveDynamic(settings)
+    grown = mbs.GetSensorValues(spin)[-1] - start
+    rate = made.torque(speed, start) / (mass * radius**2)
+    assert grown == pytest.approx(rate * end, rel=5e-3)  # which falls by the decay in this time

@@ -34,7 +34,7 @@ from exudyn_rotor.linear.model.rotor_train import RotorTrain
 from exudyn_rotor.linear.over import forced_over, motions_over
 from exudyn_rotor.linear.stability.stability import least_stable_of
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.results import Result, numbers, storable, words
+from exudyn_rotor.results import Result, numbers, storable, text_table, words
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.units import Units
 
@@ -68,8 +68,8 @@ class Sensitivity(Result):
     >>> result.zones
     ('B',)
     >>> print(result.table())
-    axis      peak |S|  peak [dB]  at [Hz]  zone
-    left, 1        3.5       10.9    31.83  B
+    axis     peak |S|  peak [dB]  at [Hz]  zone
+    left, 1       3.5    10.8814   31.831  B
     """
 
     axes: tuple[str, ...] = words("axes")
@@ -109,14 +109,7 @@ class Sensitivity(Result):
 
     def table(self, *, units: str = "rpm") -> str:
         """Return peaks and zones as text; `units` are 'rpm', 'Hz' or 'SI'."""
-        columns = self.columns(units)
-        names, rows = list(columns), list(zip(*columns.values(), strict=True))
-        width = max(map(len, (*self.axes, "axis"))) + 2
-        at = len(names[3]) + 2
-        lines = [f"{names[0]:<{width}}{names[1]:>8}{names[2]:>11}{names[3]:>{at}}  {names[4]}"]
-        for name, peak, decibel, where, zone in rows:
-            lines.append(f"{name:<{width}}{peak:>8.4g}{decibel:>11.1f}{where:>{at}.4g}  {zone}")
-        return "\n".join(lines)
+        return "\n".join(text_table(self.columns(units)))
 
     def plot(self, ax: Axes | None = None, *, units: str = "rpm") -> Axes:
         """Draw ``|S|`` of each axis over the frequency, with the limits of the zones."""
@@ -191,10 +184,10 @@ def sensitivity(
     >>> bearings = [MagneticBearing(interface=name, **parts) for name in ("left", "right")]
     >>> print(sensitivity(rotor, np.geomspace(10.0, 5e3, 50), supports=bearings).table())
     axis      peak |S|  peak [dB]  at [Hz]  zone
-    left, 1      1.662        4.4      153  A
-    left, 2      1.662        4.4      153  A
-    right, 1     1.662        4.4      153  A
-    right, 2     1.662        4.4      153  A
+    left, 1    1.66174    4.41125  153.016  A
+    left, 2    1.66174    4.41125  153.016  A
+    right, 1   1.66174    4.41125  153.016  A
+    right, 2   1.66174    4.41125  153.016  A
     """
     checks.instance(rotor, "rotor", (ReducedRotor, SolidRotor, RotorTrain))
     values = checks.ascending(frequencies, "frequencies", "rad/s")

@@ -501,10 +501,6 @@ class BearingConnector(Connector):
         count = 3 + self.own
         force, (K, D) = np.zeros(count), np.zeros((2, count, count))
         for number, (values, k, d, by_speed) in enumerate(parts):
-            B = np.zeros((2, count))
-            B[:, :2] = np.eye(2)
-            if self.levers is not None:
-                B[:, 3 + number] = -self.levers[number]
             if self.feels:
                 w = self.base.speed
                 k = k + w * d @ np.array([[0.0, 1.0], [-1.0, 0.0]])
@@ -512,17 +508,40 @@ class BearingConnector(Connector):
                     c, s = self._turn
                     R = np.array([[c, -s], [s, c]])
                     k, d, values = R @ k @ R.T, R @ d @ R.T, [*(R @ values[:2]), *values[2:]]
-            force += B.T @ values[:2]
-            K += B.T @ k @ B
-            D += B.T @ d @ B
+            force[:2] += values[:2]
+            K[:2, :2] += k
+            D[:2, :2] += d
             if len(values) > 2:
                 force[2] += values[2]
-                D[:, 2] += B.T @ by_speed[:2]
+                D[:2, 2] += by_speed[:2]
                 D[2, 2] += by_speed[2]
+            if self.levers is not None:
+                self._add_pad(number, values, k, d, by_speed, force, K, D)
         J, L = np.zeros((2, count, self.size))
         J[:3], L[:3] = self.rows()[[0, 1, 5]], self.rate_rows()[[0, 1, 5]]
         J[3:, self._second :] = np.eye(self.own)
         return Force(force, J, L, K, D)
+
+    def _add_pad(
+        self,
+        number: int,
+        values: np.ndarray,
+        k: np.ndarray,
+        d: np.ndarray,
+        by_speed: np.ndarray | None,
+        force: np.ndarray,
+        K: np.ndarray,
+        D: np.ndarray,
+    ) -> None:
+        """Add what the film of a pad does to its tilt, by the lever on its journal's motion."""
+        lever, own = -self.levers[number], 3 + number
+        force[own] += lever @ values[:2]
+        for total, part in ((K, k), (D, d)):
+            total[own, :2] += lever @ part
+            total[:2, own] += part @ lever
+            total[own, own] += lever @ part @ lever
+        if by_speed is not None:
+            D[own, 2] += lever @ by_speed[:2]
 
     @property
     def has_mass(self) -> bool:

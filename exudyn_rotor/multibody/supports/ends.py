@@ -339,15 +339,15 @@ class RotorEnd:
     def rows(self) -> np.ndarray:
         """Return the rows J (6, size) of displacement and rotation where it has been read."""
         J, R = np.zeros((6, self.size)), axial_rotation(self.angle)
-        arm, spin = np.array(self._arm), self._spin
+        arm, spin = self._arm, self._spin
         J[:3] = self._rows[:3] + R @ self._rows[3:6]
         J[3:] = R @ self._rows[6:]
-        J[:3, spin] = np.array([-arm[1], arm[0], 0.0])
         tilt = self.tilt or (0.0, 0.0, 0.0)
-        J[3:, spin] = np.array([-tilt[1], tilt[0], 1.0])
+        J[:, spin] = -arm[1], arm[0], 0.0, -tilt[1], tilt[0], 1.0
+        x, y, z = arm
         for place, axis, turns in self._held:
-            axis = R @ axis if turns else np.array(axis)
-            J[:3, place], J[3:, place] = np.cross(axis, arm), axis
+            a, b, c = R @ axis if turns else axis
+            J[:, place] = b * z - c * y, c * x - a * z, a * y - b * x, a, b, c
         return J
 
     def turning(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
