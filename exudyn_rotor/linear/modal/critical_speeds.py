@@ -93,6 +93,10 @@ class CriticalSpeeds(ModelResult):
             **basis_column(self.basis_errors, len(self.whirl)),
         }
 
+    @property
+    def splits(self) -> None:
+        """None: two planes of an averaged mesh have one critical speed."""
+
     def table(self, *, units: str = "rpm") -> str:
         """Return the critical speeds as lines of text.
 
