@@ -197,13 +197,24 @@ class ShortFilmBearing(Bearing):
         self, motion: np.ndarray, angles: np.ndarray, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:
         relative = motion / self.clearance
-        inside = np.hypot(*relative[:, :2].T) <= THINNEST
-        force, slopes = np.empty((len(motion), 2)), np.empty((len(motion), 2, 4))
+        e = np.hypot(*relative[:, :2].T)
+        out = np.flatnonzero(e > THINNEST)
+        normal = relative[out, :2] / e[out, None]
+        relative[out, :2] = THINNEST * normal
         whirl = speed if self._film_turns else 0.0
-        found = film_along(relative[inside], whirl, _REST * abs(speed))
-        force[inside] = self._size * found[0]
-        slopes[inside] = self._size / self.clearance * found[1]
-        if not np.all(inside):
-            out = ~inside
-            force[out], slopes[out] = super()._along(motion[out], angles[out], speed)
-        return force, slopes
+        force, slopes = film_along(relative, whirl, _REST * abs(speed))
+        if out.size:  # by the tangent of the last step inside, as :func:`by_tangent`
+            inner = np.hstack([(THINNEST - _STEP) * normal, relative[out, 2:]])
+            ends = film_along(inner, whirl, _REST * abs(speed))
+            rise, steeper = force[out] - ends[0], slopes[out] - ends[1]
+            steps = ((e[out] - THINNEST) / _STEP)[:, None]
+            force[out] += steps * rise
+            n, t = normal[:, :, None], (normal[:, ::-1] * [-1.0, 1.0])[:, :, None]
+            edge = THINNEST * slopes[out, :, :2]
+            around = edge + steps[..., None] * (
+                THINNEST * steeper[..., :2] + _STEP * ends[1][..., :2]
+            )
+            across = around @ t @ (t / e[out, None, None]).swapaxes(1, 2)
+            slopes[out, :, :2] = across - rise[:, :, None] / _STEP @ n.swapaxes(1, 2)
+            slopes[out, :, 2:] += steps[..., None] * steeper[..., 2:]
+        return self._size * force, self._size / self.clearance * slopes
