@@ -138,6 +138,7 @@ if TYPE_CHECKING:
     from exudyn_rotor.reduction.truncation import keep_modes as keep_modes
     from exudyn_rotor.results import Result as Result
     from exudyn_rotor.results import load_result as load_result
+    from exudyn_rotor.ross import from_ross as from_ross
     from exudyn_rotor.solid.carried_prestress import Prestress as Prestress
     from exudyn_rotor.solid.interface import Interface as Interface
     from exudyn_rotor.solid.point_mass import PointMass as PointMass
@@ -173,6 +174,7 @@ _NAMES = {
     "bearings.magnetic": "MagneticBearing",
     "bearings.pid_controller": "PIDController",
     "bearings.rolling": "RollingBearing",
+    "bearings.series": "FloatingRingBearing SeriesSupport",
     "bearings.short_journal": "ShortJournalBearing",
     "bearings.squeeze_film": "SqueezeFilmDamper",
     "bearings.support": "Support",
@@ -238,6 +240,7 @@ _NAMES = {
     "solid.interface": "Interface",
     "solid.point_mass": "PointMass",
     "solid.rigid_disc": "RigidDisc",
+    "ross": "from_ross",
     "solid_rotor": "SolidRotor",
     "strength.field": "StressField",
     "strength.history": "StressHistory stress_history",

@@ -12,8 +12,10 @@ from typing import Any
 import numpy as np
 
 from exudyn_rotor.bearings.bearing import Bearing, Linearised
+from exudyn_rotor.bearings.coefficient_table import CoefficientTable
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.magnetic import MagneticBearing
+from exudyn_rotor.bearings.series import FloatingRingBearing, SeriesSupport
 from exudyn_rotor.bearings.support import COEFFICIENTS, Support, acts
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.model.linear_model import LinearModel
@@ -23,7 +25,7 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.summary import directions
 from exudyn_rotor.solid_rotor import SolidRotor
 
-SUPPORTS = (Support, Bearing, MagneticBearing)
+SUPPORTS = (Support, Bearing, MagneticBearing, SeriesSupport, FloatingRingBearing)
 DESCRIBED = (ReducedRotor, SolidRotor, RotorTrain, Foundation, LinearModel)
 _FEW = 4  # entries of an array that is written out
 _WIDTH = 66  # of the last column
@@ -101,7 +103,7 @@ def _model(model: LinearModel) -> str:
     uneven = f", {model.unevenness:.2g} of it averaged" if model.unevenness > _ROUNDING else ""
     stiffening = f"centrifugal stiffening: {model.stiffening}"
     if isinstance(model, SceneModel):
-        about = f"scene of {axes}{uneven}, about its {model.scene.about} motion"
+        about = f"scene of {axes}{uneven}, about its {model.about} state"
         return "\n".join([about, model.scene.body.report(), stiffening])
     lines = [_ratios(model, model.driven)] if len(model.rotors) > 1 else []
     lines += [axes + uneven, _acting(model)]
@@ -167,9 +169,17 @@ def _coefficient(value: Any, unit: str) -> str:
         return f"{unit}, of the {_words(value.bearing)} at each speed"
     if callable(value):
         return f"{unit}, by a function of the speed"
-    if isinstance(value, tuple):
-        low, high = (value[0][place] * 30.0 / np.pi for place in (0, -1))
-        return f"{unit}, by a table of {len(value[0])} speeds, {low:.6g} to {high:.6g} rpm"
+    if isinstance(value, CoefficientTable):
+        axes = (
+            (value.speeds, "speeds", "rpm", 30.0 / np.pi),
+            (value.frequencies, "frequencies", "Hz", 0.5 / np.pi),
+        )
+        shown = [
+            f"{len(points)} {name}, {points[0] * f:.6g} to {points[-1] * f:.6g} {unit_of}"
+            for points, name, unit_of, f in axes
+            if points is not None
+        ]
+        return f"{unit}, by a table of " + " and ".join(shown)
     if np.ndim(value) == 0:
         return f"{value:.6g} {unit}"
     rows = (", ".join(f"{entry:.6g}" for entry in row) for row in value)

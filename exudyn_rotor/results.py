@@ -295,6 +295,36 @@ _CHECKS: dict[Any, Any] = {
 }
 
 
+def text_table(columns: Mapping[str, np.ndarray]) -> list[str]:
+    """Return columns of a table as lines of text, the first of names.
+
+    Numbers have six digits and stand to the right; what is not known, NaN or a whole number below
+    zero, is '-'. Columns that hold nothing else are left out.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> print("\\n".join(text_table({"Ω": np.array([1.0, np.nan]), "n": np.array([1, -1])})))
+    Ω  n
+    1  1
+    -  -
+    """
+    shown = []
+    for name, values in columns.items():
+        kind = values.dtype.kind
+        if kind == "f":
+            cells = ["-" if np.isnan(value) else f"{value:.6g}" for value in values.tolist()]
+        elif kind in "iu":
+            cells = ["-" if value < 0 else str(value) for value in values.tolist()]
+        else:
+            cells = [{True: "yes", False: "no"}.get(value, value) for value in values.tolist()]
+        if len(values) and set(cells) == {"-"}:
+            continue
+        width = max(map(len, [name, *cells]))
+        shown.append([f"{cell:{'<' if kind == 'U' else '>'}{width}}" for cell in [name, *cells]])
+    return ["  ".join(row).rstrip() for row in zip(*shown, strict=True)]
+
+
 def _short(value: object) -> str:
     """Return an array's shape, or what `repr` says of a small value."""
     if isinstance(value, np.ndarray):

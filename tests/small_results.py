@@ -68,7 +68,7 @@ def results() -> list:
     return [
         Campbell(speeds, *[table] * 5, codes, codes, RNG.normal(size=(3, 4, 2)) + 0j,
                  np.array([[0, 1], [1, 0], [0, 1]]), codes < 2,
-                 ("spin",), "full"),
+                 ("spin",), stiffening="full"),
         CriticalSpeeds(1.0, speeds, speeds, ("forward", "backward", "mixed"), np.array([1, 1, -1]),
                        RNG.normal(size=(4, 3)) + 0j, stiffening="tilt"),
         CriticalSpeedMap(speeds, table, codes, 1.0, stiffening="none"),

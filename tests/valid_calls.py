@@ -13,6 +13,7 @@ from exudyn.FEM import FEMinterface
 from models import STEEL
 from netgen.occ import Box, OCCGeometry, Pnt, Z
 from ngsolve import Mesh
+from ross_models import example
 
 import exudyn_rotor as er
 from exudyn_rotor.theory.stiffening import stiffening
@@ -288,6 +289,7 @@ CALLS = {
     "SaturatingActuator.force": {"place": 1e-5},
     "SaturatingActuator.place_under": {"load": 100.0},
     "ShortJournalBearing": {"load": [0.0, -500.0]},
+    "from_ross": lambda w: {"rotor": example()},
     "SolidRotor.add_disc": {"position": 0.15, "mass": 1.0, "inertia": [0.02, 0.02], "width": 0.4},
     "SolidRotor.clamped": {"names": ["left"]},
     "SolidRotor.from_matrices": lambda w: {
@@ -324,6 +326,15 @@ CALLS = {
         "modal_coordinates": w.coordinates[0],
     },
     "Support": {"stiffness": 1e6 * np.eye(3), "damping": 100.0},
+    "FloatingRingBearing": {"inner": _FILM, "outer": _FILM},
+    "FloatingRingBearing.torque": {"ring_speed": 100.0},
+    "SeriesSupport": {"inner": er.Support("left", 1e6), "outer": er.Support("left", 1e6)},
+    "Support.from_columns": {"source": {"speed": [0.0, 9e3], "kxx": [1e6, 2e6]}},
+    "Support.from_table": {
+        "speeds": [0.0, 9e3],
+        "frequencies": [0.0, 1e3],
+        "stiffness": 1e6 * np.ones((2, 2, 2, 2)),
+    },
     "TiltingPadBearing": {"film": PADS, "load": [0.0, -500.0], "pad_inertia": 1e-5},
     "TorqueCurve": {"curve": ([0.0, 90.0], [5.0, 0.0])},
     "TorqueCurve.torque": {"speed": 10.0},

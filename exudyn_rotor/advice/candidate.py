@@ -6,25 +6,48 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NamedTuple
 
 import exudyn
 import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.equations import PeriodicSystem
 from exudyn_rotor.linear.model.body import RotorBody as LinearBody
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.rotating_axes import axes_of
 
 _BALANCED = 1e-5  # share of the rotor's size by which a mesh may be off the axis
 _ORDER = 2  # harmonics of the speed by which turning coefficients couple: bearings, foundations
+
+
+class Hill(NamedTuple):
+    """Equations at a speed for h harmonics of it: ``(s²M + sD + K) X = F``, each (h k, h k).
+
+    Attributes
+    ----------
+    M, D, K : ndarray
+    rates : ndarray, shape (h k,)
+        What a harmonic adds to the exponent s of a coordinate in the rotor frame, ``imΩ``.
+    orders : ndarray, shape (h,)
+    """
+
+    M: np.ndarray
+    D: np.ndarray
+    K: np.ndarray
+    rates: np.ndarray
+    orders: np.ndarray
+
+    @property
+    def count(self) -> int:
+        """Number k of coordinates."""
+        return len(self.M) // len(self.orders)
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +67,7 @@ class Candidate:
         Whether something acts along the axis; True where nothing is known.
     interfaces : tuple of str
     attached : Candidate or None
-        The same with attachment modes; None where that is not known, as in a scene.
+        The same with attachment modes; None where these are not known, as in a scene.
     held : tuple of int
         Coordinates of `source` without a steady motion: the spin, where nothing holds it. Loads
         that grow slowly would turn an eccentric rotor by far more than they move its interfaces.
@@ -58,7 +81,8 @@ class Candidate:
     interfaces: tuple[str, ...]
     attached: Candidate | None = None
     held: tuple[int, ...] = ()
-    _systems: dict[float, PeriodicSystem] = field(default_factory=dict, repr=False)
+    _hill: dict[float, Hill] = field(default_factory=dict, repr=False)
+    _motions: dict[float, tuple] = field(default_factory=dict, repr=False)
 
     @property
     def _rotor(self) -> LinearBody:
@@ -68,11 +92,6 @@ class Candidate:
     def invariants(self) -> Invariants:
         """Invariants in the basis of the coordinates of the rotor, about a point of the axis."""
         return self._rotor.alone.invariants
-
-    @property
-    def modal(self) -> np.ndarray:
-        """Where the coordinates of the rotor stand among those of `source`."""
-        return np.arange(self._rotor.size)
 
     @cached_property
     def frequencies(self) -> np.ndarray:
@@ -87,43 +106,30 @@ class Candidate:
     def _wide(self, rows: np.ndarray) -> np.ndarray:
         return np.pad(rows, [(0, 0), (0, self.source.size - rows.shape[1])])
 
-    @property
-    def places(self) -> np.ndarray:
-        """Where the flexible modes stand among the coordinates of `source`."""
-        return self.flexible
+    def hill(self, speed: float) -> Hill:
+        """Return the equations in the rotor frame at a speed [rad/s]."""
+        if speed not in self._hill:
+            system, k = self.source.at(speed), self.source.size
+            step = system.step or _ORDER + 1
+            orders = step * np.arange(-(_ORDER // step), _ORDER // step + 1)
+            M = np.kron(np.eye(len(orders)), system.M)
+            D, K = (
+                np.block([[terms.get(m - n, np.zeros((k, k))) for n in orders] for m in orders])
+                for terms in (system.D, system.K)
+            )
+            rates = np.repeat(1j * orders * speed, k)
+            K = K + D * rates + M * rates**2
+            self._hill[speed] = Hill(M, D + 2.0 * M * rates, K, rates, orders)
+        return self._hill[speed]
 
-    def conservative(self, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
-        """Return Hermitian M, G, K of ``(−ν²M + νG + K) X = 0`` and the number of harmonics.
-
-        Damping and circulatory forces are left out.
-        """
-        alone = self.resonating
-        system = self.system(speed) if alone is self.source else alone.at(speed)
-        orders = _harmonics(system)
-        M, D, K = _hill(system, orders)
-        G = 1j * D
-        return M, 0.5 * (G + G.conj().T), 0.5 * (K + K.conj().T), len(orders)
-
-    @cached_property
-    def resonating(self) -> LinearModel:
-        """The source; on what holds it in place of controllers, pads and voids, if it has these."""
-        alone = self.source.undamped()
-        return alone if alone.size < self.source.size else self.source
-
-    def hill(self, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
-        """Return M, D, K in the rotor frame, harmonics of the speed included."""
-        system, orders = self.system(speed), self.orders(speed)
-        return *_hill(system, orders), len(orders)
-
-    def system(self, speed: float) -> PeriodicSystem:
-        """Return the equations at a speed [rad/s]; a scene is probed at many angles once."""
-        if speed not in self._systems:
-            self._systems[speed] = self.source.at(speed)
-        return self._systems[speed]
-
-    def orders(self, speed: float) -> np.ndarray:
-        """Return the harmonics of the speed that :meth:`hill` holds."""
-        return _harmonics(self.system(speed))
+    def motions(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return exponents (2hk,) of the free motions [1/s] and their states (2hk, 2hk)."""
+        if speed not in self._motions:
+            made = self.hill(speed)
+            rates = np.linalg.solve(made.M, np.hstack([-made.K, -made.D]))
+            unit = np.eye(len(rates), 2 * len(rates), k=len(rates))
+            self._motions[speed] = np.linalg.eig(np.vstack([unit, rates]))
+        return self._motions[speed]
 
     def motion(self) -> np.ndarray:
         """Return the displacements that count, across the axis and along it if need be, (p, k)."""
@@ -171,7 +177,9 @@ def candidate(
         checks.flag(axial, "axial")
     if isinstance(target, ReducedRotor):
         return _of_rotor(target, body, supports, interfaces, axial)
-    return _of_scene(target, body, supports, interfaces, axial, speed)
+    if supports is not None:
+        raise ValueError("supports: are for a rotor; a scene has its own connectors")
+    return _of_scene(target, body, interfaces, axial, speed)
 
 
 def _of_rotor(
@@ -216,21 +224,17 @@ def _acts_along(given: object) -> bool:
 def _of_scene(
     mbs: exudyn.MainSystem,
     body: RotorBody | None,
-    supports: Sequence[Support] | Support | None,
     interfaces: Sequence[str] | None,
     axial: bool | None,
     speed: float,
 ) -> Candidate:
     reduced_body(body, how="a scene needs what add_rotor returned")
-    if supports is not None:
-        raise ValueError("supports: are for a rotor; a scene has its own connectors")
     source = linear_model(mbs, body=body, about="given", axes="rotor")
-    rotor = body.selection.source
-    columns = np.abs(source.bodies[0].alone.Q).argmax(axis=0)
-    elastic = [rotor.kinds[column] is ModeKind.ELASTIC for column in columns]
+    rotor, alone = body.selection.source, source.bodies[0].alone
+    elastic = [rotor.kinds[column] is ModeKind.ELASTIC for column in np.abs(alone.Q).argmax(axis=0)]
     return Candidate(
         source=source,
-        flexible=np.flatnonzero((np.diag(source.bodies[0].alone.invariants.K) > 0.0) & elastic),
+        flexible=np.flatnonzero((np.diag(alone.invariants.K) > 0.0) & elastic),
         grounded=rotor.grounded,
         supported=True,
         axial=_scene_acts_along(source, body, speed) if axial is None else bool(axial),
@@ -249,34 +253,9 @@ def _scene_acts_along(source: LinearModel, body: RotorBody, speed: float) -> boo
     Q, kinds = source.bodies[0].alone.Q, body.selection.source.rigid_kinds
     if ModeKind.AXIAL not in kinds:
         return True
-    along = Q[kinds.index(ModeKind.AXIAL)]
-    system = source.at(speed)
-    scale = max(np.abs(term).max() for term in system.K.values())
-    return any(
-        np.abs(along @ term[: len(along)]).max() > 1e-9 * scale for term in system.K.values()
-    )
-
-
-def _harmonics(system: PeriodicSystem) -> np.ndarray:
-    """Return the harmonics of the speed that coefficients couple."""
-    step = system.step or _ORDER + 1
-    return step * np.arange(-(_ORDER // step), _ORDER // step + 1)
-
-
-def _hill(system: PeriodicSystem, orders: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return M, D, K of ``(s²M + sD + K) X`` for harmonics X, in Hill's matrices (h k, h k)."""
-    h, k = len(orders), system.size
-    none = np.zeros((h, k, h, k), dtype=complex)
-    M, D, K = none.copy(), none.copy(), none.copy()
-    for a, m in enumerate(orders):
-        for b, n in enumerate(orders):
-            for blocks, terms in ((D, system.D), (K, system.K)):
-                if m - n in terms:
-                    blocks[a, :, b] = terms[m - n]
-        M[a, :, a] = system.M
-    M, D, K = (X.reshape(h * k, h * k) for X in (M, D, K))
-    rate = np.repeat(1j * orders * system.speed, k)
-    return M, D + 2.0 * M * rate, K + D * rate + M * rate**2
+    along, terms = Q[kinds.index(ModeKind.AXIAL)], list(source.at(speed).K.values())
+    scale = max(np.abs(term).max() for term in terms)
+    return any(np.abs(along @ term[: len(along)]).max() > 1e-9 * scale for term in terms)
 
 
 def _named(interfaces: Sequence[str] | None, known: tuple[str, ...]) -> tuple[str, ...]:

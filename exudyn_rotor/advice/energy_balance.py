@@ -20,7 +20,7 @@ from exudyn_rotor import plotting
 from exudyn_rotor.advice.run_loads import external_load
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.multibody.full.full_body import reduced_body
-from exudyn_rotor.multibody.rotor.locking import driving_force
+from exudyn_rotor.multibody.rotor.frame import driving_force
 from exudyn_rotor.multibody.rotor.record import Record
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.results import Result, numbers, storable

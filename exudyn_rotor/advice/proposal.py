@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import exudyn
@@ -12,19 +12,16 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.advice.candidate import Candidate, candidate
-from exudyn_rotor.advice.mode_choice import choose_modes
-from exudyn_rotor.advice.reasons import level_reasons, mode_reasons, step_reason, unmet
+from exudyn_rotor.advice.mode_choice import GROWTH, Truncation, choose_modes
 from exudyn_rotor.advice.request import Request
-from exudyn_rotor.advice.spin_coupling import spin_coupling_reasons
 from exudyn_rotor.advice.step_size import Step, choose_step
-from exudyn_rotor.advice.stiffening_level import choose_level
 from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.truncation import keep_modes
 from exudyn_rotor.theory.formulation import ConstantSpeed, Formulation, PrescribedMotion
-from exudyn_rotor.theory.stiffening import LEVELS
+from exudyn_rotor.theory.stiffening import LEVELS, estimated_error
 from exudyn_rotor.units import IN_HERTZ
 
 _NO_INERTIA = 1e-12  # share of all moments of inertia: masses on the axis alone
@@ -217,10 +214,10 @@ def propose(
     band ends at f + Ω. Modes in the band stay; of the others those whose absence changes the
     response of the interfaces by less than half the accuracy leave, see
     :mod:`exudyn_rotor.advice.mode_choice`. Without known supports the flexibility of the flexible
-    modes alone is the response: what a mode adds to it at rest is ``‖φ_k‖²/ω_k²``. All of this is
-    relative to the modes given. What static responses to loads at the interfaces add to those is in
-    the reasons; above half the accuracy, or with all modes in the band, that warns. Other nodes and
-    the stress err by more; :func:`exudyn_rotor.check_run` with `solid` says by how much.
+    modes alone is the response. What static responses to loads at the interfaces add to the modes
+    given is in the reasons; above half the accuracy, or with all modes in the band, that warns.
+    Other nodes and the stress err by more; :func:`exudyn_rotor.check_run` with `solid` says by how
+    much.
 
     Step: generalised alpha makes the period of a motion of frequency ω longer by ``(ωh)²/12`` of
     itself (0.0844 (ωh)² at Exudyn's spectral radius 0.9). Half the accuracy is allowed for that at
@@ -255,15 +252,14 @@ def propose(
     given = candidate(target, body, supports, interfaces, axial, request.high)
     spin = _spin(given, request, spin)
     chosen = choose_modes(given, request)
-    level = choose_level(given, request, chosen.kept)
     translation, why, step = _translation(given, request, spin)
-    for message in unmet(given, request, chosen, level, tilt):
+    for message in _unmet(given, request, chosen, tilt):
         warnings.warn(message, AssumptionWarning, stacklevel=2)
     hertz = IN_HERTZ * given.frequencies
     return Proposal(
         translation=translation,
         spin=spin,
-        stiffening=level.name,
+        stiffening="full" if given.invariants.K2 is not None else "tilt",
         modes=chosen.kept,
         labels=tuple(f"mode {i + 1} ({hertz[i]:.4g} Hz)" for i in chosen.kept),
         total=hertz.size,
@@ -271,13 +267,7 @@ def propose(
         step=step.size,
         speeds=(request.low, request.high),
         accuracy=request.accuracy,
-        reasons=(
-            why,
-            *mode_reasons(given, request, chosen),
-            *level_reasons(request, level),
-            *spin_coupling_reasons(given, request, spin),
-            step_reason(request, step),
-        ),
+        reasons=(why, *_mode_reasons(given, request, chosen), _step_reason(request, step)),
     )
 
 
@@ -325,3 +315,65 @@ def _translation(given: Candidate, request: Request, spin) -> tuple[str, str, St
         )
         return "free", why, follows
     return "none", "one speed: all motion is in the modes, and the matrices are constant", step
+
+
+def _mode_reasons(given: Candidate, request: Request, chosen: Truncation) -> list[str]:
+    """Return why these modes, in sentences."""
+    held = "on its supports" if given.supported else "by its own flexibility, supports not known"
+    lines = [
+        f"modes: {chosen.in_band} lie in the band up to (f + Ω)/2π = "
+        f"{IN_HERTZ * request.highest:.4g} Hz of the rotor frame",
+        f"modes: the {given.frequencies.size - chosen.kept.size} left out change the response "
+        f"of interfaces {held} by {chosen.error:.2g}, resonances damped by {GROWTH:.0%} at least",
+    ]
+    if chosen.missing is not None:
+        lines.append(
+            "modes: static responses to loads at the interfaces, which those given do not hold, "
+            f"change the largest of it by {chosen.missing:.2g}"
+        )
+    return lines
+
+
+def _step_reason(request: Request, step: Step) -> str:
+    """Return why this step."""
+    if np.isnan(step.speed):
+        return (
+            f"step: ωh = {request.highest * step.size:.3g} at the end of the band, so periods are "
+            f"too long by {request.allowed:g} of themselves there"
+        )
+    return (
+        f"step: changes the response at {step.speed:.4g} rad/s, to a load at {step.frequency:.4g} "
+        f"rad/s in the rotor frame, by {request.allowed:g}, or the growth of a motion there by "
+        "half; a resonance is near, or a motion that is slow in space"
+    )
+
+
+def _unmet(
+    given: Candidate, request: Request, chosen: Truncation, tilt: float | None
+) -> Iterator[str]:
+    """Yield where the accuracy is not met, each with what to do."""
+    missing = chosen.missing if given.supported else None
+    if missing is not None and missing > request.allowed:
+        yield (
+            f"the {given.frequencies.size} flexible modes given miss {missing:.2g} of the "
+            f"response, above half the accuracy {request.accuracy:g}: reduce the rotor with more "
+            "modes, or with craig_bampton_modes, and ask again"
+        )
+    if given.frequencies.size and given.frequencies.max() < request.highest:
+        yield (
+            f"all {given.frequencies.size} flexible modes given lie in the band up to "
+            f"{IN_HERTZ * request.highest:.4g} Hz of the rotor frame, and more may: reduce the "
+            "rotor with more modes and ask again"
+        )
+    if tilt is not None and tilt**2 > request.accuracy:
+        yield (
+            f"a tilt of {tilt:.3g} rad makes an error of its square, {tilt**2:.2g}, above the "
+            f"accuracy {request.accuracy:g}: one fixed axis does not suffice, use Exudyn's 3D body"
+        )
+    softened = estimated_error(given.invariants, request.high)
+    if softened > request.accuracy:
+        yield (
+            f"flexible modes soften falsely: frequencies change by about {softened:.2g}, above "
+            f"the accuracy {request.accuracy:g}; reduce the rotor with prestress=True and ask "
+            "again, which allows stiffening='full'"
+        )

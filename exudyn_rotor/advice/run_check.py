@@ -10,51 +10,17 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.advice.check_result import CheckRow, RunCheck
-from exudyn_rotor.advice.full_measures import FullMeasures
-from exudyn_rotor.advice.left_out_fields import check_model
+from exudyn_rotor.advice.left_out import check_model
 from exudyn_rotor.advice.proposal import Proposal
-from exudyn_rotor.advice.request import PERIOD_ERROR
 from exudyn_rotor.advice.run_measures import Measures
-from exudyn_rotor.advice.run_rows import rows, rows_at_nodes
+from exudyn_rotor.advice.run_rows import ALWAYS, LIMITS, OF_MODES, rows_at_nodes
 from exudyn_rotor.advice.warning import AssumptionWarning
-from exudyn_rotor.multibody.full.full_body import FullRotorBody
-from exudyn_rotor.multibody.full.full_record import recorded_states
+from exudyn_rotor.multibody.full.full_body import FullRotorBody, recorded_states
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 
 _SAME = 1e-6  # relative difference of masses and moments of one rotor
-
-
-def default_limits(accuracy: float) -> dict[str, float]:
-    """Return the limits of all checks for an accuracy; see :func:`check_run`."""
-    root = float(np.sqrt(accuracy))
-    return {
-        "finite": 0.0,
-        "tilt": root,
-        "deflection": root,
-        "travel": 0.1,
-        "adrift": 1.0,
-        "locked": 1e-5,
-        "any angle": 1e-3,
-        "film": 1.0,
-        "frozen spin": accuracy,
-        "connections": 0.0,
-        "unresisted load": 0.01,
-        "top modes": 0.01,
-        "residual": accuracy,
-        "displacement": accuracy,
-        "stress": root,
-        "strain": accuracy,
-        "stiffening": accuracy,
-        "divergence": 0.5,
-        "axial force": 2.0 * accuracy,
-        "step": accuracy,
-        "spin step": float(np.sqrt(accuracy / PERIOD_ERROR)),
-        "explicit": 1.0,
-        "yield": 1.0,
-        "speed": 1.0 + accuracy,
-    }
 
 
 def check_run(
@@ -80,8 +46,8 @@ def check_run(
         The rotor; adds the check of yielding where it was reduced with a yield stress.
     solid : SolidRotor, optional
         The full model of `reduced`, which must be the rotor in the scene, with shapes. Adds the
-        errors at nodes: the residual of the full model under the recorded motion and loads, solved
-        statically at 60 instants. Takes a factor of the stiffness and as many solutions.
+        errors at nodes: the static response of the full model to the loads at 60 instants. Takes a
+        factor of the stiffness and as many solutions.
     nodes : array_like of int, optional
         Nodes to look at in these, as of ``solid.nearest_node(…)``; all by default.
     proposal : Proposal, optional
@@ -106,10 +72,8 @@ def check_run(
 
     Notes
     -----
-    Checks, with a for the accuracy; "size" is the rotor's radius of gyration. A full body has no
-    modes and no record of loads, hence none of the rows ``unresisted load``, ``top modes``,
-    ``residual``, ``displacement``, ``stress``, ``divergence``, ``axial force``
-    and ``explicit``.
+    Checks, with a for the accuracy; "size" is the rotor's radius of gyration. A full body has the
+    rows up to ``any angle``.
 
     ``displacement`` and ``stress`` are the first correction of the modes' motion. They do not see
     the error of the mesh, loads elsewhere than at interfaces and markers of ``body.add_marker``,
@@ -127,49 +91,40 @@ def check_run(
     ===================  =======  ==================================================================
     ``tilt``             √a       largest rigid tilt [rad]; terms of its second order are left out
     ``deflection``       √a       root mean square flexible displacement over the size, likewise
-    ``travel``           0.1      the centre of mass off a frame that does not follow, over the
-                                  size; exact, but with a free spin the mass matrix then changes
-                                  much in every step
-    ``adrift``           1        the same distance where the spin is prescribed, too: nothing holds
-                                  the rotor in its place
+    ``adrift``           1        the centre of mass off its place in the frame, over the size
     ``locked``           1e-5     locked coordinates off their place [rad], [size]
-    ``any angle``        1e-3     after ``mbs.SolveStatic()`` of a rotor that spins: forces that
-                                  change with its angle, over the loads
+    ``connections``      0        connectors, joints and loads that the rotor cannot carry:
+                                  ``body.check_connections()`` names them
+    ``step``             a        error by the step, 0.0844 h² times the accelerations of the
+                                  vibrations over their displacements; larger for slow motion in
+                                  space that is integrated in the rotor frame; next to a resonance
+                                  amplitudes err by more, by the amplification
     ``film``             1        displacement of a journal at the end over that beyond which its
                                   film is too thin and the law goes on by its tangent
     ``frozen spin``      a        angular momentum of the changing moment of inertia over the whole,
                                   left out by ``spin_coupling='frozen'``; the error of spin speeds
-    ``connections``      0        connectors, joints and loads that the rotor cannot carry:
-                                  ``body.check_connections()`` names them
-    ``unresisted load``  0.01     load on a locked coordinate, or moment by a second-order arm, that
-                                  no equation resists, over the largest load
+    ``any angle``        1e-3     after ``mbs.SolveStatic()`` of a rotor that spins: forces that
+                                  change with its angle, over the loads
+    ``unresisted load``  0.01     what ``connections`` counts, as a share of the largest load
+    ``stiffening``       a        stiffening that the level leaves out, as relative change of
+                                  frequency of the recorded motion; estimated without a prestress
     ``top modes``        0.01     elastic energy in the highest fifth of the flexible modes over the
                                   energy of the motion: how much the modes beyond may hold
     ``residual``         a        static deflection of interfaces against the mean motion of the
                                   rotor, by loads at interfaces and the centrifugal load, that the
-                                  modes leave out, over their displacement; stiff supports let the
-                                  interfaces themselves err by less; not for other loads elsewhere
+                                  modes leave out, over their displacement
+    ``axial force``      2a       axial force between interfaces over the load at which the shaft
+                                  buckles, hinged where the force acts, less what the prestress
+                                  holds; frequencies err by half of it
+    ``explicit``         1        explicit solvers: step over that at which undamped motion grows
+                                  (by e in the run, with Euler's method and the midpoint rule)
+    ``yield``            1        static von Mises stress, by rotation and at rest, over the yield
+                                  stress; the larger of those at rest and at the highest speed
     ``displacement``     a        what the modes leave out at nodes, likewise, over the largest
                                   displacement there; with `solid`
     ``stress``           √a       von Mises stress of that, over the largest there, the static
                                   stress by the spin added as by :class:`StressField`; with `solid`
                                   and stress modes. Not the error of the mesh
-    ``strain``           a        mean centrifugal strain as the modes show it; the relative error
-                                  of linear elasticity
-    ``stiffening``       a        stiffening that the level leaves out, as relative change of
-                                  frequency of the recorded motion; estimated without a prestress
-    ``divergence``       0.5      Ω²/Ω_d²; Ω_d is the speed at which flexible modes begin to grow
-    ``axial force``      2a       axial force between interfaces over the load at which the shaft
-                                  buckles, hinged where the force acts, less what the prestress
-                                  holds; frequencies err by half of it
-    ``step``             a        relative period error 0.0844 (ωh)² of the recorded motion, larger
-                                  for slow motion in space that is integrated in the rotor frame;
-                                  next to a resonance amplitudes err by more, by the amplification
-    ``spin step``        √(a/…)   spin angle per step [rad]: the same error at the spin speed
-    ``explicit``         1        explicit solvers: step over that at which undamped motion grows
-                                  (by e in the run, with Euler's method and the midpoint rule)
-    ``yield``            1        static von Mises stress, by rotation and at rest, over the yield
-                                  stress; the larger of those at rest and at the highest speed
     ``speed``            1 + a    highest speed over that of the proposal
     ===================  =======  ==================================================================
 
@@ -206,12 +161,11 @@ def check_run(
     checks.flag(warn, "warn")
     known = _limits(checks.tolerance(accuracy, "accuracy"), limits)
     at_nodes = _nodes(body, reduced, solid, nodes)
-    measures = _measures(body)
-    record = measures.record
+    record = recorded_states(body) if isinstance(body, FullRotorBody) else body.recorded()
     if np.all(np.isfinite(record.q)) and np.all(np.isfinite(record.q_t)):
-        made = list(rows(measures, reduced, proposal))
+        made = list(_rows(Measures(body, record, reduced), proposal))
         if at_nodes is not None and len(record.time) > 1:
-            made += rows_at_nodes(measures, reduced, solid, at_nodes)
+            made += rows_at_nodes(Measures(body, record, reduced), solid, at_nodes)
     else:
         made = [("finite", "coordinates that are not finite", np.inf, "the solution failed")]
     checked = tuple(CheckRow(name, what, v, known[name], then) for name, what, v, then in made)
@@ -221,10 +175,22 @@ def check_run(
     return result
 
 
-def _measures(body: RotorBody | FullRotorBody) -> Measures | FullMeasures:
-    if isinstance(body, FullRotorBody):
-        return FullMeasures(body, recorded_states(body))
-    return Measures(body, body.recorded())
+def _rows(measures: Measures, proposal: Proposal | None) -> Iterator[tuple[str, str, float, str]]:
+    """Yield name, meaning, value and advice of the rows that a run has."""
+    full = isinstance(measures.body, FullRotorBody)
+    for row in ALWAYS if full else (*ALWAYS, *OF_MODES):
+        value = row.measure(measures)
+        if value is not None:
+            yield row.name, row.meaning, float(value), row.advice
+    if proposal is not None:
+        fastest, most = measures.fastest, proposal.speeds[1]
+        ratio = fastest / most if most else np.inf
+        yield (
+            "speed",
+            "highest speed over that of the proposal",
+            ratio if fastest else 0.0,
+            f"{fastest:.6g} rad/s were reached; propose again with that",
+        )
 
 
 def _messages(result: RunCheck, ran: bool) -> Iterator[str]:
@@ -275,7 +241,7 @@ def _nodes(
 
 
 def _limits(accuracy: float, limits: Mapping[str, float] | None) -> dict[str, float]:
-    known = default_limits(accuracy)
+    known = {name: float(limit(accuracy)) for name, limit in LIMITS.items()}
     if limits is not None:
         checks.mapping(limits, "limits", "limit of a check", known)
         for name, value in limits.items():

@@ -37,3 +37,18 @@ def weight(body: RotorBody) -> np.ndarray:
         return np.zeros(3)
     gravity = body.mbs.GetLoadParameter(body.gravity_load, "loadVector")
     return body.motion.invariants.mass * np.asarray(gravity)
+
+
+def external_force(body: RotorBody, record: Record) -> float:
+    """Return the largest resultant of the loads on a reduced rotor in a run, by its equations [N].
+
+    Modes that do not move the centre of mass count by their share ``√m`` of a unit of modal mass.
+    """
+    if len(record.time) < 2:
+        return 0.0
+    motion, largest = body.motion, 0.0
+    for index in instants(record, 50):
+        external = external_load(body, record, index)[1]
+        modal = np.linalg.norm(external[motion.modes]) * np.sqrt(motion.invariants.mass)
+        largest = max(largest, modal, np.linalg.norm(external[motion.translations]))
+    return float(largest)

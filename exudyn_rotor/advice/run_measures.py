@@ -7,21 +7,22 @@ from functools import cached_property
 
 import exudyn
 import numpy as np
-import scipy.linalg
 
 from exudyn_rotor.advice.request import PERIOD_ERROR
+from exudyn_rotor.advice.run_loads import external_force
 from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.multibody.rotor.connections import lost_items
 from exudyn_rotor.multibody.rotor.record import Record, Solver, last_solver
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.reduction.mode_kind import ModeKind
-from exudyn_rotor.theory.stiffening import stiffening, tilt_factors
+from exudyn_rotor.reduction.fields import ModeKind
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.solid.tensor import von_mises
+from exudyn_rotor.theory.invariants import inertia_tensor
+from exudyn_rotor.theory.stiffening import stiffening
 
+_FORCE = exudyn.OutputVariableType.Force
 _TOP = 0.2  # share of the flexible modes, from the top, that shows what lies beyond
 _RINGING = 1.5  # energy about the static stretch over that of a start without it, with a margin
-_SPEEDS = np.linspace(0.1, 2.0, 20)  # looked at for growth, over the highest speed reached
-_KINDS = exudyn.OutputVariableType
-
-_HALVES = (slice(0, 3), slice(3, 6))  # translation, and tilt times the size
 _EXPLICIT = {"RK33": np.sqrt(3.0), "VelocityVerlet": 2.0}  # ωh that undamped motion bears
 _RK44 = np.sqrt(8.0)  # likewise; those with step control keep below it themselves
 
@@ -33,11 +34,15 @@ class Measures:
     Attributes
     ----------
     body : RotorBody
+        Reduced or full.
     record : Record
+    reduced : ReducedRotor, optional
+        Knows the yield stress.
     """
 
     body: RotorBody
     record: Record
+    reduced: ReducedRotor | None = None
 
     @cached_property
     def invariants(self):
@@ -57,67 +62,87 @@ class Measures:
         inv = self.invariants.moved(self.invariants.center)
         return float(np.sqrt(np.trace(inv.J) / inv.mass))
 
-    @cached_property
-    def _q(self) -> np.ndarray:
-        return self.record.q[:, self.body.layout.unknowns]
-
-    @cached_property
-    def _q_t(self) -> np.ndarray:
-        return self.record.q_t[:, self.body.layout.unknowns]
+    def _coordinates(self, rows: np.ndarray) -> np.ndarray:
+        return rows[:, self.body.layout.unknowns]
 
     @cached_property
     def zeta(self) -> np.ndarray:
-        """Modal coordinates (s, m)."""
-        return self._q[:, self.body.motion.modes]
+        """Modal coordinates (s, m); of a full body the displacements of all nodes."""
+        return self._coordinates(self.record.q)[:, self.body.motion.modes]
 
     @cached_property
     def zeta_t(self) -> np.ndarray:
         """Modal velocities (s, m)."""
-        return self._q_t[:, self.body.motion.modes]
+        return self._coordinates(self.record.q_t)[:, self.body.motion.modes]
 
     @cached_property
     def fastest(self) -> float:
         """Highest spin speed, either way round [rad/s]."""
         return float(np.abs(self.record.speed).max())
 
+    @cached_property
+    def _mean_rotation(self) -> np.ndarray:
+        return self.zeta @ self.invariants.mean_rotation.T
+
+    @cached_property
+    def _mean_translation(self) -> np.ndarray:
+        return self.zeta @ self.invariants.S.T / self.invariants.mass
+
     def tilt(self) -> float:
         """Return the largest rigid tilt out of the axis [rad]."""
-        e = self.invariants.direction
-        rotation = self.zeta @ tilt_factors(self.invariants)[0][:3].T
-        across = rotation - np.outer(rotation @ e, e)
-        return float(np.linalg.norm(across, axis=1).max())
+        e, rotation = self.invariants.direction, self._mean_rotation
+        return float(np.linalg.norm(rotation - np.outer(rotation @ e, e), axis=1).max())
 
     def deflection(self) -> float:
         """Return the largest root mean square flexible displacement over the rotor's size."""
-        moved = np.linalg.norm(self.zeta[:, self.flexible], axis=1) / np.sqrt(self.invariants.mass)
-        return float(moved.max() / self.size)
-
-    def travel(self) -> float:
-        """Return how far the centre of mass leaves a frame that does not follow, over the size.
-
-        Zero where the spin is prescribed: the mass matrix is constant there.
-        """
-        return self.adrift() if self.body.formulation.has_spin else 0.0
+        inv = self.invariants
+        theta, turned = inertia_tensor(inv), self._mean_rotation
+        bent = _squares(inv.M, self.zeta) - inv.mass * (self._mean_translation**2).sum(axis=1)
+        bent -= np.einsum("si,ij,sj->s", turned, theta, turned)
+        return float(np.sqrt(max(bent.max(), 0.0) / inv.mass) / self.size)
 
     def adrift(self) -> float:
         """Return how far the centre of mass leaves its place in the frame, over the size."""
-        moved = np.linalg.norm(self.zeta @ self.invariants.S.T, axis=1) / self.invariants.mass
-        return float(moved.max() / self.size)
+        return float(np.linalg.norm(self._mean_translation, axis=1).max() / self.size)
+
+    def unresisted(self) -> float:
+        """Return the largest load or force that the rotor cannot carry, over the largest load.
+
+        Moments count over the rotor's size. Values are those at the end of the run.
+        """
+        mbs, largest = self.body.mbs, 0.0
+        for is_load, number in lost_items(self.body):
+            if is_load:
+                load = mbs.GetLoad(number)
+                size = float(np.linalg.norm(mbs.GetLoadValues(number)))
+                marker = mbs.GetMarker(int(load["markerNumber"]))
+                turns = "Torque" in load["loadType"] or int(marker.get("coordinate", 0)) in (
+                    3,
+                    4,
+                    5,
+                )
+                largest = max(largest, size / self.size if turns else size)
+            else:
+                force = mbs.GetObjectOutput(number, _FORCE)
+                largest = max(largest, float(np.linalg.norm(force)))
+        if not largest:
+            return 0.0
+        return largest / max(largest, external_force(self.body, self.record))
 
     def frozen(self) -> float | None:
         """Return the share of the angular momentum that a frozen spin leaves out.
 
-        That of ``½ωc + ζ̇ᵀWζ``, c the change of the moment of inertia about the axis, in Θ times the
-        highest speed: the error of spin speeds. None for a spin that is not frozen.
+        It is ``½ωc + ζ̇ᵀWζ``, c the change of the moment of inertia about the axis, over Θ times
+        the highest speed: the error of spin speeds. None for a spin that is not frozen.
         """
         if not self.body.formulation.has_frozen_spin:
             return None
         terms, zeta = self.body.motion.spin_terms, self.zeta
-        change = 2.0 * zeta @ terms.h + np.einsum("si,is->s", zeta, terms.C_hat @ zeta.T)
+        change = 2.0 * zeta @ terms.h + _squares(terms.C_hat, zeta)
         left = 0.5 * self.record.speed * change
         left += np.einsum("si,is->s", self.zeta_t, terms.W @ zeta.T)
-        momentum_scale = self.invariants.Theta * self.fastest
-        return float(np.abs(left).max() / momentum_scale) if momentum_scale else 0.0
+        momentum = self.invariants.Theta * self.fastest
+        return float(np.abs(left).max() / momentum) if momentum else 0.0
 
     def locked(self) -> float:
         """Return how far locked coordinates are off: angles [rad], lengths over the size."""
@@ -135,23 +160,22 @@ class Measures:
     @cached_property
     def _energies(self) -> tuple[np.ndarray, float]:
         """Elastic energies (s, flexible modes), and the energy of the whole vibration [J]."""
-        modes = self.flexible
-        stiffness = np.diag(self.invariants.K)[modes]
-        elastic = 0.5 * stiffness * self.zeta[:, modes] ** 2
-        inv, omega = self.invariants, self.record.speed
+        modes, inv, omega = self.flexible, self.invariants, self.record.speed
+        elastic = 0.5 * np.diag(inv.K)[modes] * self.zeta[:, modes] ** 2
         # inertial velocity of the deviation from rigid rotation: ζ̇ + ω ẽ ζ
-        kinetic = 0.5 * np.einsum("si,ij,sj->s", self.zeta_t, inv.M, self.zeta_t)
+        kinetic = 0.5 * _squares(inv.M, self.zeta_t) + 0.5 * omega**2 * _squares(inv.C, self.zeta)
         kinetic += omega * np.einsum("si,ij,sj->s", self.zeta_t, inv.G, self.zeta)
-        kinetic += 0.5 * omega**2 * np.einsum("si,ij,sj->s", self.zeta, inv.C, self.zeta)
-        kinetic += self._drift
+        frame = self._coordinates(self.record.q_t)[:, self.body.motion.translations]
+        kinetic += 0.5 * inv.mass * ((frame - frame.mean(axis=0)) ** 2).sum(axis=1)
         return elastic, float(elastic.sum(axis=1).max(initial=0.0) + kinetic.max(initial=0.0))
 
     @cached_property
-    def _drift(self) -> np.ndarray:
-        """Kinetic energy (s,) of the frame's translation about its mean velocity [J]."""
-        count = self.body.motion.formulation.translation_count
-        drift = self._q_t[:, :count] - self._q_t[:, :count].mean(axis=0)
-        return 0.5 * self.invariants.mass * (drift**2).sum(axis=1)
+    def _stretch(self) -> np.ndarray:
+        """Static centrifugal deformation (s, m), about which the rotor vibrates."""
+        inv, modes = self.invariants, self.flexible
+        shape = np.zeros(inv.size)
+        shape[modes] = inv.h[modes] / np.diag(inv.K)[modes]
+        return self.record.speed[:, None] ** 2 * shape
 
     def top_share(self) -> float:
         """Return the elastic energy in the highest fifth of the modes over that of all motion.
@@ -169,116 +193,73 @@ class Measures:
         top = slice(-max(1, round(_TOP * modes.size)), None)
         return float(np.maximum(elastic - ringing, 0.0)[:, top].sum(axis=1).max() / energy)
 
-    def strain(self) -> float:
-        """Return the mean centrifugal strain ``ω² hᵀK⁻¹h / Θ`` that the modes show.
-
-        The moment of inertia grows by ``2 hᵀζ₀`` under the static deformation ``ζ₀ = ω² K⁻¹h``,
-        and with the square of radii.
-        """
-        inv, modes = self.invariants, self.flexible
-        if modes.size == 0 or inv.Theta == 0.0:
-            return 0.0
-        growth = np.sum(inv.h[modes] ** 2 / np.diag(inv.K)[modes])
-        return float(self.fastest**2 * growth / inv.Theta)
-
     def missing_stiffness(self) -> float:
         """Return the share of the stiffening that is left out, as a relative change of frequency.
 
-        Half of its energy over that of the motion. Without a prestress the stiffening of flexible
-        modes is that of a truss (:mod:`exudyn_rotor.prestress.estimate`) or, where there is none,
-        ω² per unit of modal mass.
+        Half of its energy over that of the motion; without a prestress by the estimate of
+        :mod:`exudyn_rotor.prestress.estimate` or, where there is none, ω² per unit of modal mass.
         """
         inv, level = self.invariants, self.body.stiffening
         if level == "full":
             return 0.0
-        included = np.asarray(stiffening(inv, level).K2)
-        if inv.K2 is not None:
-            complete = np.asarray(inv.K2)
-        else:
+        included, complete = np.asarray(stiffening(inv, level).K2), inv.K2
+        if complete is None:
             complete = np.array(stiffening(inv, "tilt").K2)
+            places = np.ix_(self.flexible, self.flexible)
             if inv.K2_estimated is None:
-                complete[self.flexible, self.flexible] += 1.0
+                complete[places] += np.eye(self.flexible.size)
             else:
-                places = np.ix_(self.flexible, self.flexible)
                 complete[places] = inv.K2_estimated[places]
-        zeta = self.zeta - self._stretch
-        work = np.einsum("si,ij,sj->s", zeta, complete - included, zeta) * self.record.speed**2
+        work = self.record.speed**2 * _squares(complete - included, self.zeta - self._stretch)
         energy = self._energies[1]
         return float(0.25 * np.abs(work).max() / energy) if energy else 0.0
 
-    @cached_property
-    def _stretch(self) -> np.ndarray:
-        """Static centrifugal deformation (s, m), about which the rotor vibrates."""
-        inv, modes = self.invariants, self.flexible
-        shape = np.zeros(inv.size)
-        shape[modes] = inv.h[modes] / np.diag(inv.K)[modes]
-        return self.record.speed[:, None] ** 2 * shape
-
-    def divergence(self) -> float:
-        """Return ``Ω²/Ω_d²`` of the flexible modes, Ω_d the speed at which they would diverge.
-
-        They diverge where ``K − Ω²(C − K2)`` has a growing motion in spite of gyroscopic forces;
-        a stiffness that is not definite alone does not count. Zero where nothing grows.
-        """
-        modes = np.ix_(self.flexible, self.flexible)
-        K, G = self.invariants.K[modes], self.invariants.G[modes]
-        C = np.asarray(self.body.motion.spin_terms.C_hat)[modes]
-        if self.flexible.size == 0 or self.fastest == 0.0:
-            return 0.0
-        lowest = np.sqrt(np.diag(K).min())
-        for factor in _SPEEDS:
-            speed = factor * self.fastest
-            if _grows(K - speed**2 * C, 2.0 * speed * G, 1e-6 * lowest):
-                return float(1.0 / factor**2)
-        return 0.0
-
     def step_error(self) -> float:
-        """Return the relative period error of the recorded motion, ``κ(ωh)²`` with κ = 0.0844.
+        """Return the error of the recorded motion by the step, ``κh²`` times its ``q̈/q``.
 
-        ω is :attr:`frequency`. Motion of the rigid rotor that is slow in space, ``ω_s``, errs by
+        Root mean squares about the mean of all coordinates by mass: of vibrations of amplitudes A
+        and frequencies ω, ``κh² √Σ(Aω²)² / √ΣA²``, κ = 0.0844; for one alone the error of its
+        period. Motion of the rigid rotor that is slow in space, ``ω_s``, errs by
         ``κ(ωh)² ω/ω_s`` where it is integrated in the rotor frame.
         """
         solver = last_solver(self.body)
         if solver is None or solver.explicit or len(self.record.time) < 3:
             return 0.0
-        return float(PERIOD_ERROR * solver.step**2 * max(self.frequency**2, self._slow()))
+        record = self.record
+        moved, rate, acceleration = map(self._spread, (record.q, record.q_t, record.q_tt[1:]))
+        if not moved:
+            return 0.0
+        squares = max((rate / moved) ** 2, acceleration / moved, self._slow())
+        return float(PERIOD_ERROR * solver.step**2 * squares)
 
-    @cached_property
-    def frequency(self) -> float:
-        """Mean frequency of the coordinates, weighted with their amplitudes squared [rad/s]."""
-        vibrating = np.ones(self.body.motion.size, dtype=bool)
-        if self.body.formulation.has_spin:
-            vibrating[self.body.motion.formulation.translation_count] = False
-        weight = np.ones(vibrating.sum())
-        weight[: self.body.motion.formulation.translation_count] = np.sqrt(self.invariants.mass)
-        return _frequency(weight * self._q[:, vibrating], weight * self._q_t[:, vibrating])
+    def _spread(self, rows: np.ndarray) -> float:
+        """Return the root mean square of coordinates (s, n) about their mean, by mass."""
+        rows, motion = self._coordinates(rows), self.body.motion
+        about = rows - rows.mean(axis=0)
+        squares = self.invariants.mass * (about[:, motion.translations] ** 2).sum(axis=1)
+        return float(
+            np.sqrt((squares + _squares(self.invariants.M, about[:, motion.modes])).mean())
+        )
 
     def _slow(self) -> float:
         """Return ``ω³/ω_s`` of the rigid rotor's lateral motion [rad²/s²], by its share of it."""
-        inv, e = self.invariants, self.invariants.direction
-        rows = np.vstack([inv.S / inv.mass, self.size * tilt_factors(inv)[0][:3]])
-        across = np.kron(np.eye(2), np.eye(3) - np.outer(e, e)) @ rows
-        time, speed = self.record.time, self.record.speed
-        angle = np.append(0.0, np.cumsum(0.5 * np.diff(time) * (speed[1:] + speed[:-1])))
-        motion, rate = self.zeta @ across.T, self.zeta_t @ across.T
-        inertial_rate = rate + speed[:, None] * np.hstack(
-            [np.cross(e, motion[:, :3]), np.cross(e, motion[:, 3:])]
-        )
-        spatial = np.hstack([_turned(motion[:, half], e, angle) for half in _HALVES])
-        spatial_rate = np.hstack([_turned(inertial_rate[:, half], e, angle) for half in _HALVES])
-        size = np.sqrt((spatial**2).sum(axis=1).mean())
+        inv, e, speed = self.invariants, self.invariants.direction, self.record.speed
+        steps = 0.5 * np.diff(self.record.time) * (speed[1:] + speed[:-1])
+        angle = np.append(0.0, np.cumsum(steps))
+        parts = []
+        for rows in (inv.S / inv.mass, self.size * inv.mean_rotation):  # moved, and tilted
+            motion, rate = (x @ (rows - np.outer(e, e @ rows)).T for x in (self.zeta, self.zeta_t))
+            in_space = _turned(motion, e, angle)
+            rate_in_space = _turned(rate + speed[:, None] * np.cross(e, motion), e, angle)
+            parts.append((in_space, rate_in_space, _frequency(motion, rate)))
+        size = np.sqrt(sum((each[0] ** 2).sum(axis=1).mean() for each in parts))
         worst = 0.0
-        for half in _HALVES:
-            slow = _frequency(spatial[:, half], spatial_rate[:, half])
+        for in_space, rate_in_space, frequency in parts:
+            slow = _frequency(in_space, rate_in_space)
             if slow > 0.0:
-                share = np.sqrt(spatial[:, half].var(axis=0).sum()) / size
-                worst = max(worst, share * _frequency(motion[:, half], rate[:, half]) ** 3 / slow)
-        return worst
-
-    def spin_step(self) -> float:
-        """Return the largest spin angle per step [rad]."""
-        solver = last_solver(self.body)
-        return 0.0 if solver is None else solver.step * self.fastest
+                share = np.sqrt(in_space.var(axis=0).sum()) / size
+                worst = max(worst, share * frequency**3 / slow)
+        return float(worst)
 
     def film_use(self) -> float | None:
         """Return the largest displacement of a journal now, over the way to the end of its film.
@@ -289,13 +270,22 @@ class Measures:
         shares = [one.support.film_use(one.values()[0][:2]) for one in bearings]
         return max((share for share in shares if share is not None), default=None)
 
-    def explicit_step(self) -> float:
-        """Return ``ω_max h`` over what an explicit solver bears; 0 for an implicit one."""
+    def explicit_step(self) -> float | None:
+        """Return ``ω_max h`` over what an explicit solver bears; None for an implicit one."""
         solver = last_solver(self.body)
         if solver is None or not solver.explicit or self.flexible.size == 0:
-            return 0.0
+            return None
         highest = np.sqrt(np.diag(self.invariants.K)[self.flexible].max()) + self.fastest
         return float(solver.step * highest / _explicit_limit(solver))
+
+    def yielding(self) -> float | None:
+        """Return the largest static stress over the yield stress; None where one is not known."""
+        static = None if self.reduced is None else self.reduced.centrifugal
+        if static is None or static.stress is None or not static.yield_stress:
+            return None
+        # the stress is a + ω²b and its von Mises stress convex in ω²: largest at an end
+        ends = (static.stress_at(speed) for speed in (0.0, self.fastest))
+        return max(float(von_mises(stress).max()) for stress in ends) / static.yield_stress
 
 
 def _explicit_limit(solver: Solver) -> float:
@@ -311,6 +301,11 @@ def _explicit_limit(solver: Solver) -> float:
     return _EXPLICIT.get(solver.method, _RK44)
 
 
+def _squares(matrix, rows: np.ndarray) -> np.ndarray:
+    """Return ``uᵀ X u`` of rows (s, n), shape (s,)."""
+    return np.einsum("si,is->s", rows, matrix @ rows.T)
+
+
 def _frequency(values: np.ndarray, rates: np.ndarray) -> float:
     """Return the mean frequency of signals (s, c), weighted with their amplitudes squared."""
     moved = values.var(axis=0).sum()
@@ -320,12 +315,3 @@ def _frequency(values: np.ndarray, rates: np.ndarray) -> float:
 def _turned(values: np.ndarray, e: np.ndarray, angle: np.ndarray) -> np.ndarray:
     """Return vectors (s, 3) across e, turned about it by angles (s,)."""
     return np.cos(angle)[:, None] * values + np.sin(angle)[:, None] * np.cross(e, values)
-
-
-def _grows(K: np.ndarray, D: np.ndarray, smallest: float) -> bool:
-    """Return True if ``ẍ + Dẋ + Kx = 0`` has a growing solution."""
-    size = len(K)
-    if np.linalg.eigvalsh(0.5 * (K + K.T)).min() > 0.0:
-        return False
-    companion = np.block([[np.zeros((size, size)), np.eye(size)], [-K, -D]])
-    return bool(scipy.linalg.eigvals(companion).real.max() > smallest)

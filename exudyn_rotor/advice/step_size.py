@@ -14,13 +14,12 @@ may show a stable rotor grow. The step keeps the change of each growth below hal
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from exudyn_rotor.advice.candidate import Candidate
-from exudyn_rotor.advice.mode_choice import GROWTH, band, critical, ends, largest_share
+from exudyn_rotor.advice.mode_choice import GROWTH, ends, exponents, largest_share
 from exudyn_rotor.advice.request import PERIOD_ERROR, Request
 from exudyn_rotor.theory.rotating_axes import axial_skew
 
@@ -68,11 +67,12 @@ def choose_step(given: Candidate, request: Request, follows: bool) -> Step:
     trial = _TRIAL / request.highest
     # acceleration and unbalance stand behind loads at interfaces
     first = 0 if request.banded else len(given.motion())
-    for speed, frequency, growth in _points(given, request):
-        change = _change(given, speed, 1j * frequency + growth, trial, follows, first)
+    steady = _STEADY if request.low == request.high else GROWTH
+    for speed, s in exponents(given, request, None if request.banded else steady):
+        change = _change(given, speed, s, trial, follows, first)
         size = trial * np.sqrt(request.allowed / max(change, 1e-300))
         if size < chosen.size:
-            chosen = Step(float(size), float(speed), float(frequency))
+            chosen = Step(float(size), speed, float(s.imag))
     for speed in request.speeds:
         chosen = _with_right_growth(given, request, float(speed), follows, chosen)
     return chosen
@@ -82,29 +82,24 @@ def _with_right_growth(
     given: Candidate, request: Request, speed: float, follows: bool, chosen: Step
 ) -> Step:
     """Return a step, the same or a smaller one, by which growth changes by less than half."""
-    M, D, K, _count = given.hill(speed)
-    n, step = len(M), chosen.size
-    zero, unit = np.zeros((n, n)), np.eye(n)
-    A = np.block([[zero, unit], [-np.linalg.solve(M, K), -np.linalg.solve(M, D)]])
-    exponents, shapes = np.linalg.eig(A)
+    values, shapes = given.motions(speed)
+    n = len(values) // 2
     if np.linalg.cond(shapes) > _DEFECTIVE:
         return chosen
-    left = np.linalg.inv(shapes)[:, n:] @ np.linalg.inv(M)
-    light = np.abs(exponents.real) < _LIGHT * np.abs(exponents.imag)
-    light &= (exponents.imag > 0.0) & (exponents.imag <= request.highest)
-    light &= np.abs(exponents.real) > _UNDAMPED * np.abs(exponents.imag)
+    left = np.linalg.inv(shapes)[:, n:] @ np.linalg.inv(given.hill(speed).M)
+    light = np.abs(values.real) < _LIGHT * np.abs(values.imag)
+    light &= (values.imag > 0.0) & (values.imag <= request.highest)
+    light &= np.abs(values.real) > _UNDAMPED * np.abs(values.imag)
+    step = chosen.size
     for _ in range(_HALVINGS):
         worst, frequency = 0.0, np.nan
-        for number in np.flatnonzero(light):
-            own = exponents[number]
-            near = np.abs(exponents - own) < _NEAR * abs(own)
-            dynamic = _of_step(given, speed, own, step)
-            if follows:
-                dynamic = dynamic + _of_frame(given, speed, own, step)
-            moved = np.diag(exponents[near]) - left[near] @ dynamic @ shapes[:n, near]
-            found = np.linalg.eigvals(moved)
-            change = found[np.argmin(np.abs(found - own))] - own
-            share = abs(np.real(change) / own.real)
+        for own in values[light]:
+            near = np.abs(values - own) < _NEAR * abs(own)
+            dynamic = _of_step(given, speed, own, step, follows)
+            found = np.linalg.eigvals(
+                np.diag(values[near]) - left[near] @ dynamic @ shapes[:n, near]
+            )
+            share = abs((found[np.argmin(np.abs(found - own))] - own).real / own.real)
             if share > worst:
                 worst, frequency = share, float(own.imag)
         if worst <= _GROWTH_CHANGE:
@@ -114,43 +109,26 @@ def _with_right_growth(
     return chosen
 
 
-def _points(given: Candidate, request: Request) -> Iterator[tuple[float, float, float]]:
-    """Yield speeds, frequencies in the rotor frame, and growth rates [rad/s] to look at."""
-    one_speed = request.low == request.high
-    for speed in request.speeds:
-        steady = [0.0, speed] if speed else []  # unbalance, and weight
-        for nu in band(given, request, speed) if request.banded else steady:
-            damped = GROWTH if request.banded or not one_speed else _STEADY
-            yield speed, nu, damped * max(nu, speed, 0.1 * request.highest)
-    for speed in critical(given, request):
-        yield speed, 0.0, GROWTH * speed
-
-
 def _change(
     given: Candidate, speed: float, s: complex, step: float, follows: bool, first: int
 ) -> float:
     """Return the largest relative change of the response to any load from `first` by a step."""
-    M, D, K, count = given.hill(speed)
-    size = len(M) // count
-    rows, loads = ends(given, size, count)
-    loads = loads[:, first:]
-    exact = s**2 * M + s * D + K
-    integrated = exact + _of_step(given, speed, s, step)
-    if follows:
-        integrated = integrated + _of_frame(given, speed, s, step)
-    response = rows @ np.linalg.solve(exact, loads)
-    change = rows @ np.linalg.solve(integrated, loads) - response
+    made = given.hill(speed)
+    rows, loads = ends(given, made)
+    exact = s**2 * made.M + s * made.D + made.K
+    integrated = exact + _of_step(given, speed, s, step, follows)
+    response = rows @ np.linalg.solve(exact, loads[:, first:])
+    change = rows @ np.linalg.solve(integrated, loads[:, first:]) - response
     return largest_share(change, np.linalg.norm(response, axis=0), _UNMOVED)
 
 
-def _of_step(given: Candidate, speed: float, s: complex, step: float) -> np.ndarray:
+def _of_step(given: Candidate, speed: float, s: complex, step: float, follows: bool) -> np.ndarray:
     """Return what a step adds to the dynamic stiffness, harmonic by harmonic."""
-    M, D, _, count = given.hill(speed)
-    size = len(M) // count
-    rate = np.repeat(1j * speed * given.orders(speed), size)
-    damping = D - 2.0 * M * rate  # D of the equations, which Hill's method has shifted
-    first, second = _rates(s + rate, step)
-    return M * second + damping * first
+    made = given.hill(speed)
+    damping = made.D - 2.0 * made.M * made.rates  # D of the equations, which harmonics have shifted
+    first, second = _rates(s + made.rates, step)
+    change = made.M * second + damping * first
+    return change + _of_frame(given, speed, s, step) if follows else change
 
 
 def _of_frame(given: Candidate, speed: float, s: complex, step: float) -> np.ndarray:
@@ -158,20 +136,18 @@ def _of_frame(given: Candidate, speed: float, s: complex, step: float) -> np.nda
 
     Their forward part ``x + iy`` has the rate ``s + iΩ`` in space, the backward one ``s − iΩ``.
     """
-    M, _, _, count = given.hill(speed)
-    size = len(M) // count
-    orders = given.orders(speed)
-    moved = given.translations[:2] / given.invariants.mass  # of the centre of mass, (n1, n2)
-    change = np.zeros_like(M)
-    for index, order in enumerate(orders):
+    made, mass = given.hill(speed), given.invariants.mass
+    moved = given.translations[:2] / mass  # of the centre of mass, (n1, n2)
+    change = np.zeros(made.M.shape, dtype=complex)
+    for index, order in enumerate(made.orders):
         rate = s + 1j * order * speed
         forward, backward = (_rates(rate + 1j * sign * speed, step)[1] for sign in (1, -1))
         mean, half = 0.5 * (forward + backward), 0.5j * (forward - backward)
-        in_space = given.invariants.mass * np.array([[mean, half], [-half, mean]])
+        in_space = mass * np.array([[mean, half], [-half, mean]])
         first, second = _rates(rate, step)
         turning = 2.0 * speed * first * axial_skew(3)[:2, :2]
-        in_rotor = given.invariants.mass * (second * np.eye(2) + turning)
-        place = slice(index * size, (index + 1) * size)
+        in_rotor = mass * (second * np.eye(2) + turning)
+        place = slice(index * made.count, (index + 1) * made.count)
         change[place, place] = moved.T @ (in_space - in_rotor) @ moved
     return change
 

@@ -12,7 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.controlled_support import Controlled
 from exudyn_rotor.bearings.film.equilibria import Equilibria
+from exudyn_rotor.bearings.own_table import table_of
 from exudyn_rotor.bearings.support import COEFFICIENTS, NoCoefficientsError, Support
 
 _REMEMBERED = 1000  # coefficients of a bearing
@@ -62,6 +64,43 @@ class LoadedBearing(ABC):
     @abstractmethod
     def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
         """Return where the journal rests under a static load [N], the bearing's own by default."""
+
+    def table(self, speeds: ArrayLike, frequencies: ArrayLike) -> Support:
+        """Return a support with the bearing's coefficients over speed and frequency, as tables.
+
+        Of small motions about the equilibrium under the load, the tilts of pads with inertia and
+        the states of a controller eliminated; what has none is the same at all frequencies, and
+        the inertia of a fluid stays a mass. ``.stiffness.values`` and ``.damping.values`` are
+        arrays of the shape (s, f, 2, 2). Tables are for other programs, and to compare: linear
+        analyses take the bearing itself with its states, and growing and decaying motions exactly.
+
+        Parameters
+        ----------
+        speeds, frequencies : array_like, shape (s,), (f,)
+            Ascending spin speeds, and frequencies > 0 of the motion [rad/s]. Speeds at which the
+            bearing has no equilibrium are left out with a warning.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For bad input, a missing load, no speed with an equilibrium, and sensors elsewhere than
+            where the bearing acts.
+
+        Examples
+        --------
+        >>> from exudyn_rotor import AnnularSeal
+        >>> seal = AnnularSeal(
+        ...     interface="disc", radius=0.1, length=0.04, clearance=3e-4, pressure_drop=1e6,
+        ...     density=1000.0, viscosity=1e-3,
+        ... )
+        >>> seal.table(speeds=[100.0, 300.0], frequencies=[50.0, 150.0]).mass.values.shape
+        (2, 2, 2, 2)
+        """
+        return table_of(self.linearised(), speeds, frequencies)
+
+    @abstractmethod
+    def linearised(self) -> Support | Controlled:
+        """Return the equations for linear analyses, about the equilibrium under the load."""
 
     def _static_load(self, load: ArrayLike | None) -> np.ndarray:
         if load is not None:

@@ -10,7 +10,7 @@ import numpy as np
 from exudyn_rotor.bearings.support import Coefficient, Support
 
 
-class _InPairs:
+class InPairs:
     """Own coordinates that come in pairs, along the two directions across the axis."""
 
     inertia: np.ndarray
@@ -27,7 +27,7 @@ class _InPairs:
 
 
 @dataclass(frozen=True, eq=False)
-class ControlledSupport(_InPairs):
+class ControlledSupport(InPairs):
     """Linear equations between a rotor and a controller, ``M p̈ + D ṗ + K p = 0``.
 
     The ports p are pairs along (n1, n2), which stand still: the displacement where the bearing
@@ -60,7 +60,7 @@ class ControlledSupport(_InPairs):
 
 
 @dataclass(frozen=True, eq=False)
-class FilmSupport(_InPairs):
+class FilmSupport(InPairs):
     """A film whose voids remember, with what they remember as own coordinates.
 
     The ports are those of :class:`ControlledSupport` without that of sensors: the journal's
@@ -138,4 +138,4 @@ class PadSupport:
         return 0.0
 
 
-Controlled = ControlledSupport | FilmSupport | PadSupport
+Controlled = ControlledSupport | FilmSupport | PadSupport  # and SeriesSupport, of both kinds

@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from typing import get_args
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.controlled_support import Controlled
 from exudyn_rotor.bearings.magnetic import MagneticBearing
+from exudyn_rotor.bearings.series import FloatingRingBearing, SeriesSupport
 from exudyn_rotor.bearings.support import Support, acts
 from exudyn_rotor.reduction.fields import ReducedInterface
 from exudyn_rotor.solid.interface import Interface
 
-Given = Support | Bearing | MagneticBearing
+Given = Support | Bearing | MagneticBearing | SeriesSupport | FloatingRingBearing
 _TILTING = ("tilt_stiffness", "tilt_damping")
 
 
 def given_supports(supports: Sequence[Given] | Given) -> tuple[Given, ...]:
     """Return supports and bearings as a tuple; TypeError for anything else."""
-    return checks.instances(supports, "supports", (Support, Bearing, MagneticBearing))
+    return checks.instances(supports, "supports", get_args(Given))
 
 
 def checked_supports(supports: Sequence[Given] | Given) -> tuple[Support, ...]:
@@ -32,10 +34,10 @@ def checked_supports(supports: Sequence[Given] | Given) -> tuple[Support, ...]:
     linear, controlled = linear_supports(supports)
     if controlled:
         raise ValueError(
-            f"supports: the bearing at {controlled[0].interface!r}, magnetic, of pads with inertia "
-            "or with a film that conserves mass, has states of its own, which this analysis does "
-            "not take; give a Support with its stiffness and damping, pads without pad_inertia, or "
-            "a film with 'reynolds'"
+            f"supports: the bearing at {controlled[0].interface!r}, magnetic, of pads with "
+            "inertia, in series or with a film that conserves mass, has states of its own, which "
+            "this analysis does not take; give a Support with its stiffness and damping, pads "
+            "without pad_inertia, or a film with 'reynolds'"
         )
     return linear
 
@@ -75,13 +77,14 @@ def check_interfaces(
                     f"support at {support.interface!r}: no such interface{_asked(place, support)}; "
                     f"the rotor has: {', '.join(known) or 'none'}"
                 )
-        for name in _TILTING if known[support.interface].radius == 0.0 else ():
-            if acts(getattr(support, name, 0.0)):
-                raise ValueError(
-                    f"support at {support.interface!r}: {name} would act on nothing, since the "
-                    "interface is a single node, which has no rotation; make the interface of "
-                    "three nodes or more, or leave this out"
-                )
+        turns = known[support.interface].radius > 0.0
+        if not turns and isinstance(support, Support) and support.tilts:
+            names = (n for n in _TILTING if acts(getattr(support, n)))
+            raise ValueError(
+                f"support at {support.interface!r}: {next(names, 'a 6 × 6 matrix')} would act on "
+                "nothing, since the interface is a single node, which has no rotation; make the "
+                "interface of three nodes or more, or leave this out"
+            )
 
 
 def _asked(place: str, support: Given | Controlled) -> str:

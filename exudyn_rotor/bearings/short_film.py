@@ -44,6 +44,7 @@ _REST = 1e-6  # of Ω: the rate w of a journal at rest
 THINNEST = 1.0 - 0.01  # of the clearance: beyond, a film goes on by its tangent
 _STEP = 1e-6  # of the clearance, of that tangent
 Tangent = tuple[np.ndarray, np.ndarray]
+Numbers = float | np.ndarray
 
 
 def film_force(x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
@@ -69,7 +70,23 @@ def film_tangent(
 
     Up to the rate `rest` of w those of small motions, (3).
     """
-    return film_along(np.array([[x, y, vx, vy]]), speed, rest)[1][0]
+    # by numbers: a step of a scene asks for one state, for which arrays take ten times as long
+    half = 0.5 * speed
+    a, b = vx + half * y, vy - half * x
+    w = hypot(a, b)
+    if w <= rest or w == 0.0:
+        by_rate, by_place = damping_at_rest(x, y), np.zeros((2, 2))
+    else:
+        c, s = a / w, b / w
+        u, v = x * c + y * s, y * c - x * s
+        beta = 0.5 * pi + atan(u / sqrt(1.0 - u * u - v * v))
+        along, across, *slopes = _integrals(u, v, beta)
+        (p, q), (m, n) = slopes[:2], slopes[2:]
+        turn = np.array([[c, -s], [s, c]])
+        middle = [[along, p * v - q * u - across], [across, m * v - n * u + along]]
+        by_rate, by_place = turn @ np.array([middle, [[w * p, w * q], [w * m, w * n]]]) @ turn.T
+    swirl = half * np.column_stack([-by_rate[:, 1], by_rate[:, 0]])
+    return np.hstack([by_place + swirl, by_rate])
 
 
 def film_along(
@@ -84,8 +101,10 @@ def film_along(
     size = np.where(moves, w, 1.0)
     turn = np.array([[a, -b], [b, a]]).transpose(2, 0, 1) / size[:, None, None]
     u, v = np.einsum("ti,tij->jt", motion[:, :2], turn)
-    values, slopes = _integrals(u, v)
-    along, across = values.T
+    beta = 0.5 * pi + np.arctan(u / np.sqrt(1.0 - u * u - v * v))
+    along, across, *slopes = _integrals(u, v, beta)
+    values = np.stack([along, across], axis=-1)
+    slopes = np.array(slopes).T.reshape(-1, 2, 2)
     by_angle = slopes @ np.stack([v, -u], -1)[..., None] + np.stack([-across, along], -1)[..., None]
     back = turn.transpose(0, 2, 1)
     by_rate = turn @ np.concatenate([values[..., None], by_angle], axis=-1) @ back
@@ -104,12 +123,15 @@ def damping_at_rest(x: float, y: float) -> np.ndarray:
     return 0.5 * pi * (s2 * np.eye(2) + 3.0 * np.outer(place, place)) / s2**2.5
 
 
-def _integrals(u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return I_cc and I_cs of (1) (t, 2), and their derivatives (t, 2, 2) by u and v."""
+def _integrals(u: Numbers, v: Numbers, beta: Numbers) -> tuple[Numbers, ...]:
+    """Return I_cc and I_cs of (1), and the derivatives by u and v of the first and the second.
+
+    `beta` is the angle ``π/2 + arctan(u/√(1 − u² − v²))``.
+    """
     s2, t2 = 1.0 - u * u - v * v, 1.0 - v * v
-    s = np.sqrt(s2)
+    s = s2**0.5
     s4, s5, s6, s7 = s2**2, s2**2 * s, s2**3, s2**3 * s
-    beta, by_v = 0.5 * pi + np.arctan(u / s), u * v / (s * t2)  # ∂β/∂u = 1/s
+    by_v = u * v / (s * t2)  # of beta; by u it is 1/s
     along = 3.0 * u / s4 + beta * (s2 + 3.0 * u * u) / s5
     across = 2.0 / s4 + u * u / (t2 * s4) + 3.0 * beta * u / s5  # over v
     along_u = 4.0 / s4 + 15.0 * u * u / s6 + 3.0 * beta * u * (3.0 * s2 + 5.0 * u * u) / s7
@@ -119,8 +141,7 @@ def _integrals(u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     across_u += 3.0 * beta * (s2 + 5.0 * u * u) / s7
     across_v = 8.0 * v / s6 + 4.0 * u * u * v / (t2 * s6) + 2.0 * u * u * v / (t2**2 * s4)
     across_v += 3.0 * u * by_v / s5 + 15.0 * beta * u * v / s7
-    slopes = np.array([[along_u, along_v], [v * across_u, across + v * across_v]])
-    return np.stack([along, v * across], axis=-1), slopes.transpose(2, 0, 1)
+    return along, v * across, along_u, along_v, v * across_u, across + v * across_v
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -199,13 +220,17 @@ class ShortFilmBearing(Bearing):
         relative = motion / self.clearance
         e = np.hypot(*relative[:, :2].T)
         out = np.flatnonzero(e > THINNEST)
+        whirl, rest = speed if self._film_turns else 0.0, _REST * abs(speed)
+        if len(motion) == 1 and not out.size:
+            state = relative[0].tolist()
+            force = self._size * np.array([film_force(*state, whirl)])
+            return force, self._size / self.clearance * film_tangent(*state, whirl, rest)[None]
         normal = relative[out, :2] / e[out, None]
         relative[out, :2] = THINNEST * normal
-        whirl = speed if self._film_turns else 0.0
-        force, slopes = film_along(relative, whirl, _REST * abs(speed))
+        force, slopes = film_along(relative, whirl, rest)
         if out.size:  # by the tangent of the last step inside, as :func:`by_tangent`
             inner = np.hstack([(THINNEST - _STEP) * normal, relative[out, 2:]])
-            ends = film_along(inner, whirl, _REST * abs(speed))
+            ends = film_along(inner, whirl, rest)
             rise, steeper = force[out] - ends[0], slopes[out] - ends[1]
             steps = ((e[out] - THINNEST) / _STEP)[:, None]
             force[out] += steps * rise

@@ -4,20 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.coefficient_table import (
+    CoefficientTable,
+    coefficient_tables,
+    read_columns,
+)
 from exudyn_rotor.theory.rotating_axes import FRAMES, axial_skew, turned_harmonics
 
 COEFFICIENTS = ("stiffness", "damping", "tilt_stiffness", "tilt_damping")
 _GIVEN = (*COEFFICIENTS, "mass")
 _SHAPES = ((), (2, 2), (3, 3))
+_WHOLE = (6, 6)  # of displacement and rotation
 _ROUNDING = 1e-6  # of the largest speed of a table: differences by the speed leave its end
 Harmonics = dict[int, np.ndarray]
 SpeedTable = tuple[ArrayLike, ArrayLike]
-Coefficient = float | ArrayLike | SpeedTable | Callable[[float], ArrayLike]
+Coefficient = float | ArrayLike | SpeedTable | CoefficientTable | Callable[[float], ArrayLike]
 
 
 class NoCoefficientsError(ValueError):
@@ -39,19 +47,19 @@ class Support:
     stiffness, damping : float, array_like, (speeds, values), or callable
         A number k stands for k in both directions across the axis; a 2 × 2 matrix acts across the
         axis, a 3 × 3 matrix also along it, both in the axes (n1, n2[, e]) of
-        :attr:`SpinAxis.plane` [N/m], [N s/m]. A tuple of two, the speeds (s,) and the values
-        (s,), (s, 2, 2) or (s, 3, 3), is a table: interpolated linearly over the spin speed
-        [rad/s]. A callable takes the spin speed. Arrays are copied.
-    tilt_stiffness, tilt_damping : same, optional
+        :attr:`SpinAxis.plane` [N/m], [N s/m]; a 6 × 6 matrix couples displacement and rotation.
+        A tuple of two, the speeds (s,) and the values (s,), (s, 2, 2), (s, 3, 3) or (s, 6, 6), is
+        a table over the spin speed [rad/s], interpolated smoothly without overshoot. A callable
+        takes the spin speed. Arrays are copied. :meth:`from_table` has tables over the frequency.
+    tilt_stiffness, tilt_damping : same but for 6 × 6, optional
         Against the mean rotation of the interface about (n1, n2[, e]) [N m/rad], [N m s/rad].
     frame : {'inertial', 'rotor'}
         Whether the support stands still or turns with the rotor.
     extrapolate : bool, optional
         Whether analyses may use tables beyond their ends, with the value there; an error by
         default.
-    mass : float, (speeds, values), or callable, optional
-        Of a fluid that goes with the interface across the axis, alike in all directions [kg]; of
-        supports that stand still.
+    mass : same as stiffness, optional
+        Of a fluid that goes with the interface [kg]; of supports that stand still.
 
     Raises
     ------
@@ -81,42 +89,151 @@ class Support:
     tilt_damping: Coefficient = 0.0
     frame: str = "inertial"
     extrapolate: bool = False
-    mass: float | SpeedTable | Callable[[float], float] = 0.0
+    mass: Coefficient = 0.0
 
     def __post_init__(self) -> None:
         checks.label(self.interface, "interface")
         checks.flag(self.extrapolate, "extrapolate")
         checks.choice(self.frame, "frame", FRAMES)
         for name in _GIVEN:
-            value = _kept(getattr(self, name), f"support at {self.interface!r}: {name}")
+            shapes = _SHAPES if name.startswith("tilt") else (*_SHAPES, _WHOLE)
+            value = _kept(getattr(self, name), f"support at {self.interface!r}: {name}", shapes)
             object.__setattr__(self, name, value)
-        _check_mass(self)
+        if self.frame == "rotor" and (acts(self.mass) or self.over_frequency):
+            what = "mass" if acts(self.mass) else "coefficients over the frequency"
+            raise ValueError(
+                f"support at {self.interface!r}: {what}: is for supports that stand still; give "
+                "frame='inertial'"
+            )
 
-    def matrices(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return stiffness and damping at a spin speed [rad/s], each (6, 6).
+    @classmethod
+    def from_table(
+        cls,
+        interface: str,
+        *,
+        speeds: ArrayLike | None = None,
+        frequencies: ArrayLike | None = None,
+        stiffness: ArrayLike | None = None,
+        damping: ArrayLike | None = None,
+        mass: ArrayLike | None = None,
+        extrapolate: bool = False,
+    ) -> Support:
+        """Return a support with coefficients over the spin speed, the frequency, or both.
+
+        Linear analyses take each motion's own pair: of unbalance and of critical speeds the
+        frequency is the spin speed, of a harmonic load it is the load's, of a free motion the
+        imaginary part of its eigenvalue. Between the points the coefficients are smooth and do not
+        overshoot (PCHIP). Beyond the frequencies they keep the value at the end, with a warning;
+        beyond the speeds there are none.
+
+        Parameters
+        ----------
+        interface : str
+            Name of the interface whose mean displacement is supported.
+        speeds : array_like, shape (s,), optional
+            Ascending spin speeds [rad/s].
+        frequencies : array_like, shape (f,), optional
+            Ascending frequencies ≥ 0 of the motion [rad/s], seen from outside.
+        stiffness, damping, mass : array_like, shape (s, f, k, k), optional
+            K, D and M of the force ``−K x − D ẋ − M ẍ`` [N/m], [N s/m], [kg], with k = 2 across the
+            axis, 3 also along it, or 6 with the rotations, along and about (n1, n2, e). Without
+            speeds or without frequencies that axis is missing.
+        extrapolate : bool, optional
+            Whether analyses may use values at the ends beyond them, without warning or error.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For points that do not ascend, negative frequencies, and matrices of other shapes.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from exudyn_rotor import Support
+        >>> stiffness = [[[1e7, 2e6], [-2e6, 1e7]], [[3e7, 0.0], [0.0, 3e7]]]
+        >>> seal = Support.from_table("disc", frequencies=[0.0, 100.0], stiffness=stiffness)
+        >>> seal.matrices(speed=300.0, frequency=50.0)[0][:2, :2]
+        array([[20000000.,  1000000.],
+               [-1000000., 20000000.]])
+        """
+        checks.label(interface, "interface")
+        given = {"stiffness": stiffness, "damping": damping, "mass": mass}
+        tables = coefficient_tables(f"support at {interface!r}", speeds, frequencies, given)
+        return cls(interface, **tables, extrapolate=extrapolate)
+
+    @classmethod
+    def from_columns(
+        cls, interface: str, source: str | Path | Any, *, extrapolate: bool = False
+    ) -> Support:
+        """Return a support with the coefficients of a text file or a pandas table, by columns.
+
+        Columns are ``speed``, ``frequency`` or both, with a unit in brackets, as in
+        ``speed [rpm]`` or ``frequency (Hz)``, rad/s by default, and coefficients in SI units:
+        ``kxx``, ``kxy``, …, ``cxx``, … and ``mxx``, …, with x, y, z along (n1, n2, e) and a, b, c
+        about them. ``rpm`` and ``w`` are speeds, too. Entries without a column are zero. So are
+        files of ROSS and of XLTRC; of ROSS's ``BearingElement`` the array ``frequency`` is the
+        spin speed in synchronous analyses: name its column ``speed``.
+
+        Parameters
+        ----------
+        interface : str
+        source : str, Path, pandas.DataFrame or mapping
+            A file has one line of headers, and values between commas, semicolons, tabs or spaces.
+        extrapolate : bool, optional
+            See :meth:`from_table`.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For unknown headers and units, what is no number, and rows that do not make a grid of
+            speeds and frequencies.
+
+        Examples
+        --------
+        >>> from exudyn_rotor import Support
+        >>> table = {"speed [rpm]": [3e3, 6e3], "kxx": [1e7, 2e7], "kyy": [1e7, 2e7]}
+        >>> bearing = Support.from_columns("left", table)
+        >>> bearing.stiffness.speeds.round(2)
+        array([314.16, 628.32])
+        """
+        return cls.from_table(interface, **read_columns(source), extrapolate=extrapolate)
+
+    def at_frequency(self, frequency: float) -> Support:
+        """Return the support with the coefficients of one frequency [rad/s], as scenes take it."""
+        checks.number(frequency, "frequency", "rad/s", least=0.0)
+        parts = {
+            name: value.at_frequency(frequency)
+            for name in _GIVEN
+            if isinstance(value := getattr(self, name), CoefficientTable)
+        }
+        return replace(self, **parts)
+
+    def matrices(
+        self, speed: float, frequency: float | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return stiffness and damping at a spin speed and a frequency [rad/s], each (6, 6).
 
         Rows: displacement along n1, n2, e, then rotation about them. A table keeps its last value
-        beyond its end.
+        beyond its end. The frequency is the size of the spin speed by default.
         """
         checks.number(speed, "speed", "rad/s")
-        # the last speed with its matrices as one object, as threads share supports
+        pair = speed, abs(speed) if frequency is None else frequency
+        # the last pair with its matrices as one object, as threads share supports
         at, found = self.__dict__.get("_found", (None, None))
-        if found is None or (at != speed and self.varies):
-            found = self._matrices(speed)
-            object.__setattr__(self, "_found", (speed, found))
+        if found is None or (at != pair and self.varies):
+            found = self._matrices(*pair)
+            object.__setattr__(self, "_found", (pair, found))
         return found[0].copy(), found[1].copy()
 
-    def _matrices(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
-        stiffness, damping = np.zeros((6, 6)), np.zeros((6, 6))
-        stiffness[:3, :3] = self._matrix("stiffness", speed)
-        stiffness[3:, 3:] = self._matrix("tilt_stiffness", speed)
-        damping[:3, :3] = self._matrix("damping", speed)
-        damping[3:, 3:] = self._matrix("tilt_damping", speed)
+    def _matrices(self, *pair: float) -> tuple[np.ndarray, np.ndarray]:
+        stiffness, damping = (self._matrix(name, *pair) for name in ("stiffness", "damping"))
+        stiffness[3:, 3:] += self._matrix("tilt_stiffness", *pair)[:3, :3]
+        damping[3:, 3:] += self._matrix("tilt_damping", *pair)[:3, :3]
         return stiffness, damping
 
-    def mass_at(self, speed: float) -> float:
-        """Return the mass that goes with the interface at a spin speed [rad/s], in kg."""
-        return float(self._matrix("mass", speed)[0, 0])
+    def mass_matrix(self, speed: float, frequency: float | None = None) -> np.ndarray:
+        """Return the mass that goes with the interface, (6, 6), as :meth:`matrices` does."""
+        return self._matrix("mass", speed, abs(speed) if frequency is None else frequency)
 
     def terms(self, speed: float) -> tuple[Harmonics, Harmonics]:
         """Return Fourier terms in θ of damping and stiffness seen from the rotor, each (6, 6).
@@ -147,7 +264,8 @@ class Support:
 
     def undamped(self) -> Support:
         """Return the support without damping and without the skew part of its stiffness."""
-        parts = {name: _symmetric(getattr(self, name)) for name in ("stiffness", "tilt_stiffness")}
+        names = "stiffness", "tilt_stiffness", "mass"
+        parts = {name: _symmetric(getattr(self, name)) for name in names}
         return replace(self, **parts, damping=0.0, tilt_damping=0.0)
 
     @property
@@ -161,6 +279,25 @@ class Support:
         return any(varies(getattr(self, name)) for name in _GIVEN)
 
     @property
+    def over_frequency(self) -> bool:
+        """True when a coefficient depends on the frequency of a motion."""
+        return any(table.frequencies is not None for table in self._tables)
+
+    @property
+    def tilts(self) -> bool:
+        """True when anything acts on or by the rotation of the interface."""
+        return acts(self.tilt_stiffness) or acts(self.tilt_damping) or self.couples
+
+    @property
+    def couples(self) -> bool:
+        """True when a 6 × 6 matrix couples displacement and rotation."""
+        return any(_size(getattr(self, name)) == 6 for name in ("stiffness", "damping", "mass"))
+
+    @property
+    def _tables(self) -> list[CoefficientTable]:
+        given = (getattr(self, name) for name in _GIVEN)
+        return [each for each in given if isinstance(each, CoefficientTable)]
+
     def pattern(self) -> tuple | None:
         """What supports have in common that differ in their numbers alone; None of others.
 
@@ -179,11 +316,15 @@ class Support:
 
     @property
     def table_speeds(self) -> np.ndarray:
-        """Spin speeds of its tables [rad/s], at which its coefficients have kinks."""
-        given = [getattr(self, name) for name in _GIVEN]
-        return np.concatenate(
-            [np.zeros(0), *(each[0] for each in given if isinstance(each, tuple))]
-        )
+        """Spin speeds of its tables [rad/s], at which the curvature of coefficients jumps."""
+        given = [each.speeds for each in self._tables if each.speeds is not None]
+        return np.concatenate([np.zeros(0), *given])
+
+    @property
+    def table_frequencies(self) -> np.ndarray:
+        """Frequencies of its tables [rad/s]."""
+        given = [each.frequencies for each in self._tables if each.frequencies is not None]
+        return np.concatenate([np.zeros(0), *given])
 
     def check_range(self, speed: float) -> None:
         """Refuse a speed [rad/s] beyond the end of a table; rounding at the end is none.
@@ -197,44 +338,33 @@ class Support:
             value = getattr(self, name)
             if hasattr(value, "check_range"):  # a bearing's
                 value.check_range(speed)
-            if not isinstance(value, tuple):
+            speeds = value.speeds if isinstance(value, CoefficientTable) else None
+            if speeds is None:
                 continue
-            slack = _ROUNDING * np.abs(value[0]).max()
-            least, most = value[0][0] - slack, value[0][-1] + slack
-            if not least <= speed <= most:
+            slack = _ROUNDING * np.abs(speeds).max()
+            if not speeds[0] - slack <= speed <= speeds[-1] + slack:
                 raise OutsideTableError(
                     f"support at {self.interface!r}: the table of its {name} holds "
-                    f"{value[0][0]:g} to {value[0][-1]:g} rad/s, not {speed:g} rad/s: give more of "
+                    f"{speeds[0]:g} to {speeds[-1]:g} rad/s, not {speed:g} rad/s: give more of "
                     "it, or extrapolate=True to keep the value at its end"
                 )
 
-    def _matrix(self, name: str, speed: float) -> np.ndarray:
-        """Return one coefficient as a 3 × 3 matrix in the axes (n1, n2, e)."""
+    def _matrix(self, name: str, speed: float, frequency: float) -> np.ndarray:
+        """Return one coefficient as a 6 × 6 matrix; rotations of tilts stand in its first block."""
         value = getattr(self, name)
         if callable(value):
             where = f"support at {self.interface!r}: {name} at {speed:g} rad/s"
-            value = _coefficient(value(speed), where)
-        elif isinstance(value, tuple):
-            value = _interpolate(*value, speed)
-        return _in_three_axes(value)
-
-
-def _check_mass(support: Support) -> None:
-    where = f"support at {support.interface!r}: mass"
-    given = support.mass[1] if isinstance(support.mass, tuple) else support.mass
-    if not callable(given) and np.ndim(given) != isinstance(support.mass, tuple):
-        raise ValueError(f"{where} needs a number, alike in all directions, got a matrix")
-    if acts(support.mass) and support.frame == "rotor":
-        raise ValueError(f"{where} is of supports that stand still; give frame='inertial'")
+            value = _coefficient(value(speed), where, shapes=_SHAPES)
+        elif isinstance(value, CoefficientTable):
+            value = value.at(speed, frequency)
+        return _in_six_axes(value)
 
 
 def _symmetric(value: Coefficient) -> Coefficient:
     """Return a coefficient without its skew part."""
     if callable(value):
         return _SymmetricPart(value)
-    if isinstance(value, tuple):
-        return value[0], _symmetric_matrix(value[1])
-    return _symmetric_matrix(value)
+    return value.symmetric() if isinstance(value, CoefficientTable) else _symmetric_matrix(value)
 
 
 @dataclass(frozen=True, eq=False)
@@ -258,12 +388,13 @@ def _symmetric_matrix(values: float | np.ndarray) -> float | np.ndarray:
     return 0.5 * (values + np.swapaxes(values, -1, -2))
 
 
-def _kept(value: Coefficient, name: str) -> Coefficient:
+def _kept(value: Coefficient, name: str, shapes: tuple) -> Coefficient:
     """Return a coefficient as it is kept: a function, a table, a number or a matrix."""
-    if callable(value):
+    if callable(value) or isinstance(value, CoefficientTable):
         return value
     if not isinstance(value, tuple) or len(value) != 2:
-        return _coefficient(value, name, "; a table over the speed is a tuple, (speeds, values)")
+        other = "; a table over the speed is a tuple, (speeds, values)"
+        return _coefficient(value, name, other, shapes)
     if all(isinstance(row, tuple) and len(row) == 2 for row in value):
         raise ValueError(
             f"{name}: {checks.shown(value)} may be a matrix or a table over the speed; write a "
@@ -271,15 +402,22 @@ def _kept(value: Coefficient, name: str) -> Coefficient:
         )
     speeds = checks.ascending(value[0], f"{name}: the speeds of its table", "rad/s", of_table=True)
     values = checks.array(value[1], f"{name}: the values of its table")
-    if values.shape[:1] != speeds.shape or values.shape[1:] not in _SHAPES:
+    if values.shape[:1] != speeds.shape or values.shape[1:] not in shapes:
         raise ValueError(
-            f"{name}: the values of its table need {len(speeds)} numbers, 2 × 2 or 3 × 3 matrices, "
+            f"{name}: the values of its table need {len(speeds)} numbers, {_in_words(shapes)}, "
             f"as many as speeds, got shape {values.shape}"
         )
-    return speeds, values
+    return CoefficientTable(speeds, None, values)
 
 
-def _coefficient(value: ArrayLike, name: str, other: str = "") -> float | np.ndarray:
+def _in_words(shapes: tuple) -> str:
+    """Return the kinds of matrices among shapes."""
+    return f"2 × 2{', 3 × 3 or 6 × 6' if _WHOLE in shapes else ' or 3 × 3'} matrices"
+
+
+def _coefficient(
+    value: ArrayLike, name: str, other: str = "", shapes: tuple = (*_SHAPES, _WHOLE)
+) -> float | np.ndarray:
     """Return a number, or a matrix as a read-only array; refusals name what `other` there is."""
     if type(value) is float:
         return checks.number(value, name)
@@ -287,16 +425,16 @@ def _coefficient(value: ArrayLike, name: str, other: str = "") -> float | np.nda
         array = checks.array(value, name)
     except TypeError as error:  # of lists that are no array, the speeds and values of a table
         raise TypeError(f"{error}{other}" if isinstance(value, list) else str(error)) from None
-    if array.shape not in _SHAPES:
+    if array.shape not in shapes:
         raise ValueError(
-            f"{name} needs a number, a 2 × 2 or a 3 × 3 matrix, got shape {array.shape}{other}"
+            f"{name} needs a number or one of {_in_words(shapes)}, got shape {array.shape}{other}"
         )
     return array if array.ndim else float(array)
 
 
-def _in_three_axes(value: float | np.ndarray) -> np.ndarray:
-    """Return a number or a matrix across the axis as a 3 × 3 matrix."""
-    full = np.zeros((3, 3))
+def _in_six_axes(value: float | np.ndarray) -> np.ndarray:
+    """Return a number or a matrix across the axis as a 6 × 6 matrix."""
+    full = np.zeros(_WHOLE)
     if np.ndim(value) == 0:
         full[0, 0] = full[1, 1] = value
     else:
@@ -304,24 +442,20 @@ def _in_three_axes(value: float | np.ndarray) -> np.ndarray:
     return full
 
 
+def _size(value: Coefficient) -> int:
+    """Return how many rows the matrices of a coefficient have; 0 for numbers and functions."""
+    values = value.values if isinstance(value, CoefficientTable) else value
+    return 0 if callable(value) or np.ndim(values) < 2 else np.shape(values)[-1]
+
+
 def acts(value: Coefficient) -> bool:
     """Return whether a coefficient is not zero; a function is taken for one that is not."""
     if isinstance(value, float):
         return value != 0.0
-    return callable(value) or bool(np.any(value[1] if isinstance(value, tuple) else value))
+    given = value.values if isinstance(value, CoefficientTable) else value
+    return callable(value) or bool(np.any(given))
 
 
 def varies(value: Coefficient) -> bool:
     """Return whether a coefficient depends on the speed."""
-    return callable(value) or isinstance(value, tuple)
-
-
-def _interpolate(speeds: np.ndarray, values: np.ndarray, speed: float) -> np.ndarray:
-    """Interpolate a table over the spin speed; constant beyond its ends."""
-    if len(speeds) == 1:
-        return values[0]
-    above = min(max(int(np.searchsorted(speeds, speed)), 1), len(speeds) - 1)
-    low, high = speeds[above - 1], speeds[above]
-    share = (speed - low) / (high - low)
-    share = min(max(share, 0.0), 1.0)
-    return (1.0 - share) * values[above - 1] + share * values[above]
+    return callable(value) or isinstance(value, CoefficientTable)

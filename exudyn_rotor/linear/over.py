@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from tqdm import tqdm
 
 from exudyn_rotor import checks
 from exudyn_rotor.calls import one_thread, user_level
-from exudyn_rotor.linear.equations import PeriodicSystem
+from exudyn_rotor.linear.equations import PeriodicSystem, Terms
 from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
-from exudyn_rotor.linear.solve.motions import Motions, margins_of, motions_of
-from exudyn_rotor.results import Result
+from exudyn_rotor.linear.own_frequency import met, own_motions
+from exudyn_rotor.linear.solve.forced import forced_motions
+from exudyn_rotor.linear.solve.motions import Motions, motions_of
+from exudyn_rotor.results import Result, text_table
 from exudyn_rotor.theory.stiffening import LEVELS
 
 NOT_KNOWN = "error of the basis: not known"
@@ -49,7 +52,8 @@ def motions_over(
     with tqdm(total=len(speeds), desc=label or None, disable=not progress) as bar:
         given = {"held": held, "least_stable": least_stable, "told": bar.update}
         found = motions_in(model, model.at_all(speeds), method, tolerance, **given)
-    _warn_of_lost(found)
+    if not model.over_frequency:
+        _warn_of_lost(found)
     return found
 
 
@@ -60,32 +64,65 @@ def motions_in(
     tolerance: float,
     *,
     held: bool = False,
+    warns: bool = True,
     **given,
 ) -> Motions:
-    """Return the motions of a stack of equations of a model, see :func:`motions_over`."""
+    """Return the motions of a stack of equations of a model, see :func:`motions_over`.
+
+    It `warns` of motions beyond the tables over the frequency.
+    """
     basis, neutral = model.moving_basis, model.neutral_motions
     if held:
         neutral = neutral[:, : neutral.shape[1] - model.free_spins.shape[1]]
+    if model.over_frequency:
+        found = own_motions(model, stack)
+        if warns:
+            model.warn_beyond(met(model, found))
+        return found if basis is None else found.in_all(basis, neutral)
     if basis is not None:
         stack = stack.projected(basis)
     found = motions_of(stack, method, tolerance, **given)
     return found if basis is None else found.in_all(basis, neutral)
 
 
-@one_thread()
-def margins_over(
+def forced_over(
     model: LinearModel,
-    speeds: Sequence[float],
+    speed: float,
+    loads: Terms,
+    frequencies: np.ndarray,
     *,
-    method: str = "auto",
-    tolerance: float = 1e-6,
-) -> np.ndarray:
-    """Return by how much the least stable motion grows beyond its bound at speeds [1/s], (s,).
+    held: np.ndarray | None = None,
+    **options: Any,
+) -> dict[int, np.ndarray]:
+    """Return the harmonics (s, k) of steady motions under loads of frequencies (s,), at one speed.
 
-    Free spins are held; neutral motions do not count; NaN where the model has no equations.
+    Each harmonic has the coefficients of its own frequency.
+
+    Parameters
+    ----------
+    model : LinearModel
+    speed : float
+        Spin speed [rad/s].
+    loads : mapping of int to ndarray, shape (k,)
+        At the frequencies plus multiples of the speed.
+    frequencies : ndarray, shape (s,)
+        [rad/s]
+    held : ndarray, optional
+        :attr:`LinearModel.held_basis`, of motions in which it is solved.
+    **options
+        Of :func:`forced_motions`.
     """
-    stack, basis = model.at_all(speeds), model.moving_basis
-    return margins_of(stack if basis is None else stack.projected(basis), method, tolerance)
+    options |= {"held": held}
+    if not model.over_frequency:
+        system = model.at(speed) if held is None else model.at(speed).projected(held)
+        return forced_motions(system, loads, frequencies, **options)
+    found = {}
+    for n, load in loads.items():
+        rates = np.abs(frequencies + n * speed)
+        within = "" if held is None else "held"
+        stack = model.at_all(np.full(len(rates), speed), within, rates)
+        found |= forced_motions(stack, {n: load}, frequencies, **options)
+    return found
 
 
 def _warn_of_lost(found: Motions) -> None:
@@ -143,12 +180,25 @@ class ModelResult(Result):
         checks.choice(self.axes, "axes", AXES[1:])
         checks.number(self.unevenness, "unevenness", least=0.0)
 
-    def _closing(self, errors: object) -> list[str]:
+    def _closing(self, errors: np.ndarray | None) -> list[str]:
         """Return the last lines of a table; `errors` of the basis, None where not known."""
         lines = [f"stiffening: {self.stiffening}"] if self.stiffening else []
         if self.unevenness > _SHOWN:
             lines.append(f"unevenness of the mesh, averaged: {self.unevenness:.2g}")
         return lines if errors is not None else [*lines, NOT_KNOWN]
+
+
+def basis_column(errors: np.ndarray | None, size: int) -> dict[str, np.ndarray]:
+    """Return the column of errors of the basis, NaN where they are not known."""
+    return {"basis error": np.full(size, np.nan) if errors is None else errors.ravel()}
+
+
+def table_lines(columns: Mapping[str, np.ndarray], *left_out: str) -> list[str]:
+    """Return a table as lines, without some columns, and errors of the basis that are all zero."""
+    if not np.any(np.nan_to_num(columns["basis error"])):
+        left_out += ("basis error",)
+    shown = {name: each for name, each in columns.items() if name not in left_out}
+    return text_table({{"nodal diameters": "n"}.get(name, name): shown[name] for name in shown})
 
 
 def in_table(error: float, digits: int = 1) -> str:

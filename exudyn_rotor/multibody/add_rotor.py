@@ -7,19 +7,41 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import exudyn
+from exudyn.itemInterface import ObjectGenericODE2
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.full.add_full import add_full
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
-from exudyn_rotor.multibody.full.full_memory import check_memory
-from exudyn_rotor.multibody.full.full_plan import make_full_plan
-from exudyn_rotor.multibody.rotor import inputs
-from exudyn_rotor.multibody.rotor.add_reduced import add_bare, add_with_marker_body
-from exudyn_rotor.multibody.rotor.frame import CENTRE_OF_MASS, FRAME_NODES
-from exudyn_rotor.multibody.rotor.locking import LOCKINGS
-from exudyn_rotor.multibody.rotor.plan import make_plan
+from exudyn_rotor.multibody.full.full_plan import check_memory, make_full_plan
+from exudyn_rotor.multibody.rotor.equations import constant_object, user_function_object
+from exudyn_rotor.multibody.rotor.frame import (
+    CENTRE_OF_MASS,
+    FRAME_NODES,
+    LOCKINGS,
+    add_constraints,
+    driving_force,
+)
+from exudyn_rotor.multibody.rotor.marker_body import (
+    add_weight,
+    interface_markers,
+    marker_body_mesh,
+    marker_body_object,
+)
+from exudyn_rotor.multibody.rotor.plan import (
+    Plan,
+    Setup,
+    check_free_names,
+    color_of,
+    generic_node,
+    item_name,
+    main_system,
+    make_plan,
+    marker_requests,
+    placement,
+)
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_items import note_rotor
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import NEGLIGIBLE
@@ -123,7 +145,7 @@ def add_rotor(
         ``'constraints'``, which ``'auto'`` is, serves all solvers, and Exudyn's analyses of the
         scene. Where the spin or a translation is prescribed, explicit solvers (RK44, DOPRI5, …) end
         with an error, "contains constraints that cannot be solved", and need ``'mass'``, which
-        static solvers do not take; see :mod:`exudyn_rotor.multibody.rotor.locking`.
+        static solvers do not take; see :mod:`exudyn_rotor.multibody.rotor.frame`.
     frame_node : {'centre_of_mass', 'mesh_origin'}
         Where the node of the frame is, ``body.nodes["rigid"]``: markers and sensors that a script
         adds there move with the mean rigid motion of the rotor at this place, tilts included. The
@@ -208,7 +230,7 @@ def add_rotor(
     >>> bool(np.isclose(outwards, 10.0 / (1e6 - 100.0), rtol=1e-9))
     True
     """
-    inputs.main_system(mbs)
+    main_system(mbs)
     how = "SolidRotor.from_ngsolve(…) makes one, SolidRotor.reduce(…) the other"
     checks.instance(rotor, "rotor", (ReducedRotor, SolidRotor), how)
     full = isinstance(rotor, SolidRotor)
@@ -216,12 +238,12 @@ def add_rotor(
     formulation = Formulation(
         suited_translation(translation, rotor.grounded), spin, drive, spin_coupling
     )
-    requests = inputs.marker_requests(rotor, markers, marker_offsets, show_markers, marker_body)
-    setup = inputs.Setup(
+    requests = marker_requests(rotor, markers, marker_offsets, show_markers, marker_body)
+    setup = Setup(
         name=None if name is None else checks.label(name, "name"),
         formulation=formulation,
         stiffening=stiffening,
-        placement=inputs.placement(
+        placement=placement(
             formulation,
             rotor.axis.direction,
             position,
@@ -241,15 +263,15 @@ def add_rotor(
         frame_node=checks.choice(frame_node, "frame_node", FRAME_NODES),
         marker_body=marker_body,
         negligible=checks.number(negligible, "negligible", least=0.0, below=1.0),
-        color=inputs.color_of(color),
+        color=color_of(color),
     )
-    inputs.check_free_names(mbs, setup)
+    check_free_names(mbs, setup)
     if full:
         return _add_solid(mbs, rotor, setup)
     return _add_reduced(mbs, rotor, setup)
 
 
-def _add_reduced(mbs: exudyn.MainSystem, reduced: ReducedRotor, setup: inputs.Setup) -> RotorBody:
+def _add_reduced(mbs: exudyn.MainSystem, reduced: ReducedRotor, setup: Setup) -> RotorBody:
     by_default = setup.stiffening == "auto"
     level = chosen_level(setup.stiffening, reduced.invariants.K2 is not None)
     setup = replace(setup, stiffening=level)
@@ -263,7 +285,7 @@ def _add_reduced(mbs: exudyn.MainSystem, reduced: ReducedRotor, setup: inputs.Se
     return add_with_marker_body(mbs, plan, reduced)
 
 
-def _add_solid(mbs: exudyn.MainSystem, rotor: SolidRotor, setup: inputs.Setup) -> FullRotorBody:
+def _add_solid(mbs: exudyn.MainSystem, rotor: SolidRotor, setup: Setup) -> FullRotorBody:
     check_memory(rotor)
     if setup.stiffening in ("auto", "full"):
         rotor = with_chosen_prestress(rotor, None)
@@ -272,3 +294,58 @@ def _add_solid(mbs: exudyn.MainSystem, rotor: SolidRotor, setup: inputs.Setup) -
     if rotor.structural_damping is not None:
         warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=3)
     return add_full(mbs, plan)
+
+
+def add_bare(mbs: exudyn.MainSystem, plan: Plan) -> RotorBody:
+    """Add only the unknowns of the formulation, on one generic node."""
+    node = mbs.AddNode(plan.bare_node())
+    physics = mbs.AddObject(_physics(plan, [node]))
+    return RotorBody(mbs, plan, {"coordinates": node}, {"physics": physics})
+
+
+def add_with_marker_body(mbs: exudyn.MainSystem, plan: Plan, reduced: ReducedRotor) -> RotorBody:
+    """Add nodes, the marker body, locks, equations, gravity and markers."""
+    setup, inv = plan.setup, plan.motion.invariants
+    offsets = {interface: request.offset for interface, request in setup.markers.items()}
+    mesh = marker_body_mesh(
+        reduced.shapes, reduced.interfaces, plan.selection.T, reduced.axis, plan.frame, offsets
+    )
+    rigid = mbs.AddNode(plan.rigid_node())
+    modes = mbs.AddNode(generic_node(*plan.start, item_name("NodeGeneric:", setup.name)))
+    # first of all objects, as in scripts that know it by its number
+    marker_body = mbs.AddObject(
+        marker_body_object(
+            setup.name or "",
+            [rigid, modes],
+            mesh,
+            inv.mass,
+            plan.selection.origin + inv.center,
+            inv.S,
+            plan.frame,
+            setup.color,
+        )
+    )
+    physics = mbs.AddObject(_physics(plan, [rigid, modes]))
+    by_mass = setup.locking == "mass"
+    body = RotorBody(
+        mbs,
+        plan,
+        nodes={"rigid": rigid, "modes": modes},
+        objects={"physics": physics, "marker_body": marker_body},
+        markers=interface_markers(mbs, setup, marker_body, mesh, plan.frame),
+        constraints={} if by_mass else add_constraints(mbs, plan.locks, rigid),
+        gravity_load=add_weight(mbs, marker_body, plan.marker_body_gravity),
+        mesh_node_count=mesh.mesh_node_count,
+        mesh_stress=bool(mesh.stress.size),
+    )
+    note_rotor(body)
+    return body
+
+
+def _physics(plan: Plan, nodes: list) -> ObjectGenericODE2:
+    drive = None
+    if plan.setup.locking == "mass" and plan.setup.marker_body:
+        drive = driving_force(plan.locks, plan.layout.lock_mass)
+    if plan.motion.is_constant and drive is None:
+        return constant_object(plan.motion, plan.layout, nodes)
+    return user_function_object(plan.motion, plan.layout, nodes, drive)

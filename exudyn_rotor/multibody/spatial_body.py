@@ -38,7 +38,7 @@ from exudyn.utilities import (
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor import inputs
+from exudyn_rotor.multibody.rotor.plan import item_name, main_system, marker_name
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.nodal import tilde, translations
 
@@ -165,7 +165,7 @@ def add_spatial_rotor(
     >>> sorted(body.markers)
     ['top']
     """
-    inputs.main_system(mbs)
+    main_system(mbs)
     checks.instance(rotor, "rotor", SolidRotor)
     if rotor.node_count > LARGEST:
         raise ValueError(
@@ -183,7 +183,7 @@ def add_spatial_rotor(
     parameters = np.array(RotationMatrix2EulerParameters(turn))
     frame = mbs.AddNode(
         NodeRigidBodyEP(
-            name=inputs.item_name("NodeRigidBody:", name),
+            name=item_name("NodeRigidBody:", name),
             referenceCoordinates=[*(place + turn @ rotor.center_of_mass), *parameters],
             initialVelocities=[*velocity, *AngularVelocity2EulerParameters_t(omega, parameters)],
         )
@@ -192,7 +192,7 @@ def add_spatial_rotor(
     damping = {} if rotor.damping is None else {"dampingMatrixFF": _container(rotor.damping)}
     body = mbs.AddObject(
         ObjectFFRF(
-            name=inputs.item_name("", name),
+            name=item_name("", name),
             nodeNumbers=[frame, *points],
             massMatrixFF=_container(rotor.mass),
             stiffnessMatrixFF=_container(rotor.stiffness),
@@ -208,7 +208,7 @@ def add_spatial_rotor(
     markers = {
         key: mbs.AddMarker(
             MarkerSuperElementPosition(
-                name=inputs.marker_name(name, key),
+                name=marker_name(name, key),
                 bodyNumber=body,
                 meshNodeNumbers=interface.nodes,
                 weightingFactors=interface.weights,

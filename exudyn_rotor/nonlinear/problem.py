@@ -26,7 +26,7 @@ from exudyn_rotor.linear.response.loads import (
 from exudyn_rotor.nonlinear.balance import Balance, Laws, real_part_of
 from exudyn_rotor.nonlinear.rest import Rest, Unloaded, of_both_signs
 from exudyn_rotor.nonlinear.scene import Listed
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.theory.rotating_axes import axes_of, parts_across
 
 _DEPTH = 1e-3  # of the radius of the elements, at which a contact has the stiffness of k₀
@@ -321,6 +321,7 @@ def _with_stand_ins(model: LinearModel, speed: float) -> tuple[LinearModel, Laws
 
 def _constant(model: LinearModel, speed: float) -> tuple[LinearModel, LinearModel | None]:
     """Return a model whose equations are constant, and one in axes that stand still."""
+    model.check_without_frequency("a periodic motion")
     constant = model.at(speed).is_constant
     standing = model if constant and not model.turns else None
     if standing and len(model.rotors) > 1:  # no axes turn with all of them

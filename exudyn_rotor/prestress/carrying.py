@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -51,13 +50,4 @@ def _with_own_prestress(rotor: Rotor) -> Rotor:
         inertia_relief(rotor)
     except ValueError:  # parts that nothing connects have no static state
         return rotor
-    try:
-        return replace(rotor, carried_prestress=static_prestress(rotor))
-    except ValueError as error:
-        warnings.warn(
-            "the static centrifugal stress is not known, and stiffening='auto' means 'tilt': "
-            f"{error}",
-            UserWarning,
-            stacklevel=5,
-        )
-        return rotor
+    return replace(rotor, carried_prestress=static_prestress(rotor))

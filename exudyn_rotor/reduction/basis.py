@@ -14,7 +14,7 @@ import scipy.linalg
 import scipy.sparse as sp
 
 from exudyn_rotor.reduction.component import ModeBasis
-from exudyn_rotor.reduction.mode_kind import ModeKind, rigid_names
+from exudyn_rotor.reduction.fields import ModeKind, rigid_names
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import rotations, translations
 

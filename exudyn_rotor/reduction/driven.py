@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from exudyn_rotor.reduction.attached import Attached
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.reduction.other_basis import in_basis
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import without_mean_rotation

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
 

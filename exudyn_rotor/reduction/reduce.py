@@ -20,9 +20,14 @@ from exudyn_rotor.reduction.attachment import attachment_modes
 from exudyn_rotor.reduction.basis import OrthonormalBasis, rigid_columns
 from exudyn_rotor.reduction.component import ModeBasis, free_modes
 from exudyn_rotor.reduction.fem_interface_modes import fem_interface_modes
-from exudyn_rotor.reduction.fields import Centrifugal, ModeShapes, ReducedInterface
+from exudyn_rotor.reduction.fields import (
+    RIGID_KINDS,
+    Centrifugal,
+    ModeKind,
+    ModeShapes,
+    ReducedInterface,
+)
 from exudyn_rotor.reduction.inertial_modes import inertial_modes
-from exudyn_rotor.reduction.mode_kind import RIGID_KINDS, ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.carried_prestress import Prestress

@@ -10,8 +10,7 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.reduction.attached import Attached
-from exudyn_rotor.reduction.fields import Centrifugal, ModeShapes, ReducedInterface
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.fields import Centrifugal, ModeKind, ModeShapes, ReducedInterface
 from exudyn_rotor.storage import Entries, read_arrays, write_arrays
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants

@@ -14,11 +14,12 @@ from exudyn_rotor import checks
 from exudyn_rotor.reduction.attached import Attached
 from exudyn_rotor.reduction.fields import (
     Centrifugal,
+    ModeKind,
     ModeShapes,
     ReducedInterface,
+    rigid_names,
     set_checked,
 )
-from exudyn_rotor.reduction.mode_kind import ModeKind, rigid_names
 from exudyn_rotor.reduction.reduced_file import load_reduced, save_reduced
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
@@ -135,7 +136,7 @@ class ReducedRotor:
         if self.attached is not None:
             checks.instance(self.attached, "attached", Attached, "SolidRotor.reduce(…) makes one")
 
-    @property
+    @cached_property
     def with_attachments(self) -> ReducedRotor | None:
         """The same rotor with more columns, without shapes: how much the modes leave out.
 
@@ -144,7 +145,7 @@ class ReducedRotor:
         """
         return None if self.attached is None else self.attached.rotor
 
-    @property
+    @cached_property
     def in_attached(self) -> np.ndarray | None:
         """The columns of this rotor in the basis of :attr:`with_attachments`, shape (l, k).
 
@@ -155,7 +156,7 @@ class ReducedRotor:
     @property
     def size(self) -> int:
         """Number of columns k, rigid motions included."""
-        return self.invariants.size
+        return self.invariants.S.shape[1]
 
     @cached_property
     def frequencies(self) -> np.ndarray:

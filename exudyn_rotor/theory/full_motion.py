@@ -354,3 +354,13 @@ class FullMotion(Motion):
             blocks["r", "f"], blocks["f", "r"] = row[None, :], column[:, None]
             blocks["r", "r"] = [[share * factor_v * (centrifugal @ now.zeta_t)]]
         return self._placed(blocks, matrix)
+
+    def _placed(self, blocks: dict, base: sp.csr_array) -> sp.csr_array:
+        """Return `base` with the blocks of translations t, spin r and displacements f added."""
+        starts = {"t": 0, "r": self.translations.stop, "f": self.modes.start}
+        for (row, column), block in blocks.items():
+            entries = sp.coo_array(block)
+            rows, columns = entries.coords
+            place = (rows + starts[row], columns + starts[column])
+            base = base + sp.csr_array((entries.data, place), shape=base.shape)
+        return base

@@ -1,7 +1,7 @@
-"""The equations of :class:`~exudyn_rotor.theory.motion.Motion` in few numpy calls per step.
+"""The equations of motion of component modes, in few numpy calls per step.
 
-Motion states every term once and serves every case. A time step of a small system is not made of
-floating-point work but of calls, so this module stacks the invariants. With the deformed rotor's
+A time step of a small system is not made of floating-point work but of calls, so this module stacks
+the invariants. With the deformed rotor's
 unbalance ``u = mχ* + S*ζ`` (65), one matrix product gives the rows
 
     centrifugal     h + Ĉζ     −ẽu
@@ -12,7 +12,8 @@ of mass matrix and forces, and ``(ω², −ω̇, −ω)`` times these rows the i
 (87) and, turned by A, on the translations (66); a static displacement adds ``−ω⁴K4ζ``. What
 depends on the angle is linear in ``(1, cosθ, sinθ)``: one more product. What is linear with
 constant coefficients is not here at all: :func:`constant_part` hands it to the host as matrices.
-Tests hold both modules together to round-off.
+Tests hold the module to the energy of the nodes, and to the blocks of
+:mod:`exudyn_rotor.theory.terms`.
 """
 
 from __future__ import annotations
@@ -25,8 +26,8 @@ from itertools import pairwise
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.theory.terms import Equations
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,9 +47,8 @@ class ConstantPart:
     force: np.ndarray
 
 
-def constant_part(motion: Motion) -> ConstantPart:
+def constant_part(motion: Equations) -> ConstantPart:
     """Return the linear terms with constant coefficients of `motion`."""
-    checks.instance(motion, "motion", Motion)
     inv, modes = motion.invariants, motion.modes
     stiffness, damping = np.zeros((2, motion.size, motion.size))
     force = np.zeros(motion.size)
@@ -76,7 +76,7 @@ class Kernel:
     Raises
     ------
     TypeError, ValueError
-        For another motion, or places that do not fit.
+        For sparse invariants, or places that do not fit.
 
     Attributes
     ----------
@@ -87,8 +87,7 @@ class Kernel:
         Whether the constant part leaves out inertia forces on the modes, and any force at all.
     """
 
-    def __init__(self, motion: Motion, unknowns: Sequence[int], size: int) -> None:
-        checks.instance(motion, "motion", Motion)
+    def __init__(self, motion: Equations, unknowns: Sequence[int], size: int) -> None:
         inv, count = motion.invariants, motion.invariants.size
         if inv.is_sparse:
             raise ValueError("motion: needs dense invariants")
@@ -116,7 +115,7 @@ class Kernel:
         self._last: list | None = None
         self._time = math.nan
 
-    def _stack(self, motion: Motion) -> None:
+    def _stack(self, motion: Equations) -> None:
         """Arrange the invariants for the three rows of the docstring."""
         inv, terms, count = motion.invariants, motion.spin_terms, self._count
         e, S1, u = skew(inv.direction), motion.S1, motion.static_unbalance[:, None]
@@ -194,7 +193,7 @@ class Kernel:
         return self._mass
 
     def forces(self, t: float, q: list, q_t: list) -> np.ndarray:
-        """Return what :meth:`Motion.forces` has beside the constant part, shape (size,).
+        """Return what the motion has beside the constant part, shape (size,).
 
         (66), (86), (87) and the prescribed accelerations of (108); valid until the next call.
         """
@@ -333,7 +332,7 @@ class _Turning:
         ``Sᵀa``, ``S*ᵀa`` and ``(mχ*)ᵀa`` of the body acceleration a in rotor axes.
     """
 
-    def __init__(self, motion: Motion) -> None:
+    def __init__(self, motion: Equations) -> None:
         inv, form = motion.invariants, motion.formulation
         self.e, self._count = skew(inv.direction), inv.size
         self.has_body_force = motion.has_body_force

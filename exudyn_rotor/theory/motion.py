@@ -1,7 +1,8 @@
 """Equations of motion of every formulation: mass matrix, forces, Jacobian.
 
-Coordinates ``q = (τ, θ, ζ)``, of which only the unknown ones exist. Every term stands here once
-and serves dense component modes as well as the sparse full model (Ψ = I).
+Coordinates ``q = (τ, θ, ζ)``, of which only the unknown ones exist. The terms stand in
+:mod:`exudyn_rotor.theory.kernel`, and block by block as the paper prints them in
+:mod:`exudyn_rotor.theory.terms`.
 
 The kinetic energy behind the terms, with ``W = G + B`` and ``Ĉ = C − K2``
 (:mod:`exudyn_rotor.theory.stiffening`; the paper's equations are B = K2 = 0), is
@@ -31,13 +32,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.kernel import ConstantPart, Kernel, constant_part
 from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.spin_terms import SpinTerms
 from exudyn_rotor.theory.stiffening import Stiffening
@@ -52,7 +53,6 @@ class _State:
     omega_t: float  # prescribed part of the spin acceleration
     zeta: np.ndarray
     zeta_t: np.ndarray
-    A: np.ndarray | None = None  # NᵀA(θ), rows: unknown translations
     body_acceleration: np.ndarray | None = None  # gravity less the frame's, rotor axes
 
 
@@ -164,15 +164,23 @@ class Motion:
         return self._e @ self.invariants.S
 
     @cached_property
-    def _constant_mass(self) -> np.ndarray | sp.csr_array:
-        """(41) and (42)."""
-        count = self.formulation.translation_count
-        blocks = {("f", "f"): self.invariants.M}
-        if count:
-            blocks["t", "t"] = self.invariants.mass * np.eye(count)
-        zero = (self.size, self.size)
-        empty = sp.csr_array(zero) if self.invariants.is_sparse else np.zeros(zero)
-        return self._placed(blocks, empty)
+    def _kernel(self) -> Kernel:
+        return Kernel(self, range(self.size), self.size)
+
+    @cached_property
+    def _constant_part(self) -> ConstantPart:
+        return constant_part(self)
+
+    @cached_property
+    def _constant_mass(self) -> np.ndarray:
+        """(41) and (42); of a spin (84) and (85) without displacements."""
+        inv, spin, mass = self.invariants, self._spin, np.zeros((self.size, self.size))
+        mass[self.translations, self.translations] = inv.mass * np.eye(self.translations.stop)
+        mass[self.modes, self.modes] = inv.M
+        if self.formulation.has_spin:
+            mass[spin, spin], mass[spin, self.modes] = inv.Theta, inv.g
+            mass[self.modes, spin] = inv.g[:, None]
+        return mass
 
     @cached_property
     def is_coupled(self) -> bool:
@@ -192,91 +200,35 @@ class Motion:
             and not self.has_body_force
         )
 
-    def mass_matrix(
-        self, t: float, q: ArrayLike, q_t: ArrayLike | None = None
-    ) -> np.ndarray | sp.csr_array:
+    def mass_matrix(self, t: float, q: ArrayLike, q_t: ArrayLike | None = None) -> np.ndarray:
         """Return the mass matrix (65, 41–43, 84, 85), shape (size, size).
 
         That of a free spin depends on its speed in `q_t`, zero by default, where there is a
         stiffness per ω⁴.
         """
-        inv = self.invariants
-        now = self._state(t, q, np.zeros(self.size) if q_t is None else q_t)
-        blocks = {}
-        if self.is_coupled:
-            blocks["t", "f"] = now.A @ inv.S
-            blocks["f", "t"] = blocks["t", "f"].T
-        if self.formulation.has_spin:
-            zeta = 0.0 * now.zeta if self.formulation.has_frozen_spin else now.zeta
-            blocks["r", "r"] = [
-                [self._spin_inertia(zeta) - 6.0 * now.omega**2 * self._fourth(zeta)]
-            ]
-            blocks["r", "f"] = (inv.g + self.spin_terms.W @ zeta)[None, :]
-            blocks["f", "r"] = blocks["r", "f"].T
-            if self.is_coupled:
-                blocks["t", "r"] = (now.A @ self._unbalance(now.zeta))[:, None]
-                blocks["r", "t"] = blocks["t", "r"].T
-        return self._placed(blocks, self._constant_mass)
+        q = self._coordinates(q, "q")
+        q_t = np.zeros(self.size) if q_t is None else self._coordinates(q_t, "q_t")
+        kernel, mass = self._kernel, self._constant_mass.copy()
+        values = kernel.mass_entries(_time(t), q.tolist(), q_t.tolist())
+        mass[kernel.rows, kernel.columns] = mass[kernel.columns, kernel.rows] = values
+        return mass
 
     def forces(self, t: float, q: ArrayLike, q_t: ArrayLike) -> np.ndarray:
         """Return velocity-dependent, elastic, damping and gravity forces, shape (size,).
 
         (66), (86), (87), the prescribed accelerations of (108), and App. A.
         """
-        terms = self.spin_terms
-        now = self._state(t, q, q_t)
-        force = np.zeros(self.size)
-        by_zeta, by_rate = self._modal_jacobian(now)
-        load = terms.load(now.omega, now.omega_t)
-        force[self.modes] = load + by_zeta @ now.zeta + by_rate @ now.zeta_t
-        if self.formulation.has_spin:
-            coriolis = 2.0 * now.omega * (self._centrifugal(now.zeta) @ now.zeta_t)
-            euler = now.zeta_t @ (terms.B @ now.zeta_t)
-            frozen = self.formulation.has_frozen_spin
-            force[self._spin] = -0.5 * coriolis if frozen else -coriolis - euler
-            if terms.K4 is not None:
-                share = self._fourth_share * now.omega**3
-                force[self._spin] += share * (now.zeta @ (terms.K4 @ now.zeta_t))
-        force[self.translations] = self.weight
-        if self.has_body_force:
-            self._add_body_force(now.zeta, now.body_acceleration, force)
-        if self.is_coupled:
-            force[self.translations] -= now.A @ self._inertia_force(now)
-        return force
+        q, q_t = self._coordinates(q, "q"), self._coordinates(q_t, "q_t")
+        fixed = self._constant_part
+        constant = fixed.force - fixed.stiffness @ q - fixed.damping @ q_t
+        return constant + self._kernel.forces(_time(t), q.tolist(), q_t.tolist())
 
-    def jacobian(
-        self, t: float, q: ArrayLike, q_t: ArrayLike
-    ) -> tuple[np.ndarray | sp.csr_array, np.ndarray | sp.csr_array]:
+    def jacobian(self, t: float, q: ArrayLike, q_t: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
         """Return the derivatives of :meth:`forces` by q and by q̇, each (size, size)."""
-        terms = self.spin_terms
-        now = self._state(t, q, q_t)
-        omega, zeta, zeta_t = now.omega, now.zeta, now.zeta_t
-        by_q, by_v = ({("f", "f"): block} for block in self._modal_jacobian(now))
-        if self.formulation.has_spin:
-            centrifugal, frozen = self._centrifugal(zeta), self.formulation.has_frozen_spin
-            half = 0.5 if frozen else 1.0
-            by_q["r", "f"] = -2.0 * half * omega * (terms.C_hat @ zeta_t)[None, :]
-            by_v["f", "r"] = 2.0 * (omega * centrifugal - terms.G @ zeta_t)[:, None]
-            by_v["r", "r"] = [[-2.0 * half * centrifugal @ zeta_t]]
-            by_v["r", "f"] = -2.0 * half * omega * centrifugal[None, :]
-            if not frozen:
-                by_v["r", "f"] -= 2.0 * (terms.B @ zeta_t)[None, :]
-            if terms.K4 is not None:
-                displaced, rate = terms.K4 @ zeta, terms.K4 @ zeta_t
-                share = self._fourth_share
-                by_q["r", "f"] = by_q["r", "f"] + share * omega**3 * rate[None, :]
-                by_v["f", "r"] = by_v["f", "r"] - 4.0 * omega**3 * displaced[:, None]
-                by_v["r", "r"] = [[by_v["r", "r"][0][0] + 3.0 * share * omega**2 * zeta @ rate]]
-                by_v["r", "f"] = by_v["r", "f"] + share * omega**3 * displaced[None, :]
-            if self.has_body_force:
-                by_angle = -self._e @ now.body_acceleration
-                by_q["f", "r"] = (self.invariants.S.T @ by_angle)[:, None]
-                by_q["r", "r"] = [[self._unbalance(zeta) @ by_angle]]
-                by_q["r", "f"] = by_q["r", "f"] + self.S1.T @ now.body_acceleration
-        if self.is_coupled:
-            self._add_translational_jacobian(now, by_q, by_v)
-        empty = 0.0 * self._constant_mass
-        return self._placed(by_q, empty), self._placed(by_v, empty)
+        q, q_t = self._coordinates(q, "q").tolist(), self._coordinates(q_t, "q_t").tolist()
+        by_q = -self._constant_part.stiffness - self._kernel.jacobian(_time(t), q, q_t, 1.0, 0.0)
+        by_v = -self._constant_part.damping - self._kernel.jacobian(_time(t), q, q_t, 0.0, 1.0)
+        return by_q, by_v
 
     def energy(self, t: float, q: ArrayLike, q_t: ArrayLike) -> float:
         """Return kinetic plus elastic energy [J] of the free motion, gravity left out."""
@@ -333,12 +285,6 @@ class Motion:
         self._add_body_force(q[self.modes], local, force)
         return force
 
-    def _modal_jacobian(self, now: _State) -> tuple[np.ndarray | sp.csr_array, ...]:
-        """Return ``−(K − ω²Ĉ + ω⁴K4 + ω̇W)`` and ``−(D + 2ωG)``."""
-        inv, terms = self.invariants, self.spin_terms
-        by_zeta = -inv.K - terms.stiffness(now.omega, now.omega_t)
-        return by_zeta, -inv.D - terms.damping(now.omega)
-
     def _centrifugal(self, zeta: np.ndarray) -> np.ndarray:
         """``h + Ĉζ``, the centrifugal load per ω² of (87)."""
         return self.spin_terms.h + self.spin_terms.C_hat @ zeta
@@ -367,22 +313,6 @@ class Motion:
         if self.formulation.has_spin:
             force[self._spin] += self._unbalance(zeta) @ local
 
-    def _inertia_force(self, now: _State) -> np.ndarray:
-        """Bracket of (66) with the Euler part of a prescribed spin, rotor axes."""
-        unbalance = self._unbalance(now.zeta)
-        centrifugal = now.omega**2 * (self._e @ unbalance)
-        return centrifugal + 2.0 * now.omega * (self.S1 @ now.zeta_t) + now.omega_t * unbalance
-
-    def _add_translational_jacobian(self, now: _State, by_q: dict, by_v: dict) -> None:
-        omega, unbalance = now.omega, self._unbalance(now.zeta)
-        turning = omega**2 * self._e + now.omega_t * np.eye(3)
-        by_q["t", "f"] = -now.A @ turning @ self.S1
-        by_v["t", "f"] = -2.0 * omega * now.A @ self.S1
-        if self.formulation.has_spin:
-            by_q["t", "r"] = -(now.A @ self._e @ self._inertia_force(now))[:, None]
-            by_rate = 2.0 * omega * (self._e @ unbalance) + 2.0 * (self.S1 @ now.zeta_t)
-            by_v["t", "r"] = -(now.A @ by_rate)[:, None]
-
     def _coordinates(self, values: ArrayLike, name: str) -> np.ndarray:
         """Return one finite number per unknown; quick where there is nothing to refuse."""
         right = type(values) is np.ndarray and values.shape == (self.size,)
@@ -393,33 +323,23 @@ class Motion:
     def _state(self, t: float, q: ArrayLike, q_t: ArrayLike) -> _State:
         form = self.formulation
         q, q_t = self._coordinates(q, "q"), self._coordinates(q_t, "q_t")
-        if type(t) is not float or not math.isfinite(t):
-            t = checks.number(t, "t", "s")
+        t = _time(t)
         if form.has_spin:
             theta, omega, omega_t = float(q[self._spin][0]), float(q_t[self._spin][0]), 0.0
         else:
             theta, omega = form.spin.value(t), form.spin.rate(t)
             omega_t = form.spin.acceleration(t)
         zeta, zeta_t = q[self.modes], q_t[self.modes]
-        if not (self.is_coupled or self.has_body_force):
+        if not self.has_body_force:
             return _State(omega, omega_t, zeta, zeta_t)
         rotation = self.orientation @ self._axis.rotation(theta)
         acceleration = self.gravity
         if form.moves_origin:
             acceleration = acceleration - np.asarray(form.translation.acceleration(t), dtype=float)
-        A = self.free_directions.T @ rotation
-        return _State(omega, omega_t, zeta, zeta_t, A, rotation.T @ acceleration)
+        return _State(omega, omega_t, zeta, zeta_t, rotation.T @ acceleration)
 
-    def _placed(self, blocks: dict, base: np.ndarray | sp.csr_array) -> np.ndarray | sp.csr_array:
-        """Return `base` with the blocks of t, r, f put in, sparse where the invariants are."""
-        places = {"t": self.translations, "r": self._spin, "f": self.modes}
-        matrix = base.copy()
-        for (row, column), block in blocks.items():
-            if not self.invariants.is_sparse:
-                matrix[places[row], places[column]] = block
-                continue
-            entries = sp.coo_array(block)
-            rows, columns = entries.coords
-            place = (rows + places[row].start, columns + places[column].start)
-            matrix = matrix + sp.csr_array((entries.data, place), shape=matrix.shape)
-        return matrix
+
+def _time(t: float) -> float:
+    if type(t) is not float or not math.isfinite(t):
+        t = checks.number(t, "t", "s")
+    return t

@@ -27,7 +27,7 @@ from exudyn_rotor.theory.spin_terms import SpinTerms
 
 
 class Equations(Protocol):
-    """What :func:`terms_of` reads of a :class:`~exudyn_rotor.theory.motion.Motion`."""
+    """What the blocks and the kernel read of a :class:`~exudyn_rotor.theory.motion.Motion`."""
 
     invariants: Invariants
     spin_terms: SpinTerms
@@ -40,6 +40,9 @@ class Equations(Protocol):
     translations: slice
     modes: slice
     size: int
+    weight: np.ndarray
+    is_coupled: bool
+    has_body_force: bool
 
 
 @dataclass(frozen=True, eq=False)

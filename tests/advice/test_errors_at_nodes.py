@@ -10,7 +10,7 @@ from exudyn_rotor import (
     check_run,
     craig_bampton_modes,
 )
-from exudyn_rotor.advice.left_out_fields import left_out_at_nodes
+from exudyn_rotor.advice.left_out import left_out_at_nodes
 from exudyn_rotor.advice.run_measures import Measures
 from exudyn_rotor.solid.tensor import von_mises
 
@@ -68,14 +68,14 @@ def test_errors_are_those_of_the_full_run(rotor, scene, request):
         stress = StressField.of(reduced, body).history(zeta.T, record.speed, slice(None))
         wrong = von_mises(stress - full.stress)
         left_out = at_nodes(body, reduced, solid)
-        for truth, estimate in ((off, left_out.displacement), (wrong, left_out.stress)):
-            assert truth[STEPS // 4 :].max() == pytest.approx(estimate.max(), rel=0.2)
+        for truth, name in ((off, "displacement"), (wrong, "stress")):
+            ratio = left_out[name][0].max() / truth[STEPS // 4 :].max()
+            assert 0.5 < ratio < 3.0
 
 
 def at_nodes(body, reduced, solid, nodes=None):
-    record = body.recorded()
     nodes = np.arange(solid.node_count) if nodes is None else np.array(nodes)
-    return left_out_at_nodes(body, record, Measures(body, record).size, reduced, solid, nodes)
+    return left_out_at_nodes(Measures(body, body.recorded(), reduced), solid, nodes)
 
 
 def test_rows_are_the_largest_of_the_nodes_asked_for(ran, upright):
@@ -83,10 +83,7 @@ def test_rows_are_the_largest_of_the_nodes_asked_for(ran, upright):
     for nodes in (None, [3, 7]):
         found = at_nodes(body, reduced, upright, nodes)
         check = check_run(body, reduced=reduced, solid=upright, nodes=nodes, warn=False)
-        for name, part, whole in (
-            ("displacement", found.displacement, found.moved),
-            ("stress", found.stress, found.stressed),
-        ):
+        for name, (part, whole) in found.items():
             assert check[name].value == pytest.approx(part.max() / whole.max(), rel=1e-12)
             worst = (nodes or range(upright.node_count))[part.max(axis=0).argmax()]
             assert check[name].meaning.endswith(f"at node {worst}")

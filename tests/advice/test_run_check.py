@@ -9,15 +9,21 @@ from exudyn.itemInterface import (
 )
 from models import centered_disc
 from run_scenes import scene, solve
+from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
     AssumptionWarning,
+    BaseRecord,
+    DirectCurrentMotor,
+    Support,
+    add_base_motion,
+    add_drive,
     add_rotor,
+    add_supports,
     check_run,
     craig_bampton_modes,
     keep_modes,
 )
-from exudyn_rotor.advice.run_measures import Measures
 
 
 @pytest.fixture(scope="module")
@@ -80,6 +86,24 @@ def test_run_of_few_instants_is_told(reduced):
     assert check.ok
 
 
+SKEW = Rotation.from_rotvec([0.3, -0.8, 0.5]).as_matrix()
+
+
+@pytest.mark.parametrize("translation", ["free", "none"])
+def test_motors_and_shaken_ground_are_resisted(reduced, translation):
+    """Of a rotor that is mounted askew."""
+    options = {"rotation": SKEW, "gravity": [0, -9.81, 0], "initial_speed": 100.0}
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, reduced, translation=translation, **options)
+    add_supports(body, [Support(name, 2e6, damping=500.0) for name in ("left", "right")])
+    add_drive(body, DirectCurrentMotor(stall_torque=10.0, no_load_speed=150.0))
+    add_base_motion(mbs, BaseRecord([0.0, 1.0], [[3.0, 1.5, 1.0]] * 2), body)
+    body.start_recording()
+    mbs.Assemble()
+    solve(mbs, 100, 0.01)
+    assert check_run(body, warn=False)["unresisted load"].value < 1e-3
+
+
 @pytest.mark.parametrize("translation", ["free", "in-plane", "none"])
 @pytest.mark.parametrize("locking", ["mass", "constraints"])
 @pytest.mark.parametrize("markers", ["rigid", "position"])
@@ -96,19 +120,11 @@ def test_every_formulation_keeps_all_loads(reduced, translation, locking, marker
         mbs.CreateCartesianSpringDamper(
             itemNumbers=[ground, body.marker(name)], localPosition0=place, stiffness=[1e6] * 3
         )
-    kind = exu.OutputVariableType.Displacement
-    journals = [body.add_interface_sensor(name, kind) for name in ("left", "right")]
     body.start_recording()
     mbs.Assemble()
     solve(mbs, 200, 0.02)
     check = check_run(body, warn=False)
-    u = np.array([mbs.GetSensorStoredData(journal)[:, 1:] for journal in journals])
-    # axial forces k u_x have the lateral displacements as levers, which no equation resists
-    lost = (abs(u[:, :, 0]) * np.linalg.norm(u[:, :, 1:], axis=2)).sum(axis=0).max()
-    size = Measures(body, body.recorded()).size
-    assert check["unresisted load"].value < lost / (
-        size * np.linalg.norm(u.sum(axis=0), axis=1).max()
-    )
+    assert check["unresisted load"].value == 0.0
     assert check["locked"].value < 1e-9
 
 
@@ -126,7 +142,6 @@ def test_steps_too_long_are_found(reduced):
     with pytest.warns(AssumptionWarning) as caught:
         check = check_run(body)
     assert len(caught) == len(check.failed)
-    assert check["spin step"].value == pytest.approx(0.4, rel=1e-9)
     assert not check["step"].ok
 
 

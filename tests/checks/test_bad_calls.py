@@ -237,7 +237,8 @@ def wrong_values(annotation):
 RIGHT = {
     "negative": """
         angle current end_speed flank force fork_angle frequency helix_angle initial_angle
-        initial_speed line_angle load no_load_speed place speed spin start_speed synchronous_speed
+        initial_speed line_angle load no_load_speed place ring_speed speed spin start_speed
+        synchronous_speed
         t time turn_direction value HarmonicResponse.rates.order LimitedPower.stall_torque
         LinearActuator.place_under.offset Pad.start PointMass.mass UnbalanceResponse.rates.order""",
     "unknown": "at interface label name sensor title",

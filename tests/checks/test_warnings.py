@@ -3,6 +3,7 @@
 import ast
 import warnings
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import exudyn as exu
 import numpy as np
@@ -11,6 +12,7 @@ from exudyn.FEM import FEMinterface
 from exudyn.itemInterface import LoadCoordinate, MarkerNodeCoordinate
 from models import STEEL, block_beam, disc_fem, disc_rotor
 from point_rotors import ring_rotor
+from ross_models import example
 
 import exudyn_rotor
 from exudyn_rotor import (
@@ -31,6 +33,7 @@ from exudyn_rotor import (
     check_run,
     critical_speeds,
     energy_balance,
+    from_ross,
     periodic_response,
     propose,
     recommended_settings,
@@ -133,11 +136,19 @@ def blade_of_matrices(beam):
     campbell(across.reduce(2), [0.0, 2000.0])
 
 
-def rotor_of_a_changed_mesh(_):
-    mesh = block_beam(0.1)
-    rotor = SolidRotor.from_ngsolve(mesh, STEEL, "z")
-    mesh.ngmesh.Scale(2.0)
-    rotor.reduce(1)
+def rotor_of_ross_with_damping(_):
+    given = example()
+    given.shaft_elements[0].alpha = 1.0
+    from_ross(given)
+
+
+def deck_of_other_elements(_):
+    lines = ["*NODE", *(f"{i}, {i % 2}, {i // 2 % 2}, {i // 4}" for i in range(8))]
+    lines += ["*ELEMENT, TYPE=C3D8R, ELSET=all", "1, 0, 1, 3, 2, 4, 5, 7, 6"]
+    with TemporaryDirectory() as folder:
+        deck = Path(folder, "deck.inp")
+        deck.write_text("\n".join(lines))
+        SolidRotor.from_mesh(deck, STEEL, "z")
 
 
 def lossy():
@@ -286,8 +297,10 @@ PLACES = {
         stress_at_speed_without_prestress, UserWarning, "without the static centrifugal stress"),
     "theory/stiffening.py:warn_of_left_out": (
         blade_of_matrices, UserWarning, "beyond 'tilt' is left out"),
-    "prestress/carrying.py:_with_own_prestress": (
-        rotor_of_a_changed_mesh, UserWarning, "mesh was changed"),
+    "ross.py:_check_held": (
+        rotor_of_ross_with_damping, UserWarning, "of shaft elements are left out"),
+    "solid/meshes/mesh_data.py:warn": (
+        deck_of_other_elements, UserWarning, "taken as"),
     "advice/energy_balance.py:_warn_of_coarse_record": (
         energy_of_a_coarse_record, UserWarning, "recorded instants are too far apart for works"),
     "advice/proposal.py:propose": (
@@ -336,6 +349,9 @@ PLACES = {
 # part of the text of warnings that the tests of their analyses make fire
 ELSEWHERE = {
     "bearings/tilting_pad.py:_of_pads": "carry nothing at",
+    "bearings/own_table.py:table_of": "speeds are left out",
+    "linear/own_frequency.py:own_motions": "do not settle at their own frequency",
+    "linear/model/linear_model.py:warn_beyond": "keeps its ends for motions of",
     "linear/over.py:_warn_of_lost": "do not converge for all motions",
     "linear/over.py:warn_of_refused": "no values at .* which are NaN",
 }

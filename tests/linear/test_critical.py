@@ -231,12 +231,10 @@ def test_tables_tell_that_there_are_none():
     rotor = point_mass().reduce(0)
     support = Support("at", 1e4)  # 100 rad/s
     found = critical_speeds(rotor, supports=support, max_speed=50.0, nodal_diameters=[1])
-    assert found.table().splitlines()[2] == "  none"
+    assert found.table().splitlines()[1] == "none"
     over = critical_speed_map(rotor, "at", [1e2, 1e4], max_speed=50.0)
-    soft, stiff = over.table().splitlines()[2:4]
-    assert "95.493 backward" in soft
-    assert "95.493 forward" in soft
-    assert stiff.split() == ["10000", "none"]
+    rows = [line.split() for line in over.table().splitlines()[2:4]]
+    assert rows == [["100", "95.493", "backward"], ["100", "95.493", "forward"]]
     low, high = over.plot().get_xlim()
     assert low < 1e2 < 1e4 < high
 

@@ -9,7 +9,7 @@ from point_rotors import ring_rotor
 
 from exudyn_rotor import RotorTrain, SolidRotor, Support, linear_model, stability
 from exudyn_rotor.linear.equations import PeriodicSystem, joined
-from exudyn_rotor.linear.solve.motions import margins_of
+from exudyn_rotor.linear.solve.motions import motions_of
 
 MASS, STIFFNESS, OUTER, INNER = 2.0, 2e4, 10.0, 5.0  # of each of two masses; ω = 100 rad/s
 
@@ -152,6 +152,22 @@ def test_mathieus_equation():
         for delta in (0.19, 0.25, 0.31)
     ]  # fmt: skip
     for method in ("hill", "floquet"):
-        margins = margins_of(joined(given), method)
-        assert (margins > 0.0).tolist() == [False, True, False]
-        assert margins[1] == pytest.approx(0.5 * epsilon, rel=1e-2)
+        growth = motions_of(joined(given), method).values.real[:, 0]
+        assert (growth > 1e-6).tolist() == [False, True, False]
+        assert growth[1] == pytest.approx(0.5 * epsilon, rel=1e-2)
+
+
+@pytest.mark.parametrize(("delta", "epsilon"), [(4.0, 6.0), (2.25, 5.0), (6.25, 9.0)])
+def test_growth_is_not_missed_among_many_motions(delta, epsilon):
+    """Mathieu's equation beside others that need no harmonics: few are affordable for all."""
+    k = 24
+    mean = np.diag(np.r_[delta, np.linspace(3.0, 40.0, k - 1) ** 2])
+    wave = np.zeros((k, k), dtype=complex)
+    wave[0, 0] = 0.5 * epsilon
+    damping = np.diag(np.r_[0.0, np.full(k - 1, 0.01)])
+    system = PeriodicSystem(1.0, np.eye(k), {0: damping}, {0: mean, 1: wave, -1: wave})
+    found = [
+        np.nanmax(motions_of(joined([system]), method, least_stable=True).values.real)
+        for method in ("auto", "floquet")
+    ]
+    assert found[0] == pytest.approx(found[1], abs=1e-4)

@@ -15,6 +15,7 @@ from exudyn_rotor import (
     PrescribedMotion,
     SpinAxis,
     add_rotor,
+    check_run,
 )
 from exudyn_rotor.theory.stiffening import stiffening
 
@@ -98,6 +99,17 @@ def test_solvers_agree(reduced, case):
         scale = abs(reference[0]).max()
         assert abs(unknowns - reference[0]).max() < limit * scale
         assert abs(place - reference[1]).max() < limit
+
+
+def test_check_of_an_explicit_run_finds_nothing_lost(reduced):
+    """Whose solver eliminates the locks, so that the forces on them are not known."""
+    mbs, body = scene(reduced, translation="none", initial_speed=300.0)
+    body.start_recording()
+    mbs.Assemble()
+    mbs.SolveDynamic(settings(400, 4e-3), solverType=SOLVERS.RK44)
+    check = check_run(body, warn=False)
+    assert check["unresisted load"].ok
+    assert check["locked"].ok
 
 
 @pytest.mark.parametrize("motion", [{"spin": 300.0}, {"spin": RUN_UP}, {"translation": SHAKE}])

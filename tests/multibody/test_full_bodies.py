@@ -16,7 +16,7 @@ from exudyn_rotor import (
     add_supports,
     recommended_settings,
 )
-from exudyn_rotor.multibody.full import full_memory
+from exudyn_rotor.multibody.full import full_plan
 from exudyn_rotor.solvers.memory import TooLittleMemoryError
 
 STEP, STEPS, NEWTON = 1e-4, 20, 1e-10
@@ -264,10 +264,10 @@ def test_instants_that_cannot_be_stored_are_refused(bar):
 
 
 def test_too_little_memory_is_said_before_anything_is_added(bar, monkeypatch):
-    monkeypatch.setattr(full_memory, "available_memory", lambda: 1e5)
+    monkeypatch.setattr(full_plan, "available_memory", lambda: 1e5)
     mbs = exudyn.SystemContainer().AddSystem()
     with pytest.raises(TooLittleMemoryError, match=r"60 displacements needs .*rotor\.reduce"):
         add_rotor(mbs, bar, spin=10.0)
     assert mbs.systemData.NumberOfNodes() == 0
-    monkeypatch.setattr(full_memory, "available_memory", lambda: 1e9)
+    monkeypatch.setattr(full_plan, "available_memory", lambda: 1e9)
     add_rotor(mbs, bar, spin=10.0)

@@ -28,6 +28,13 @@ from exudyn_rotor.reduction.driven import without_spin
 SPEED = 200.0
 FULL = np.array([[2.0e6, 4e5, 1e5], [-3e5, 1.2e6, 2e5], [5e4, -1e5, 3e6]])
 DAMPING = np.array([[300.0, 40.0, 10.0], [-30.0, 200.0, 20.0], [5.0, -10.0, 100.0]])
+COUPLED = np.zeros((2, 6, 6))  # with lateral motion and tilts coupled
+COUPLED[:, :3, :3], COUPLED[:, 3:5, 3:5] = (
+    (FULL, DAMPING),
+    ([[4e3, 1e3], [-5e2, 2e3]], 9.0 * np.eye(2)),
+)
+COUPLED[:, :3, 3:5] = 0.1 * COUPLED[:, :3, :2]
+COUPLED[:, 3:5, :3] = 0.05 * COUPLED[:, :2, :3]
 HELD = Support("right", np.diag([1e6, 2e6, 5e5]), 150.0)
 KINDS = {
     "number": Support("left", 1e6, 200.0),
@@ -45,6 +52,7 @@ KINDS = {
     "table": Support(
         "left", ([0.0, 150.0, 300.0], [FULL, 2.0 * FULL, 3.0 * FULL.T]), ([9.0, 300.0], [3e2, 5e2])
     ),
+    "6 x 6": Support("left", *COUPLED),
     "tilt table": Support(
         "left", 1e6, 0.0, ([0.0, 300.0], [1e3, 5e3]), ([0.0, 300.0], [[[9, 2], [1, 5]]] * 2)
     ),

@@ -132,7 +132,7 @@ def test_every_model_of_a_campbell_diagram_is_described(written):
         "PID controller: proportional 20000",
         "left                     magnetic bearing",
         "left                     short journal bearing",
-        "scene of 5 coordinates in inertial axes, about its steady motion",
+        "scene of 5 coordinates in inertial axes, about its equilibrium state",
     ):
         assert found in re.sub(r"\n +", " ", text)
     with pytest.raises(TypeError, match=r"give a scene as linear_model\(mbs, body=…\)"):

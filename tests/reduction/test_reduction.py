@@ -15,7 +15,7 @@ from exudyn_rotor import (
     free_modes,
     select_modes,
 )
-from exudyn_rotor.reduction.mode_kind import RIGID_KINDS, rigid_names
+from exudyn_rotor.reduction.fields import RIGID_KINDS, rigid_names
 from exudyn_rotor.theory.nodal import block_diagonal, rotations, translations
 
 RIGID = rigid_names(RIGID_KINDS)

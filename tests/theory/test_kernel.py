@@ -5,8 +5,6 @@ from dataclasses import replace
 import exudyn
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from point_rotors import random_invariants, random_spd, ring_rotor
 from scipy.spatial.transform import Rotation
 
@@ -19,7 +17,6 @@ from exudyn_rotor import (
 from exudyn_rotor.multibody.rotor.equations import Layout, user_function_object
 from exudyn_rotor.multibody.solver_settings import recommended_settings
 from exudyn_rotor.theory.formulation import ConstantSpeed
-from exudyn_rotor.theory.kernel import Kernel, constant_part
 from exudyn_rotor.theory.stiffening import stiffening
 
 ORIENTATION = Rotation.from_rotvec([0.3, -0.5, 0.8]).as_matrix()
@@ -61,40 +58,6 @@ def motion_of(formulation: Formulation, seed: int, gravity: float) -> Motion:
     return Motion(
         invariants, formulation, terms, ORIENTATION, gravity=gravity * np.array([1.0, -2.0, 3.0])
     )
-
-
-def kernel_mass(kernel: Kernel, motion: Motion, t: float, q: list, q_t: list) -> np.ndarray:
-    """Return the mass matrix: what varies by the kernel, the rest as it is at rest."""
-    mass = motion.mass_matrix(0.0, np.zeros(motion.size))
-    values = kernel.mass_entries(t, q, q_t)
-    mass[kernel.rows, kernel.columns] = mass[kernel.columns, kernel.rows] = values
-    return mass
-
-
-@pytest.mark.parametrize("formulation", FORMULATIONS.values(), ids=FORMULATIONS)
-@given(
-    seed=st.integers(0, 10_000),
-    gravity=st.sampled_from([0.0, 1.0]),
-    time=st.floats(-3.0, 3.0),
-)
-@settings(max_examples=15, deadline=None, derandomize=True)
-def test_kernel_equals_the_plain_equations(formulation, seed, gravity, time):
-    """Sums of the same products in another order: 1e-16 of their largest, some tens of them."""
-    motion = motion_of(formulation, seed, gravity)
-    kernel = Kernel(motion, range(motion.size), motion.size)
-    constant = constant_part(motion)
-    for q, q_t in np.random.default_rng(seed).normal(size=(2, 2, motion.size)):
-        forces = kernel.forces(time, q.tolist(), q_t.tolist())
-        total = forces + constant.force - constant.stiffness @ q - constant.damping @ q_t
-        expected = motion.forces(time, q, q_t)
-        assert total == pytest.approx(expected, abs=1e-12 * np.abs(expected).max())
-        mass = motion.mass_matrix(time, q, q_t)
-        found = kernel_mass(kernel, motion, time, q.tolist(), q_t.tolist())
-        assert found == pytest.approx(mass, abs=1e-12 * np.abs(mass).max())
-        by_q, by_v = motion.jacobian(time, q, q_t)
-        slopes = -2.0 * (by_q + constant.stiffness) - 3.0 * (by_v + constant.damping)
-        found = kernel.jacobian(time, q.tolist(), q_t.tolist(), 2.0, 3.0)
-        assert found == pytest.approx(slopes, abs=1e-12 * np.abs(slopes).max())
 
 
 @pytest.mark.parametrize(

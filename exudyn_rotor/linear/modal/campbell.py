@@ -36,12 +36,11 @@ from exudyn_rotor.linear.model.build import (
     warn_of_left_out_stiffening,
     warn_of_structural_damping,
 )
-from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
-from exudyn_rotor.linear.over import NOT_KNOWN, in_table, motions_over
+from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.over import ModelResult, basis_column, motions_over, table_lines
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.results import Result, numbers, storable
+from exudyn_rotor.results import numbers, storable
 from exudyn_rotor.theory.rotating_axes import FRAMES
-from exudyn_rotor.theory.stiffening import LEVELS
 from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:
@@ -50,14 +49,13 @@ if TYPE_CHECKING:
 # growth below this share of frequency and speed is not marked: what is left of a free spin of a
 # rotor with an uneven mesh looks like that
 _UNSTABLE = 1e-4
-_SHOWN = 1e-6  # unevenness that is told
 _SPLIT = 4e-8  # of the fastest motion: the split of a double zero by rounding
 _FEWEST = 6  # modes that are listed of a basis with halves of pairs
 
 
 @storable
 @dataclass(frozen=True, eq=False)
-class Campbell(Result):
+class Campbell(ModelResult):
     """Eigenfrequencies over spin speed, at every speed ascending in the :attr:`frame`.
 
     Overdamped motions, which have the inertial frequency 0 and decay, stand behind the others. A
@@ -98,15 +96,10 @@ class Campbell(Result):
         [rad/s]. Zero for a full model; where no number of modes was asked for, NaN of those beyond
         twice the highest speed and the lowest six, and always of overdamped motions that decay
         faster than these; None where it is not known.
-    stiffening : str or None
-        Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
     frame : {'inertial', 'rotor'}
         In which columns ascend, and modes were chosen.
-    axes : {'inertial', 'rotor'}
-        In which the equations were solved, and :attr:`vectors` are.
-    unevenness : float
-        Largest share of a rotor that differs around its axis, as that of a mesh, and was averaged
-        over a turn.
+    stiffening, axes, unevenness
+        See :class:`Stability`; :attr:`vectors` are in these axes.
 
     Examples
     --------
@@ -121,9 +114,9 @@ class Campbell(Result):
     >>> result.tracked().damping_ratio[:, 1].round(4)
     array([0.025, 0.025])
     >>> print(result.table(1))
-     speed [rpm]  mode  rotor frame [Hz]  inertial [Hz]  damping ratio  n  whirl
-               0     1                 0              0              0  0  axial
-         477.465     1                 0              0              0  0  axial
+    speed [rpm]  mode  rotor frame [Hz]  inertial [Hz]  growth [1/s]  damping ratio  n  whirl
+              0     1                 0              0             0              0  0  axial
+        477.465     1                 0              0             0              0  0  axial
     free motions: translation along axis
     stiffening: tilt
     """
@@ -140,20 +133,14 @@ class Campbell(Result):
     order: np.ndarray = numbers("speeds", "modes", dtype=int, least=0)
     continued: np.ndarray = numbers("speeds", "modes", dtype=bool)
     free_motions: tuple[str, ...] = ()
-    stiffening: str | None = None
     basis_shifts: np.ndarray | None = numbers(
         "speeds", "modes", dtype=complex, finite=False, optional=True
     )
     frame: str = "inertial"
-    axes: str = "inertial"
-    unevenness: float = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
         checks.choice(self.frame, "frame", FRAMES)
-        checks.choice(self.axes, "axes", AXES)
-        if self.stiffening is not None:
-            checks.choice(self.stiffening, "stiffening", LEVELS)
         if np.any(np.sort(self.order, axis=1) != np.arange(self.order.shape[1])):
             raise ValueError("order: needs every column once at each speed")
 
@@ -308,71 +295,46 @@ class Campbell(Result):
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns, one row for each speed and mode, tracked."""
-        shown, tracked = Units.of(units), self.tracked()
-        count = self.order.shape[1]
-        rows = count * len(self.speeds)
+        return self.tracked()._columns(Units.of(units), self.order.shape[1])
+
+    def _columns(self, shown: Units, count: int) -> dict[str, np.ndarray]:
+        """Return the first `count` columns of all speeds as those of a table."""
         speed, frequency = f"[{shown.speed}]", f"[{shown.frequency}]"
-        errors = tracked.basis_errors
+        errors = self.basis_errors
+        errors = None if errors is None else errors[:, :count]
+        given = {
+            f"rotor frame {frequency}": shown.frequencies(self.frequencies_rotor),
+            f"inertial {frequency}": shown.frequencies(self.frequencies_inertial),
+            "growth [1/s]": self.growth,
+            "damping ratio": self.damping_ratio,
+            "log decrement": self.log_decrement,
+            "nodal diameters": self.nodal_diameters,
+            "whirl": self.whirl,
+            "continued": self.continued,
+        }
         return {
             f"speed {speed}": np.repeat(shown.speeds(self.speeds), count),
             "mode": np.tile(np.arange(1, count + 1), len(self.speeds)),
-            f"rotor frame {frequency}": shown.frequencies(tracked.frequencies_rotor).ravel(),
-            f"inertial {frequency}": shown.frequencies(tracked.frequencies_inertial).ravel(),
-            "growth [1/s]": tracked.growth.ravel(),
-            "damping ratio": tracked.damping_ratio.ravel(),
-            "log decrement": tracked.log_decrement.ravel(),
-            "nodal diameters": tracked.nodal_diameters.ravel(),
-            "whirl": tracked.whirl.ravel(),
-            "continued": tracked.continued.ravel(),
-            "basis error": np.full(rows, np.nan) if errors is None else errors.ravel(),
+            **{name: values[:, :count].ravel() for name, values in given.items()},
+            **basis_column(errors, count * len(self.speeds)),
         }
 
     def table(self, count: int | None = None, *, units: str = "rpm") -> str:
         """Return the lowest `count` modes at every speed as lines of text.
 
-        `units` are those of :meth:`plot`. The error of the basis is '-' where it is not estimated,
-        see :attr:`basis_shifts`.
+        `units` are those of :meth:`plot`.
         """
-        if count is not None:
-            count = checks.count(count, "count", least=1)
+        modes = self.order.shape[1]
+        count = modes if count is None else min(checks.count(count, "count", least=1), modes)
         known = Units.of(units)
-        speed, frequency = f"[{known.speed}]", f"[{known.frequency}]"
-        errors = self.basis_errors
-        reduced = errors is not None and np.any(errors > 0.0)
-        label = "  basis error" if reduced else ""
-        lines = [
-            f"{'speed ' + speed:>12}  mode{'rotor frame ' + frequency:>18}"
-            f"{'inertial ' + frequency:>15}  damping ratio{label}  n  whirl"
-        ]
-        shown = slice(0, count)
-        rotor, inertial = (
-            known.frequencies(f) for f in (self.frequencies_rotor, self.frequencies_inertial)
-        )
-        for i, at in enumerate(known.speeds(self.speeds)):
-            if np.all(np.isnan(self.growth[i])):
-                lines.append(f"{at:12.6g}  no values")
-                continue
-            for j in np.arange(self.order.shape[1])[shown]:
-                n = self.nodal_diameters[i, j]
-                error = f"{in_table(errors[i, j]):>13}" if reduced else ""
-                kind = f"{n if n >= 0 else '-'}  {self.whirl[i, j]}"
-                lines.append(
-                    f"{at:12.6g}{j + 1:6d}{rotor[i, j]:18.6g}{inertial[i, j]:15.6g}"
-                    f"{self.damping_ratio[i, j]:15.3g}{error}  {kind}"
-                )
+        lines = table_lines(self._columns(known, count), "log decrement", "continued")
         if self.free_motions:
             lines.append("free motions: " + ", ".join(self.free_motions))
-        if self.stiffening:
-            lines.append(f"stiffening: {self.stiffening}")
-        if self.unevenness > _SHOWN:
-            lines.append(f"unevenness of the mesh, averaged: {self.unevenness:.2g}")
         lost = known.speeds(self.speeds[~np.all(self.continued, axis=1)])
         if lost.size:
             listed = ", ".join(f"{f:.6g}" for f in lost)
-            lines.append(f"modes not followed up to {speed}: {listed}")
-        if errors is None:
-            lines.append(NOT_KNOWN)
-        return "\n".join(lines)
+            lines.append(f"modes not followed up to [{known.speed}]: {listed}")
+        return "\n".join([*lines, *self._closing(self.basis_errors)])
 
 
 def campbell(

@@ -27,7 +27,7 @@ from exudyn_rotor.linear.modal.resonance import NO_EQUATIONS, Search, Stiffness
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, Content
 from exudyn_rotor.linear.model.build import linear_model, warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
-from exudyn_rotor.linear.over import ModelResult, in_table, warn_of_refused
+from exudyn_rotor.linear.over import ModelResult, basis_column, table_lines, warn_of_refused
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import numbers, storable
 from exudyn_rotor.solid_rotor import SolidRotor
@@ -70,10 +70,10 @@ class CriticalSpeedMap(ModelResult):
     --------
     >>> from exudyn_rotor import CriticalSpeedMap
     >>> print(CriticalSpeedMap([1e4, 4e4], [[50.0], [100.0]], [[0], [0]], 1.0).table())
-    undamped critical speeds of order 1 [rpm]
-      stiffness [N/m]
-      10000            477.465 forward
-      40000            954.93 forward
+    undamped critical speeds of order 1
+    stiffness [N/m]  critical speed [rpm]  whirl
+              10000               477.465  forward
+              40000                954.93  forward
     error of the basis: not known
     """
 
@@ -92,11 +92,12 @@ class CriticalSpeedMap(ModelResult):
         shown = Units.of(units)
         rows, places = np.nonzero(self.whirl_codes >= 0)
         errors = self.basis_errors
+        errors = None if errors is None else errors[rows, places]
         return {
             "stiffness [N/m]": self.stiffnesses[rows],
             f"critical speed [{shown.speed}]": shown.speeds(self.speeds[rows, places]),
             "whirl": np.array(WHIRLS)[self.whirl_codes[rows, places]],
-            "basis error": np.full(len(rows), np.nan) if errors is None else errors[rows, places],
+            **basis_column(errors, len(rows)),
         }
 
     def table(self, *, units: str = "rpm") -> str:
@@ -107,25 +108,9 @@ class CriticalSpeedMap(ModelResult):
         units : {'rpm', 'Hz', 'SI'}
             'SI' rad/s.
         """
-        shown = Units.of(units)
-        lines = [
-            f"undamped critical speeds of order {self.order:g} [{shown.speed}]",
-            "  stiffness [N/m]",
-        ]
-        errors = self.basis_errors
-        reduced = errors is not None and np.nansum(errors) > 0.0
-        for i, (stiffness, speeds, codes) in enumerate(
-            zip(self.stiffnesses, shown.speeds(self.speeds), self.whirl_codes, strict=True)
-        ):
-            entries = (
-                f"{speed:.6g} {WHIRLS[code]}"
-                for speed, code in zip(speeds, codes, strict=True)
-                if code >= 0
-            )
-            lines.append(f"  {stiffness:<15.6g}  " + (", ".join(entries) or "none"))
-            if reduced and not np.all(np.isnan(errors[i])):
-                lines[-1] += f" (basis error up to {in_table(np.nanmax(errors[i]))})"
-        return "\n".join([*lines, *self._closing(errors)])
+        lines = [f"undamped critical speeds of order {self.order:g}"]
+        lines += table_lines(self.columns(units))
+        return "\n".join([*lines, *self._closing(self.basis_errors)])
 
     def plot(
         self,
@@ -264,7 +249,9 @@ def critical_speed_map(
     unit = {n: X / _UNIT for n, X in _added(first, names).items()}
     # a map takes what a film is within its own smoothness, for films are solved at each speed
     error = 1e-9 if first.table_speeds.size else _FILM
-    search = Search(Stiffness(first, unit), Content.of(first), *given, tolerance, error)
+    search = Search(
+        Stiffness(first, unit, order=given[0]), Content.of(first), *given, tolerance, error
+    )
     judged = set() if accuracy is None else set(points(len(values)).tolist())
     solved: list[CriticalSpeeds | None] = []
     failed: list[tuple[str, Exception]] = []
@@ -306,7 +293,9 @@ def _added(model: LinearModel, names: Sequence[str]) -> dict[int, np.ndarray]:
         for count in (None, 0)
     )
     basis = np.eye(model.size) if model.moving_basis is None else model.moving_basis
-    return {n: basis.T @ (X - none.get(n, 0.0)) @ basis for n, X in stiff.items()}
+    added = {n: X - none.get(n, 0.0) for n, X in stiff.items()}
+    own = model.size - len(added[0])  # rings of supports in series, whose coordinates are the last
+    return {n: basis.T @ np.pad(X, (0, own)) @ basis for n, X in added.items()}
 
 
 def _collected(

@@ -22,7 +22,7 @@ from exudyn_rotor.linear.modal.resonance import (
 from exudyn_rotor.linear.modal.whirl import WHIRLS, Content
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.over import ModelResult, in_table
+from exudyn_rotor.linear.over import ModelResult, basis_column, table_lines
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.results import numbers, storable, words
 from exudyn_rotor.units import Units
@@ -63,8 +63,8 @@ class CriticalSpeeds(ModelResult):
     >>> result = CriticalSpeeds(1.0, [100.0], [0.0], ("forward",), [1], [[1.0]])
     >>> print(result.table())
     undamped critical speeds of order 1
-      [rpm]        [Hz]        n  whirl
-      954.93       15.9155     1  forward
+    critical speed [rpm]  inertial [Hz]  rotor frame [Hz]  n  whirl
+                  954.93        15.9155                 0  1  forward
     error of the basis: not known
     """
 
@@ -84,47 +84,26 @@ class CriticalSpeeds(ModelResult):
         """Return the table as columns; `units` are those of :meth:`table`."""
         shown = Units.of(units)
         rotor = shown.frequencies(self.frequencies_rotor)
-        errors = self.basis_errors
         return {
             f"critical speed [{shown.speed}]": shown.speeds(self.speeds),
-            f"frequency in the rotor frame [{shown.frequency}]": rotor,
+            f"inertial [{shown.frequency}]": shown.frequencies(self.order * self.speeds),
+            f"rotor frame [{shown.frequency}]": rotor,
             "nodal diameters": self.nodal_diameters,
             "whirl": np.array(self.whirl),
-            "basis error": np.full(len(self.whirl), np.nan) if errors is None else errors,
+            **basis_column(self.basis_errors, len(self.whirl)),
         }
-
-    @property
-    def splits(self) -> None:
-        """None: two planes of an averaged mesh have one critical speed."""
 
     def table(self, *, units: str = "rpm") -> str:
         """Return the critical speeds as lines of text.
 
-        The error of the basis is '-' where it is not estimated, see :attr:`basis_errors`.
-
         Parameters
         ----------
         units : {'rpm', 'Hz', 'SI'}
-            Of the first column, 'SI' rad/s; the second one is in Hz.
+            'SI' rad/s.
         """
-        shown = Units.of(units)
-        unit = f"[{shown.speed}]"
-        errors = self.basis_errors
-        reduced = errors is not None and np.any(errors > 0.0)
-        label = "      basis error" if reduced else ""
-        lines = [
-            f"undamped critical speeds of order {self.order:g}",
-            f"  {unit:<11}  [Hz]        n  whirl{label}",
-        ]
-        for i, (speed, n) in enumerate(zip(self.speeds, self.nodal_diameters, strict=True)):
-            count, hertz = n if n >= 0 else "-", speed / (2.0 * np.pi)
-            word = f"{self.whirl[i]:<9}  {in_table(errors[i]):<7}" if reduced else self.whirl[i]
-            lines.append(
-                f"  {shown.speeds(speed):<11.6g}  {hertz:<10.6g}  {count}  {word}".rstrip()
-            )
-        if not self.speeds.size:
-            lines.append("  none")
-        return "\n".join([*lines, *self._closing(errors)])
+        lines = [f"undamped critical speeds of order {self.order:g}"]
+        lines += table_lines(self.columns(units)) if self.speeds.size else ["none"]
+        return "\n".join([*lines, *self._closing(self.basis_errors)])
 
 
 def critical_speeds(
@@ -196,11 +175,11 @@ def critical_speeds(
     >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
     >>> print(critical_speeds(rotor, supports=supports, nodal_diameters=[1]).table())
     undamped critical speeds of order 1
-      [rpm]        [Hz]        n  whirl
-      954.93       15.9155     1  backward
-      954.93       15.9155     1  backward
-      954.93       15.9155     1  forward
-      954.93       15.9155     1  forward
+    critical speed [rpm]  inertial [Hz]  rotor frame [Hz]  n  whirl
+                  954.93        15.9155            31.831  1  backward
+                  954.93        15.9155            31.831  1  backward
+                  954.93        15.9155                 0  1  forward
+                  954.93        15.9155                 0  1  forward
     stiffening: tilt
     """
     given = checked(order, max_speed, nodal_diameters)
@@ -210,9 +189,10 @@ def critical_speeds(
         target, supports=supports, foundation=foundation, body=body, stiffening=stiffening,
         axes=axes,
     ).undamped()  # fmt: skip
-    search = Search(Stiffness(model), Content.of(model), *given, tolerance)
+    search = Search(Stiffness(model, order=given[0]), Content.of(model), *given, tolerance)
     result = collected(search.resonances(), search, model, accuracy is not None)
     search.warn()
+    model.warn_beyond(given[0] * result.speeds)
     if result.speeds.size:
         fastest = result.speeds[0] if max_speed is None else max_speed
         warn_of_left_out_stiffening(model, fastest)
@@ -270,7 +250,8 @@ def basis_errors(model: LinearModel, found: Sequence[Resonance], count: int) -> 
         errors[:count] = 0.0
         return errors
     richer = model.richer
-    lifted, stiffness = basis_error.lifting(model, richer), Stiffness(richer)
+    stiffness = Stiffness(richer, order=abs(float(found[0].multiples[0])) if found else 1.0)
+    lifted = basis_error.lifting(model, richer)
     for i, one in enumerate(found[:count]):
         lift, slope = one._replace(vectors=one.vectors @ lifted.T), None
         try:

@@ -98,12 +98,15 @@ class Stiffness:
     factor : float
     line : Line, optional
         What gives the equations in the place of the model.
+    order : float
+        Frequency over the speed, for coefficients over the frequency.
     """
 
     model: LinearModel
     unit: Terms = field(default_factory=dict)
     factor: float = 0.0
     line: Line | None = None
+    order: float = 1.0
     known: dict[float, PeriodicSystem] = field(default_factory=dict)
 
     def system(self, speed: float) -> PeriodicSystem:
@@ -111,7 +114,7 @@ class Stiffness:
         if self.line is not None:
             return self.line(speed)
         if speed not in self.known:
-            system, basis = self.model.at(speed), self.model.moving_basis
+            system, basis = self.model.at(speed, self.order * speed), self.model.moving_basis
             self.known[speed] = system if basis is None else system.projected(basis)
         return self.known[speed]
 

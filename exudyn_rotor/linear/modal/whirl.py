@@ -222,7 +222,7 @@ class Content:
         inertial = np.where(unseen | stands, np.abs(nu + main * speeds), np.abs(heard))
         rotor = np.where(unseen | stands, nu, rotor)
         diameters = np.where(stands, 0, self._diameters(by_wave))
-        lost = np.isnan(motions.bounds)[:, None]
+        lost = np.isnan(motions.bounds)[:, None] | np.isnan(motions.values)
         inertial, rotor = (np.where(lost, np.nan, each) for each in (inertial, rotor))
         codes, diameters = np.where(lost, UNKNOWN, codes), np.where(lost, -1, diameters)
         return _still(Named(motions, inertial, rotor, codes.astype(np.int64), diameters))

@@ -21,6 +21,7 @@ from exudyn_rotor.bearings.controlled_support import (
     PadSupport,
 )
 from exudyn_rotor.bearings.given import linear_supports
+from exudyn_rotor.bearings.series import SeriesSupport
 from exudyn_rotor.bearings.support import NoCoefficientsError, OutsideTableError, Support, acts
 from exudyn_rotor.calls import kept
 from exudyn_rotor.drives.gear_mesh import GearMesh
@@ -46,7 +47,12 @@ _CHANGE = 1e-14  # share of a stiffness that is the rounding of its change by th
 _ROUNDING = 1e-12  # share of a matrix by which it may differ after a turn and be isotropic
 End = tuple[str, str]  # names of a body and of its interface
 Seen = Callable[[End], Terms]  # what a support acts on, seen from outside
-WORDS = {ControlledSupport: "controller", FilmSupport: "voids", PadSupport: "pads"}
+WORDS = {
+    ControlledSupport: "controller",
+    FilmSupport: "voids",
+    PadSupport: "pads",
+    SeriesSupport: "ring",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +64,8 @@ class Element:
     ends : tuple of (str, str)
         Bodies and their interfaces.
     matrices : callable
-        Takes the speed Ω [rad/s], gives stiffness and damping, each (p, p), p a multiple of 3.
+        Takes the speed Ω, and the frequency of the motion, that of Ω without it [rad/s]; gives
+        stiffness and damping, each (p, p), p a multiple of 3.
     motion : callable
         Takes a function that gives the motion (6, k) of an end, gives u as Fourier terms (p, k).
     turns : float
@@ -72,11 +79,15 @@ class Element:
     law : ControlledSupport or another with coordinates of its own, optional
         What it was made from.
     mass : callable, optional
-        Takes the speed, gives a mass [kg] that goes with u across the axis, in axes that stand.
+        As `matrices`, gives a mass (p, p) [kg] that goes with u, in axes that stand.
+    table_frequencies : ndarray
+        Frequencies of its tables [rad/s]; none where it does not depend on the frequency.
+    held_beyond : bool
+        Whether it may keep the ends of its tables beyond them.
     """
 
     ends: tuple[End, ...]
-    matrices: Callable[[float], tuple[np.ndarray, np.ndarray]]
+    matrices: Callable[..., tuple[np.ndarray, np.ndarray]]
     motion: Callable[[Seen], Terms]
     turns: float = 0.0
     varies: bool = False
@@ -84,12 +95,19 @@ class Element:
     table_speeds: np.ndarray = field(default_factory=lambda: np.zeros(0))
     holding: Callable[[], np.ndarray] | None = None
     law: Controlled | None = None
-    mass: Callable[[float], float] | None = None
+    mass: Callable[..., np.ndarray] | None = None
+    table_frequencies: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    held_beyond: bool = False
 
     @property
     def what(self) -> str:
         """The element, for messages."""
         return " – ".join(filter(None, (":".join(filter(None, end)) for end in self.ends)))
+
+    def coefficients(self, speed: float, frequency: float | None = None) -> tuple[np.ndarray, ...]:
+        """Return stiffness, damping and, where there is one, the mass."""
+        found = self.matrices(speed, frequency)
+        return found if self.mass is None else (*found, self.mass(speed, frequency))
 
     def at_rest(self) -> np.ndarray:
         """Return a stiffness that tells which motions it holds, (p, p).
@@ -126,7 +144,18 @@ class Element:
         return damping, stiffness
 
     def check_axes(self, turns: int) -> None:
-        """Refuse an anisotropic element that turns otherwise than the axes do."""
+        """Refuse an anisotropic element that turns otherwise than the axes do, and such a mass."""
+        if turns and self.table_frequencies.size:
+            raise ValueError(
+                f"supports: {self.what} has coefficients over the frequency, which need a rotor "
+                "that is round, and axes that stand still; give support.at_frequency(…), or leave "
+                "axes='rotor' out"
+            )
+        if turns and self.mass is not None and not is_isotropic_matrix(self.mass(0.0)):
+            raise ValueError(
+                f"supports: {self.what} has a mass that is not the same in all directions, which "
+                "needs a rotor that is round, and axes that stand still"
+            )
         if self.turns and self.turns != turns and not self.is_isotropic(0.0):
             raise ValueError(
                 f"supports: {self.what} is not the same in all directions and turns with "
@@ -190,7 +219,10 @@ def support_element(
     Its tables are over `rate` times Ω; one in the rotor's frame turns with `ratio` times Ω.
     """
 
-    def matrices(speed: float) -> tuple[np.ndarray, np.ndarray]:
+    def pair(speed: float, frequency: float | None) -> tuple[float, float]:
+        return rate * speed, abs(speed) if frequency is None else frequency
+
+    def matrices(speed: float, frequency: float | None = None) -> tuple[np.ndarray, np.ndarray]:
         try:
             support.check_range(rate * speed)
         except OutsideTableError as error:
@@ -199,7 +231,10 @@ def support_element(
             raise OutsideTableError(
                 f"{error}; it turns with {rate:g} times the speed of the analysis, {speed:g} rad/s"
             ) from None
-        return support.matrices(rate * speed)
+        return support.matrices(*pair(speed, frequency))
+
+    def mass(speed: float, frequency: float | None = None) -> np.ndarray:
+        return support.mass_matrix(*pair(speed, frequency))
 
     speeds = support.table_speeds / rate if rate and support.varies else np.zeros(0)
     return Element(
@@ -211,12 +246,14 @@ def support_element(
         support.stiffness_varies,
         speeds,
         lambda: support.matrices(0.0)[0],
-        mass=(lambda speed: support.mass_at(rate * speed)) if acts(support.mass) else None,
+        mass=mass if acts(support.mass) else None,
+        table_frequencies=support.table_frequencies if support.varies else np.zeros(0),
+        held_beyond=support.extrapolate,
     )
 
 
 def _gear_element(gears: GearMesh, ends: tuple[End, End]) -> Element:
-    return Element(ends, lambda _: gears.matrices(), lambda seen: stacked([*map(seen, ends)]))
+    return Element(ends, lambda *_: gears.matrices(), lambda seen: stacked([*map(seen, ends)]))
 
 
 def with_own(
@@ -224,6 +261,8 @@ def with_own(
 ) -> list[Element]:
     """Return the elements of a support with coordinates of its own."""
     at = _part(_relative(end, bases.get(one.interface)), slice(0, 3))
+    if isinstance(one, SeriesSupport):
+        return _series_elements(one, end, bases.get(one.interface), rate, own)
     if isinstance(one, PadSupport):
         return [_pad_element(one, place, at, end, rate, own) for place in range(one.size)]
     ports = [at]
@@ -232,11 +271,11 @@ def with_own(
         ports.append(_part(sensed, slice(0, 3)))
     lifted = np.kron(np.eye(len(ports) + own.size // 2), ACROSS)
 
-    def matrices(speed: float) -> tuple[np.ndarray, np.ndarray]:
+    def matrices(*_: float) -> tuple[np.ndarray, np.ndarray]:
         K, D = one.stiffness, one.damping
         return lifted @ K @ lifted.T, lifted @ D @ lifted.T
 
-    def of_film(speed: float) -> tuple[np.ndarray, np.ndarray]:
+    def of_film(speed: float, *_: float) -> tuple[np.ndarray, np.ndarray]:
         D, K = one.matrices(rate * speed)
         return lifted @ K @ lifted.T, lifted @ D @ lifted.T
 
@@ -249,13 +288,29 @@ def with_own(
     return [Element((end,), of_film, motion, varies=True, stiffness_varies=True)]
 
 
+def _series_elements(
+    one: SeriesSupport, end: End, base: End | None, rate: float, own: OwnBody
+) -> list[Element]:
+    """Return what acts between a rotor and a ring, and between the ring and its base."""
+
+    def ring(seen: Seen) -> Terms:
+        return {n: np.vstack([U, 0.0 * U]) for n, U in seen((own.name, "")).items()}
+
+    inner = support_element(one.inner, end, None, rate, rate)
+    outer = support_element(one.outer, end, base, rate, rate)
+    return [
+        replace(inner, motion=lambda seen: difference(seen(end), ring(seen))),
+        replace(outer, motion=ring if base is None else lambda s: difference(ring(s), s(base))),
+    ]
+
+
 def _pad_element(
     one: PadSupport, place: int, at: Callable, end: End, rate: float, own: OwnBody
 ) -> Element:
     """Return the film of a pad, which acts on ``x − s t``."""
     film, tangent = one.films[place], np.append(one.tangents[place], 0.0)
 
-    def matrices(speed: float) -> tuple[np.ndarray, np.ndarray]:
+    def matrices(speed: float, *_: float) -> tuple[np.ndarray, np.ndarray]:
         film.check_range(rate * speed)
         return tuple(X[:3, :3] for X in film.matrices(rate * speed))
 
@@ -273,6 +328,7 @@ def elements_of(
     bases: Mapping[str, End],
     turns: int,
     kind: str = "full",
+    begun: int = 0,
 ) -> tuple[list[Element], list[OwnBody]]:
     """Return the elements of a model, and the coordinates that some of them bring.
 
@@ -288,7 +344,9 @@ def elements_of(
         Axes of the own coordinates.
     kind : {'full', 'static', 'undamped'}
         'static' elements have their static stiffness in the place of own coordinates; 'undamped'
-        ones are also without damping and the skew part of their stiffness.
+        ones are also without damping and the skew part of their stiffness, and keep rings.
+    begun : int
+        Number of own coordinates' bodies that there are already.
 
     Raises
     ------
@@ -299,8 +357,10 @@ def elements_of(
     for name, given in supports.items():
         plain, controlled = linear_supports(given)
         if kind != "full":
-            plain = [*plain, *(Support(c.interface, c.static_stiffness) for c in controlled)]
-            controlled = ()
+            rings = [c for c in controlled if isinstance(c, SeriesSupport) and kind == "undamped"]
+            others = (c for c in controlled if c not in rings)
+            plain = [*plain, *(Support(c.interface, c.static_stiffness) for c in others)]
+            controlled = [ring.undamped() for ring in rings]
         if kind == "undamped":
             plain = [one.undamped() for one in plain]
         ratio = ratios[name]
@@ -308,7 +368,7 @@ def elements_of(
             base = bases.get(one.interface)
             elements.append(support_element(one, (name, one.interface), base, ratio, ratio))
         for one in sorted(controlled, key=lambda each: list(WORDS).index(type(each))):
-            own.append(own_body(one, len(own) + 1, turns))
+            own.append(own_body(one, begun + len(own) + 1, turns))
             elements += with_own(one, (name, one.interface), bases, ratio, own[-1])
     for link in links:
         first, second = link.ends
@@ -429,19 +489,24 @@ class Assembly:
         )
         return other
 
-    def system(self, speed: float) -> PeriodicSystem:
-        """Return the equations at a spin speed [rad/s]."""
-        return self._system(float(speed), [one.matrices(speed) for one in self._varying])
+    def system(self, speed: float, frequency: float | None = None) -> PeriodicSystem:
+        """Return the equations at a spin speed, and a frequency of motions [rad/s]."""
+        given = [one.coefficients(speed, frequency) for one in self._varying]
+        return self._system(float(speed), given)
 
-    def systems(self, speeds: np.ndarray) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
+    def systems(
+        self, speeds: np.ndarray, frequencies: np.ndarray | None = None
+    ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         """Return the equations at spin speeds (s,), stacked, and why there are none at some.
 
-        Speeds at which there are none are left out of the stack.
+        Speeds at which there are none are left out of the stack. Frequencies of motions (s,) are
+        those of the speeds by default.
         """
         found, refused = [], {}
-        for place, speed in enumerate(speeds.tolist()):
+        rates = [None] * len(speeds) if frequencies is None else frequencies.tolist()
+        for place, pair in enumerate(zip(speeds.tolist(), rates, strict=True)):
             try:
-                found.append([one.matrices(speed) for one in self._varying])
+                found.append([one.coefficients(*pair) for one in self._varying])
             except NO_EQUATIONS as error:
                 refused[place] = error
         if not found:
@@ -451,7 +516,7 @@ class Assembly:
     def at_points(self, speeds: np.ndarray, coefficients: Sequence) -> PeriodicSystem:
         """Return the equations at points, stacked, each with coefficients of its elements.
 
-        `coefficients` are stiffness and damping of each element, as stacks over the points.
+        `coefficients` are :meth:`Element.coefficients` of each, as stacks over the points.
         """
         varying = tuple(replace(element, varies=True) for element in self.elements)
         return replace(self, elements=varying)._system(speeds, coefficients)
@@ -467,40 +532,31 @@ class Assembly:
             {n: np.tensordot(np.power.outer(speed, powers), X, 1) for n, (powers, X) in each}
             for each in map(dict.items, self._powers)
         )
-        rest = iter(coefficients)
+        M, rest = self.M, iter(coefficients)
         for element, U in zip(self.elements, self.motions, strict=True):
+            given = next(rest) if element.varies else (None, None)
             if element.varies:
-                damping, stiffness = element.terms(next(rest), factor, U, self.turns)
+                damping, stiffness = element.terms(given[:2], factor, U, self.turns)
                 add(D, damping)
                 add(K, stiffness)
-        M = self.M
-        for (element, _), parts in zip(self._massive, self._inertia, strict=True):
-            m = factor * 0.0 + np.vectorize(element.mass, otypes=[float])(factor)
-            M = M + m * parts[0]
-            add(D, {n: 2.0 * factor * m * X for n, X in parts[1].items()})
-            add(K, {n: factor**2 * m * X for n, X in parts[2].items()})
+            if element.mass is not None:
+                mass = given[2] if element.varies else element.mass(0.0)
+                M = M + self._inertia(mass, U, factor, D, K)
         return PeriodicSystem(speed, M, without_rounding(D), without_rounding(K), self._H)
 
-    @property
-    def _massive(self) -> list[tuple[Element, Terms]]:
-        """Elements with a mass, and their motions."""
-        pairs = zip(self.elements, self.motions, strict=True)
-        return [(element, U) for element, U in pairs if element.mass is not None]
+    @staticmethod
+    def _inertia(
+        mass: np.ndarray, U: Terms, factor: float | np.ndarray, D: dict, K: dict
+    ) -> np.ndarray:
+        """Return the mass matrix of a mass; add what follows as axes turn: ü = d²(U y)/dt².
 
-    @cached_property
-    def _inertia(self) -> list[tuple[np.ndarray, Terms, Terms]]:
-        """M, D over 2 Ω and K over Ω² of a kilogram of each, as the axes turn: ü = d²(U y)/dt².
-
-        Of M the mean: a mass is alike in all directions.
+        Of the mass matrix the mean: in axes that turn, a mass is alike in all directions.
         """
-        found = []
-        for _, U in self._massive:
-            size = len(next(iter(U.values())))
-            across = np.diag((np.arange(size) < 2).astype(float))
-            first = rate_of(U)
-            parts = [congruent(U, across, each) for each in (U, first, rate_of(first))]
-            found.append((parts[0][0].real, parts[1], parts[2]))
-        return found
+        first = rate_of(U)
+        if first:
+            add(D, congruent(U, mass, first), 2.0 * factor)
+            add(K, congruent(U, mass, rate_of(first)), factor**2)
+        return congruent(U, mass)[0].real
 
     @cached_property
     def _H(self) -> list[tuple[float, np.ndarray]]:

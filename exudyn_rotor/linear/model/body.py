@@ -29,7 +29,7 @@ from exudyn_rotor.linear.model.turning import (
     radius_of_gyration,
     turning_of,
 )
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.rotating_axes import axes_of
@@ -377,4 +377,5 @@ def rigid_columns_of(alone: RotorAlone) -> tuple[list[str], np.ndarray]:
     if alone.spin is not None and ModeKind.SPIN in alone.rotor.rigid_kinds:
         columns = columns.copy()
         columns[:, alone.rotor.rigid_kinds.index(ModeKind.SPIN)] = alone.spin.momentum
-    return names, columns
+    present = np.linalg.norm(columns, axis=0) > 0.5  # a scene may prescribe some
+    return [name for name, yes in zip(names, present, strict=True) if yes], columns[:, present]

@@ -15,8 +15,8 @@ from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.model.body import EVEN
 from exudyn_rotor.linear.model.linear_model import AXES, ON_FOUNDATION, LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
-from exudyn_rotor.linear.model.scene.linear_scene import ABOUT, LinearScene
-from exudyn_rotor.linear.model.scene.scene_model import SceneModel
+from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
+from exudyn_rotor.linear.model.scene.scene_model import ABOUT, SceneModel
 from exudyn_rotor.linear.model.scene.scene_train import scene_train
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
@@ -41,7 +41,7 @@ def linear_model(
     foundation: Foundation | None = None,
     body: RotorBody | Sequence[RotorBody] | None = None,
     stiffening: str = "auto",
-    about: str = "steady",
+    about: str = "equilibrium",
     axes: str = "auto",
 ) -> LinearModel:
     """Return the linear equations of a rotor on supports, or of a scene with a rotor in it.
@@ -66,11 +66,10 @@ def linear_model(
         Centrifugal stiffening of a rotor; a scene has that of its body. 'full' needs a rotor with
         prestress (:meth:`SolidRotor.prestress`); 'auto' is 'full' with one, which it computes for
         a SolidRotor with elements, and 'tilt' without.
-    about : {'steady', 'equilibrium', 'given'}
-        Motion about which a scene is linearised: the periodic motion under its loads and the
-        rotor's own unbalance at each speed; the same without this unbalance, films at rest under
-        their mean force, as in a list of supports; or its current state with the rotor undeformed
-        and journals where the weight by the lever rule, or their bearings' own load, holds them.
+    about : {'equilibrium', 'given'}
+        State about which a scene is linearised: the equilibrium under the loads that it has at
+        each speed, bearings under their forces there; or its current state with the rotor
+        undeformed and bearings under the weight by the lever rule, or their own load.
     axes : {'auto', 'inertial', 'rotor'}
         Axes of the equations: by default axes that stand still for a round rotor, and the axes of
         the rotor for an uneven one; :attr:`LinearModel.axes` says which were taken.
@@ -193,7 +192,7 @@ def _of_scene(
     if isinstance(body, list | tuple):
         return _of_train(*scene_train(mbs, body), axes)
     how = "the rotor in the scene, which add_rotor returned; a list of several"
-    return SceneModel.of(LinearScene.of(mbs, reduced_body(body, how=how), about=about), axes)
+    return SceneModel.of(LinearScene.of(mbs, reduced_body(body, how=how)), about, axes)
 
 
 def warn_of_structural_damping(model: LinearModel, what: str) -> None:

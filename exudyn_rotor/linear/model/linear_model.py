@@ -46,7 +46,7 @@ from exudyn_rotor.linear.model.body import (
 )
 from exudyn_rotor.linear.model.rotor_train import Link
 from exudyn_rotor.linear.model.spin import ARM
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.stiffening import LEVELS
 
@@ -180,10 +180,16 @@ class LinearModel:
         if not all(each.is_isotropic(0.0) for each in turning):
             return 1
         # a basis with halves of pairs is taken whole where that is constant, too
-        constant = self.foundation is None and not self._elements[1] and len(self._used) == 1
-        constant = constant and not any(e.varies or not e.is_isotropic(0.0) for e in elements)
         halves = any(self._alone(name, False).has_halves for name in self._used)
-        return int(constant and halves)
+        return int(self._is_alike and halves)
+
+    @property
+    def _is_alike(self) -> bool:
+        """Whether what acts on the only rotor is constant and the same in all directions."""
+        elements, own = self._elements
+        if own or self._standing_bodies or len(self._used) > 1:
+            return False
+        return not any(one.varies or not one.is_isotropic(0.0) for one in elements)
 
     @property
     def axes(self) -> str:
@@ -195,6 +201,11 @@ class LinearModel:
         if not at_rest:
             for element in elements:
                 element.check_axes(turns)
+        bodies = (*self._bodies(turns, at_rest), *own)
+        return Assembly(bodies, tuple(elements), 0 if at_rest else turns)
+
+    def _bodies(self, turns: int, at_rest: bool) -> list[RotorBody | StandingBody]:
+        """Return rotors and what stands beside them."""
         bodies = []
         for name in self._used:
             ratio = self.ratios[name]
@@ -208,9 +219,13 @@ class LinearModel:
             bodies.append(
                 rotor_body(name, alone, ratio, turns, is_apart=not self._holds_spin(name, alone))
             )
-        if self.foundation is not None:
-            bodies.append(foundation_body(self.foundation, next(iter(self._used.values()))))
-        return Assembly((*bodies, *own), tuple(elements), 0 if at_rest else turns)
+        return bodies + self._standing_bodies
+
+    @cached_property
+    def _standing_bodies(self) -> list[StandingBody]:
+        if self.foundation is None:
+            return []
+        return [foundation_body(self.foundation, next(iter(self._used.values())))]
 
     def _check_round(self, name: str) -> None:
         uneven = self._own_unevenness[name]
@@ -249,21 +264,29 @@ class LinearModel:
 
     # ------------------------------------------------------------------ equations
 
-    def at(self, speed: float) -> PeriodicSystem:
-        """Return the equations at a spin speed [rad/s].
+    def at(self, speed: float, frequency: float | None = None) -> PeriodicSystem:
+        """Return the equations at a spin speed, and a frequency of motions [rad/s].
+
+        Supports with coefficients over the frequency have those of the spin speed by default.
 
         Raises
         ------
         NoCoefficientsError
             For a speed beyond a table, or at which a film carries nothing.
         """
-        return self.assembly(speed).system(speed)
+        return self.assembly(speed).system(speed, frequency)
 
-    def at_all(self, speeds: Sequence[float], within: str = "") -> PeriodicSystem:
+    def at_all(
+        self,
+        speeds: Sequence[float],
+        within: str = "",
+        frequencies: Sequence[float] | None = None,
+    ) -> PeriodicSystem:
         """Return the equations at spin speeds (s,) [rad/s] as one stack.
 
         NaN at speeds where there are none, of which one warning tells. Of motions `within`
-        :attr:`held_basis`, 'held', or :attr:`moving_basis`, 'moving'; of all by default.
+        :attr:`held_basis`, 'held', or :attr:`moving_basis`, 'moving'; of all by default. With
+        motions of the frequencies (s,) [rad/s]; those of the speeds by default.
 
         Raises
         ------
@@ -274,7 +297,8 @@ class LinearModel:
         parts, refused = [], {}
         for places in (np.flatnonzero(speeds), np.flatnonzero(speeds == 0.0)):
             if places.size:
-                part, errors = self._systems(speeds[places], within)
+                rates = None if frequencies is None else np.asarray(frequencies)[places]
+                part, errors = self._systems(speeds[places], within, rates)
                 refused |= {int(places[i]): error for i, error in errors.items()}
                 if part is not None:
                     parts.append((np.delete(places, list(errors)), part))
@@ -284,16 +308,16 @@ class LinearModel:
         return spread(speeds, parts)
 
     def _systems(
-        self, speeds: np.ndarray, within: str = ""
+        self, speeds: np.ndarray, within: str = "", frequencies: np.ndarray | None = None
     ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         """Return the stack at speeds (s,), all zero or none, and why there are none at some."""
         basis = getattr(self, f"{within}_basis") if within else None
         if basis is None:
-            return self.assembly(speeds[0]).systems(speeds)
+            return self.assembly(speeds[0]).systems(speeds, frequencies)
         key = within, bool(speeds[0])
         if key not in self._projected:
             self._projected[key] = self.assembly(speeds[0]).projected(basis)
-        return self._projected[key].systems(speeds)
+        return self._projected[key].systems(speeds, frequencies)
 
     @cached_property
     def _projected(self) -> dict[tuple[str, bool], Assembly]:
@@ -321,7 +345,7 @@ class LinearModel:
         NoCoefficientsError
             As :meth:`at`.
         """
-        return [element.matrices(speed) for element in self._elements[0]]
+        return [element.coefficients(speed) for element in self._elements[0]]
 
     def at_points(self, speeds: np.ndarray, coefficients: Sequence) -> PeriodicSystem:
         """Return the equations of models of one :attr:`pattern` at points, as one stack.
@@ -330,12 +354,14 @@ class LinearModel:
         """
         return self.assembly(speeds[0]).at_points(speeds, stacked_coefficients(coefficients))
 
-    def matrices(self, speed: float) -> Matrices:
+    def matrices(self, speed: float, frequency: float | None = None) -> Matrices:
         """Return mass, damping and stiffness at a spin speed [rad/s].
 
         Parameters
         ----------
         speed : float
+        frequency : float, optional
+            Of motions, for supports with coefficients over it; that of the speed by default.
 
         Returns
         -------
@@ -347,7 +373,9 @@ class LinearModel:
         ValueError
             Where the equations are periodic, as of an uneven rotor on uneven supports.
         """
-        system = self.at(checks.number(speed, "speed", "rad/s"))
+        if frequency is not None:
+            checks.number(frequency, "frequency", "rad/s", least=0.0)
+        system = self.at(checks.number(speed, "speed", "rad/s"), frequency)
         if not system.is_constant:
             raise ValueError(
                 "matrices: the equations of an uneven rotor on uneven supports repeat every "
@@ -451,6 +479,49 @@ class LinearModel:
     def table_speeds(self) -> np.ndarray:
         """Ω at the points of the tables of supports [rad/s], at which there are kinks."""
         return np.unique(np.concatenate([[], *(e.table_speeds for e in self._elements[0])]))
+
+    @property
+    def table_frequencies(self) -> np.ndarray:
+        """Frequencies of the tables of supports [rad/s]; none where nothing depends on it."""
+        return np.unique(np.concatenate([[], *(e.table_frequencies for e in self._elements[0])]))
+
+    @cached_property
+    def over_frequency(self) -> bool:
+        """Whether coefficients of a support depend on the frequency of a motion."""
+        return bool(self.table_frequencies.size)
+
+    def check_without_frequency(self, what: str) -> None:
+        """Refuse coefficients over the frequency, of which motions of `what` have several.
+
+        Raises
+        ------
+        ValueError
+        """
+        for element in self._elements[0]:
+            if element.table_frequencies.size:
+                raise ValueError(
+                    f"supports: {element.what} has coefficients over the frequency, and {what} has "
+                    "several at once; give support.at_frequency(…), or a bearing with states of "
+                    "its own"
+                )
+
+    def warn_beyond(self, frequencies: np.ndarray) -> None:
+        """Warn of motions [rad/s] beyond a table over the frequency, which keeps its end there."""
+        for element in () if self.is_richer else self._elements[0]:
+            table, used = element.table_frequencies, np.asarray(frequencies)
+            if table.size and not element.held_beyond:
+                slack = _HELD * table.max()
+                used = used[(used < table.min() - slack) | (used > table.max() + slack)]
+                if used.size:
+                    warnings.warn(
+                        f"support at {element.what}: its table holds {table.min():g} to "
+                        f"{table.max():g} rad/s, and keeps its ends for motions of "
+                        f"{used.min():.5g} to {used.max():.5g} rad/s; give more of it, or "
+                        "extrapolate=True",
+                        UserWarning,
+                        stacklevel=user_level(),
+                    )
+                    return
 
     @property
     def has_structural_damping(self) -> bool:
@@ -633,9 +704,12 @@ class LinearModel:
         """The model in which forced motions are found: nothing of the rotor is averaged.
 
         Near a critical speed a forced motion stands in the rotor, where the unevenness of a mesh
-        counts to first order. It has few harmonics in the axes of the rotor.
+        counts to first order. It has few harmonics in the axes of the rotor. Coefficients over the
+        frequency need axes that stand still.
         """
-        return replace(self, wanted_axes="rotor") if self.wanted_axes == "auto" else self
+        if self.wanted_axes != "auto" or self.over_frequency:
+            return self
+        return replace(self, wanted_axes="rotor")
 
     def __repr__(self) -> str:
         lines = [f"LinearModel of {self.size} coordinates in {self.axes} axes"]

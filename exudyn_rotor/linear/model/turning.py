@@ -25,7 +25,7 @@ import scipy.linalg as la
 
 from exudyn_rotor.calls import kept
 from exudyn_rotor.linear.equations import without_rounding
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.rotating_axes import axes_of, turning_harmonics
@@ -89,6 +89,7 @@ def _rings(rotor: ReducedRotor, axes: np.ndarray) -> tuple[np.ndarray, np.ndarra
     return np.vstack(points), np.vstack(motion)
 
 
+@kept
 def radius_of_gyration(invariants: Invariants) -> float:
     """Return the radius of gyration about the centre of mass [m]."""
     return float(np.sqrt(np.trace(invariants.J) / invariants.mass))

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.calls import kept
 from exudyn_rotor.linear.equations import Terms, turned
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -401,12 +402,14 @@ def in_words(model: LinearModel, unbalances: Sequence[Unbalance], own: bool) -> 
     return found
 
 
+@kept
 def _static_unbalance(rotor: ReducedRotor) -> np.ndarray:
     """Return mass times eccentricity (3,) [kg m]."""
     off = rotor.center_of_mass - rotor.axis.project(rotor.center_of_mass)
     return rotor.invariants.mass * off
 
 
+@kept
 def _is_balanced(rotor: ReducedRotor) -> bool:
     """Return whether centre of mass and principal axis are on the spin axis but for rounding."""
     inv, e = rotor.invariants, rotor.axis.direction

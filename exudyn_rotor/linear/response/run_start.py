@@ -29,14 +29,14 @@ from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import StartState, spin_at_start
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, words
 from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.rotating_axes import axes_of
 
 BASES = ("rotor", "scene")
-_OWN = dict(zip((MagneticBearing, JournalBearing, TiltingPadBearing), WORDS.values(), strict=True))
+_OWN = dict(zip((MagneticBearing, JournalBearing, TiltingPadBearing), WORDS.values(), strict=False))
 _SAME_SPEED = 1e-9  # share by which a wanted speed may differ from a computed one
 _SAME_MOTION = 1e-4  # share of the largest motion of an interface by small harmonics left out
 

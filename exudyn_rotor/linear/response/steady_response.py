@@ -18,6 +18,7 @@ from exudyn_rotor.calls import one_thread, user_level
 from exudyn_rotor.linear.modal.basis_error import basis_errors, warn
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.over import forced_over
 from exudyn_rotor.linear.response.loads import (
     At,
     BaseAcceleration,
@@ -148,6 +149,7 @@ def unbalance_response(
         if not moving.size:
             return {0: np.zeros((len(speeds), model.size), dtype=complex)}
         stack = model.at_all(speeds[moving], "held")
+        model.warn_beyond(np.abs(speeds[moving]))
         known = moving[stack.known]
         if len(known) < len(moving):
             stack = stack[np.flatnonzero(stack.known)]
@@ -241,11 +243,12 @@ def harmonic_response(
     warn_of_left_out_stiffening(model, speed)
 
     def solve(model: LinearModel, frequencies: np.ndarray) -> Coordinates:
-        system, load = model.at(speed), total(loads, model, speed)
+        load = total(loads, model, speed)
+        model.warn_beyond(np.abs(np.add.outer(frequencies, speed * np.array(list(load)))))
         given = {"driven": model.free_spins, "tolerance": tolerance}
 
         def part(rows: slice) -> Coordinates:
-            return forced_motions(system, load, frequencies[rows], **given)
+            return forced_over(model, speed, load, frequencies[rows], **given)
 
         count = len(frequencies)
         every = np.arange(count)

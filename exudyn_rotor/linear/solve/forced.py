@@ -202,14 +202,15 @@ def _reach(system: PeriodicSystem) -> int:
 
 def _acting(system: PeriodicSystem) -> np.ndarray:
     """Return a basis (k, r) of the forces that repeat, and of the motions that they depend on."""
-    weights, total = np.random.default_rng(0), 0.0
+    weights, rows = np.random.default_rng(0), []
     for terms in (system.K, system.D):
         for n, X in terms.items():
-            if n > 0:  # a sum with any weights has the rows and columns of all
+            if n > 0:  # over speeds, a sum with any weights has the rows and columns of all
                 each = weights.uniform(0.5, 1.5, np.size(system.speed))
                 mean = np.tensordot(each, X, axes=(0, 0)) if X.ndim == 3 else X * each
-                total = total + mean / (np.abs(mean).max() or 1.0)
-    rows = np.hstack([part for Y in (total, total.T) for part in (Y.real, Y.imag)])
+                mean = mean / (np.abs(mean).max() or 1.0)
+                rows += [part for Y in (mean, mean.T) for part in (Y.real, Y.imag)]
+    rows = np.hstack(rows)
     Q, R, _ = la.qr(rows, mode="economic", pivoting=True)
     values = np.abs(R.diagonal())
     return Q[:, values > _ROUNDING * values[0]]

@@ -15,7 +15,9 @@ import numpy as np
 from exudyn_rotor.linear.equations import PeriodicSystem, States
 
 _SIZES = (2, 3, 4, 6)  # harmonics on either side, in steps of the coefficients
-_LARGEST = 300  # unknowns, beyond which harmonics are not added
+_LARGEST, _MOST = 300, 420  # unknowns beyond which harmonics are added for slow motions, for none
+_SLOW = 3.0  # |λ| over Ω up to which a motion is slow
+_UNSETTLED = 1e-4  # energy at the edge with which a slow motion is not waited for
 _FAST = 30.0  # decay over Ω above which a motion is over before the coefficients change
 # energy at the edge of the sum that counts as none, over the tolerance, which is the error of λ
 # where no two motions meet; and energy that is too much
@@ -46,8 +48,10 @@ def hill_motions(
     tolerance: float,
     begin: int = 0,
     neutral: float | None = None,
-) -> tuple[Exponents, int]:
+) -> tuple[Exponents, int, bool]:
     """Return the motions of a system, and with how many harmonics to begin at the next speed.
+
+    And whether a slow motion is missed that may be the one that grows.
 
     Harmonics are added until those at the edge of the sum hold next to nothing of each motion. Fast
     decays are not waited for; where only the growth of the least stable motion is asked for, nor
@@ -58,23 +62,44 @@ def hill_motions(
     while True:
         orders = system.step * np.arange(-_SIZES[place], _SIZES[place] + 1)
         values, states = _solved(made, orders, system.speed)
+        hidden, reach = _unsettled(values, states, orders, system)
         chosen = one_of_each_family(values, states, orders, system, made)
         values, states = values[chosen], states[:, :, chosen]
         energy = np.sum(np.abs(states) ** 2, axis=1)
         energy = energy / energy.sum(axis=0)
         edges = energy[0] + energy[-1]
-        growth = values.real
+        growth, least = values.real, -np.inf
         fast = -growth > _FAST * abs(system.speed)
         if neutral is not None:
-            fast |= growth < growth[np.abs(growth) > neutral].max(initial=-np.inf)
-        done = fast | (edges <= _EDGE * tolerance)
+            least = growth[np.abs(growth) > neutral].max(initial=-np.inf)
+            fast |= growth < least
+        lost = np.any(hidden >= least)  # what is not resolved may be the one that grows
+        done = np.all(fast | (edges <= _EDGE * tolerance)) and not lost
         larger = 2 * system.size * (2 * _SIZES[min(place + 1, len(_SIZES) - 1)] + 1)
-        if np.all(done) or place + 1 == len(_SIZES) or larger > _LARGEST:
+        if done or place + 1 == len(_SIZES) or larger > (_MOST if lost else _LARGEST):
             break
         place += 1
     fewer = np.all(fast | (energy[1] + energy[-2] <= _EDGE * tolerance))
     found = (-growth > _FAST * abs(system.speed)) | (edges <= _LOST)
-    return Exponents(np.where(found, values, np.nan), states, orders), max(place - fewer, 0)
+    missed = hidden[reach > _LOST] > growth[found].max(initial=-np.inf)
+    kept = Exponents(np.where(found, values, np.nan), states, orders)
+    return kept, max(place - fewer, 0), bool(np.any(missed))
+
+
+def _unsettled(
+    values: np.ndarray, states: np.ndarray, orders: np.ndarray, system: PeriodicSystem
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the growth of slow motions around zero whose harmonics reach the edge of the sum.
+
+    And the share of their energy there.
+    """
+    energy = np.sum(np.abs(states) ** 2, axis=1)
+    energy = energy / energy.sum(axis=0)
+    mean = np.abs(orders @ energy) / system.step
+    slow = np.abs(values) <= _SLOW * abs(system.speed)
+    edges = energy[0] + energy[-1]
+    chosen = slow & (mean <= 0.5) & (edges > _UNSETTLED)
+    return values.real[chosen], edges[chosen]
 
 
 def one_of_each_family(

@@ -109,7 +109,8 @@ def motions_of(
     stack : PeriodicSystem
         At s speeds.
     method : {'auto', 'hill', 'floquet'}
-        For periodic equations: harmonics, or the monodromy matrix.
+        For periodic equations: harmonics, or the monodromy matrix. 'auto' takes harmonics, but
+        where these miss a slow motion that grows.
     tolerance : float
         Largest relative error of λ by harmonics that are left out.
     least_stable : bool
@@ -125,32 +126,6 @@ def motions_of(
         parts = _periodic(reduced, method, tolerance, least_stable, told)
     found = _joined(stack.speed, [(known[places], part) for places, part in parts])
     return found if basis is None else found.in_all(basis, free)
-
-
-def margins_of(stack: PeriodicSystem, method: str = "auto", tolerance: float = 1e-6) -> np.ndarray:
-    """Return by how much the least stable motion at each speed grows beyond its bound [1/s], (s,).
-
-    Of motions that are not neutral; less the bound where all are; NaN where there are no equations.
-    The same as from :func:`motions_of` for the least stable motion, of constant equations without
-    shapes.
-    """
-    margins, known = np.full(len(stack.speed), np.nan), np.flatnonzero(stack.known)
-    reduced, _, _ = _resisted(stack[known])
-    if not reduced.size:
-        margins[known] = -0.0
-    elif reduced.is_constant:
-        made = states_of(reduced)
-        margins[known] = _margins(np.linalg.eigvals(made.A[0]), _bounds(made))
-    else:
-        for places, part in _periodic(reduced, method, tolerance, True, None):
-            margins[known[places]] = _margins(part.values, part.bounds)
-    return margins
-
-
-def _margins(values: np.ndarray, bounds: np.ndarray) -> np.ndarray:
-    moves = np.abs(values.real) > bounds[:, None]
-    growth = np.where(moves, values.real, -np.inf).max(axis=1, initial=-np.inf)
-    return np.where(np.any(moves, axis=1), growth, 0.0) - bounds
 
 
 def _resisted(
@@ -206,7 +181,11 @@ def _periodic(
             exponents = floquet_motions(system, made)
         else:
             neutral = bound if least_stable else None
-            exponents, size = hill_motions(system, made, tolerance, size, neutral)
+            exponents, size, missed = hill_motions(system, made, tolerance, size, neutral)
+            if missed and method == "auto":
+                other = floquet_motions(system, made)
+                if np.nanmax(other.values.real) > max(np.nanmax(exponents.values.real), bound):
+                    exponents = other
         parts.append((places, _ascending(system.speed, exponents, made, bound)))
         if told is not None:
             told(1)

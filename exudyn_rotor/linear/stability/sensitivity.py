@@ -31,11 +31,10 @@ from exudyn_rotor.linear.modal.whirl import Content, Named
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
-from exudyn_rotor.linear.over import motions_over
-from exudyn_rotor.linear.solve.forced import forced_motions
+from exudyn_rotor.linear.over import forced_over, motions_over
 from exudyn_rotor.linear.stability.stability import least_stable_of
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.results import Result, numbers, storable, words
+from exudyn_rotor.results import Result, numbers, storable, text_table, words
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.units import Units
 
@@ -69,8 +68,8 @@ class Sensitivity(Result):
     >>> result.zones
     ('B',)
     >>> print(result.table())
-    axis      peak |S|  peak [dB]  at [Hz]  zone
-    left, 1        3.5       10.9    31.83  B
+    axis     peak |S|  peak [dB]  at [Hz]  zone
+    left, 1       3.5    10.8814   31.831  B
     """
 
     axes: tuple[str, ...] = words("axes")
@@ -110,14 +109,7 @@ class Sensitivity(Result):
 
     def table(self, *, units: str = "rpm") -> str:
         """Return peaks and zones as text; `units` are 'rpm', 'Hz' or 'SI'."""
-        columns = self.columns(units)
-        names, rows = list(columns), list(zip(*columns.values(), strict=True))
-        width = max(map(len, (*self.axes, "axis"))) + 2
-        at = len(names[3]) + 2
-        lines = [f"{names[0]:<{width}}{names[1]:>8}{names[2]:>11}{names[3]:>{at}}  {names[4]}"]
-        for name, peak, decibel, where, zone in rows:
-            lines.append(f"{name:<{width}}{peak:>8.4g}{decibel:>11.1f}{where:>{at}.4g}  {zone}")
-        return "\n".join(lines)
+        return "\n".join(text_table(self.columns(units)))
 
     def plot(self, ax: Axes | None = None, *, units: str = "rpm") -> Axes:
         """Draw ``|S|`` of each axis over the frequency, with the limits of the zones."""
@@ -192,10 +184,10 @@ def sensitivity(
     >>> bearings = [MagneticBearing(interface=name, **parts) for name in ("left", "right")]
     >>> print(sensitivity(rotor, np.geomspace(10.0, 5e3, 50), supports=bearings).table())
     axis      peak |S|  peak [dB]  at [Hz]  zone
-    left, 1      1.662        4.4      153  A
-    left, 2      1.662        4.4      153  A
-    right, 1     1.662        4.4      153  A
-    right, 2     1.662        4.4      153  A
+    left, 1    1.66174    4.41125  153.016  A
+    left, 2    1.66174    4.41125  153.016  A
+    right, 1   1.66174    4.41125  153.016  A
+    right, 2   1.66174    4.41125  153.016  A
     """
     checks.instance(rotor, "rotor", (ReducedRotor, SolidRotor, RotorTrain))
     values = checks.ascending(frequencies, "frequencies", "rad/s")
@@ -276,8 +268,6 @@ def _of_axis(
     stiffness, damping = (X[:, _SENSOR] @ np.append(axis, 0.0) for X in matrices)
     rates = frequencies[:, None]
     loads = {n: -(stiffness + 1j * rates * damping) @ U for n, U in motion.items()}
-    system, held = model.at(speed), model.held_basis
-    system = system if held is None else system.projected(held)
-    found = forced_motions(system, loads, frequencies, held=held)
+    found = forced_over(model, speed, loads, frequencies, held=model.held_basis)
     place = sum(found[-n] @ U[_SENSOR].T for n, U in motion.items() if -n in found)
     return 1.0 + place[:, :2] @ axis

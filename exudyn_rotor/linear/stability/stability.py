@@ -35,7 +35,7 @@ from exudyn_rotor.linear.model.build import (
     warn_of_structural_damping,
 )
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.over import ModelResult, in_table, motions_over
+from exudyn_rotor.linear.over import ModelResult, basis_column, motions_over, table_lines
 from exudyn_rotor.linear.solve.motions import METHODS, Motions
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.results import numbers, storable
@@ -44,7 +44,6 @@ from exudyn_rotor.units import Units
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_EXACT = 1e-8  # share of a motion's rate: bounds below it are rounding of the last digits
 _SHOWN = 4.0  # times the strongest decay of lateral motions: what is drawn reaches down to there
 WHAT = "stability finds exponents"  # of structural damping, for the warning
 
@@ -93,8 +92,8 @@ class Stability(ModelResult):
     >>> names = {"frequencies_inertial": [[150.0]], "whirl_codes": [[0]], "nodal_diameters": [[1]]}
     >>> result = Stability([50.0], [[-1.0 + 100.0j]], [-1.0], [True], [1e-9], **names)
     >>> print(result.table())
-    speed [rpm]  lateral [1/s]    torsional        axial  frequency [Hz]  n  whirl      verdict
-        477.465             -1            -            -          23.873  1  forward    stable
+    speed [rpm]  lateral [1/s]  inertial [Hz]  n  whirl    stable
+        477.465             -1        23.8732  1  forward  stable
     least stable lateral motion: -1 1/s at 477.465 rpm, 23.873 Hz, forward, n = 1, log decrement ...
     error of the basis: not known
     """
@@ -260,18 +259,6 @@ class Stability(ModelResult):
             parts.append(f"log decrement {decrement:.3g}")
         return f"least stable {family} motion: " + ", ".join(parts)
 
-    def _written(self, family: str) -> list[str]:
-        """Return the growth of a family for the table: '±' its bound where that hides it."""
-        bounds = self.bounds[:, None]
-        own = (self.families == family) & ~self._moving
-        rates = np.maximum(np.abs(self.exponents), self.speeds[:, None])
-        hidden = np.where(own & (bounds > _EXACT * rates), bounds, 0.0).max(axis=1)
-        growth = zip(self.growth_of(family), hidden, strict=True)
-        return [
-            "-" if np.isnan(g) else f"±{bound:.1g}" if g == 0.0 and bound else f"{g:.4g}"
-            for g, bound in growth
-        ]
-
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns; `units` are those of :meth:`plot`.
 
@@ -279,7 +266,6 @@ class Stability(ModelResult):
         """
         shown = Units.of(units)
         rows, none = (np.arange(len(self.speeds)), self.least_stable), self.neutral
-        errors = self.basis_errors
         heard = np.where(none, np.nan, shown.frequencies(self.frequencies_inertial[rows]))
         growth = {f"{name} [1/s]": self.growth_of(name) for name in FAMILIES}
         return {
@@ -290,46 +276,21 @@ class Stability(ModelResult):
             "nodal diameters": np.where(none, -1, self.nodal_diameters[rows]),
             "whirl": np.where(none, "-", self.whirl[rows]),
             "stable": self.stable,
-            "basis error": np.full(len(self.speeds), np.nan) if errors is None else errors,
+            **basis_column(self.basis_errors, len(self.speeds)),
         }
 
     def table(self, *, units: str = "rpm") -> str:
         """Return speed, growth of the families, the least stable motion and verdict as text.
 
         Below, the least stable motion of each family over all speeds: an undamped torsion, say, is
-        the least stable of all motions at every speed, and would hide which lateral one is.
-
-        A family whose growth is below its bound has '±' and the bound, but for rounding of the last
-        digits, which is 0. Where all are neutral no motion is named.
-
-        `units` are those of :meth:`plot`.
+        the least stable of all motions at every speed, and would hide which lateral one is. Where
+        all are neutral no motion is named. `units` are those of :meth:`plot`.
         """
         shown = Units.of(units)
-        speed, frequency = f"speed [{shown.speed}]", f"frequency [{shown.frequency}]"
-        errors = self.basis_errors
-        reduced = errors is not None and np.any(errors > 0.0)
-        growth = [self._written(name) for name in FAMILIES[:3]]
-        lines = [
-            f"{speed:>11}  {'lateral [1/s]':>13}  {'torsional':>11}  {'axial':>11}  "
-            f"{frequency:>14}  n  {'whirl':9}  {'verdict':8}" + ("  basis error" if reduced else "")
-        ]
-        for row, column in enumerate(self.least_stable):
-            parts = [family[row] for family in growth]
-            n, at = self.nodal_diameters[row, column], shown.speeds(self.speeds[row])
-            heard = f"{shown.frequencies(self.frequencies_inertial[row, column]):.5g}"
-            whirl = self.whirl[row, column]
-            if self.neutral[row]:
-                heard, n, whirl = "-", -1, "-"
-            verdict = "stable" if self.stable[row] else "unstable" if self.known[row] else "-"
-            lines.append(
-                f"{at:11.6g}  {parts[0]:>13}  {parts[1]:>11}  {parts[2]:>11}  {heard:>14}  "
-                f"{n if n >= 0 else '-'}  {whirl:9}  {verdict:8}"
-            )
-            if reduced:
-                lines[-1] += f"{in_table(errors[row]):>13}"
-        lines = [line.rstrip() for line in lines]
+        verdict = np.where(self.stable, "stable", np.where(self.known, "unstable", "-"))
+        lines = table_lines(self.columns(units) | {"stable": verdict}, "growth [1/s]")
         lines += filter(None, (self._least_stable_line(family, shown) for family in FAMILIES))
-        return "\n".join([*lines, *self._closing(errors)])
+        return "\n".join([*lines, *self._closing(self.basis_errors)])
 
 
 def stability(

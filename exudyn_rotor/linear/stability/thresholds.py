@@ -20,6 +20,7 @@ from scipy.optimize import brentq, minimize_scalar
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.support import NoCoefficientsError
+from exudyn_rotor.calls import one_thread
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.modal import basis_error
 from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, Named, families
@@ -32,9 +33,10 @@ from exudyn_rotor.linear.model.build import (
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import (
     NOT_KNOWN,
-    in_table,
-    margins_over,
+    basis_column,
+    motions_in,
     motions_over,
+    table_lines,
     warn_of_refused,
 )
 from exudyn_rotor.linear.stability.stability import (
@@ -94,8 +96,8 @@ class StabilityThresholds(Result):
     >>> from exudyn_rotor import StabilityThresholds
     >>> result = StabilityThresholds([300.0], [True], [100.0], [0], [1], 0.0, 400.0, False)
     >>> print(result.table())
-      speed [rpm]   above        frequency [Hz]  n  whirl      kind
-         2864.789   unstable              15.915  1  forward    lateral
+    speed [rpm]  above     inertial [Hz]  n  whirl    kind
+        2864.79  unstable        15.9155  1  forward  lateral
     error of the basis: not known
     """
 
@@ -133,21 +135,18 @@ class StabilityThresholds(Result):
         shown = Units.of(units)
         label, factor = self._parameter(shown)
         frequencies = shown.frequencies(self.frequencies_inertial)
-        errors = self.basis_errors
         return {
             label: factor * self.values,
-            "onset": self.onset,
+            "above": np.where(self.onset, "unstable", "stable"),
             f"inertial [{shown.frequency}]": frequencies,
             "nodal diameters": self.nodal_diameters,
             "whirl": np.array(WHIRLS)[self.whirl_codes],
             "kind": families(self.whirl_codes, self.nodal_diameters),
-            "basis error": np.full(self.values.shape, np.nan) if errors is None else errors,
+            **basis_column(self.basis_errors, len(self.values)),
         }
 
     def table(self, *, units: str = "rpm") -> str:
         """Return the thresholds with the modes that grow there as lines of text.
-
-        The error of the basis is '-' where it is not estimated, see :attr:`basis_shifts`.
 
         Parameters
         ----------
@@ -155,27 +154,10 @@ class StabilityThresholds(Result):
             Of frequencies, and of the parameter where it is called a speed in rad/s: 'rpm' has
             speeds in rpm and frequencies in Hz, 'SI' both in rad/s.
         """
-        shown = Units.of(units)
-        label, factor = self._parameter(shown)
-        width, frequency = max(13, len(label)), f"frequency [{shown.frequency}]"
-        lines = [f"{label:>{width}}   above   {frequency:>19}  n  whirl      kind"]
-        errors = self.basis_errors
-        reduced = errors is not None and np.any(errors != 0.0)
-        if reduced:
-            lines[0] += "       basis error"
-        kinds = families(self.whirl_codes, self.nodal_diameters)
-        for row, (value, onset) in enumerate(zip(factor * self.values, self.onset, strict=True)):
-            n, word = self.nodal_diameters[row], WHIRLS[self.whirl_codes[row]]
-            lines.append(
-                f"{value:{width}.7g}   {'unstable' if onset else 'stable':8}"
-                f"{shown.frequencies(self.frequencies_inertial[row]):19.5g}  {n if n >= 0 else '-'}"
-                f"  {word:9}  {kinds[row]}"
-            )
-            if reduced:
-                lines[-1] = f"{lines[-1].ljust(len(lines[0]) - 11)}{in_table(errors[row]):>11}"
+        lines = table_lines(self.columns(units))
         if not self.values.size:
             lines.append(self._without_limit)
-        return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
+        return "\n".join(lines if self.basis_errors is not None else [*lines, NOT_KNOWN])
 
     def _parameter(self, shown: Units) -> tuple[str, float]:
         """Return the parameter's name as shown, and its unit there over that of the values."""
@@ -212,7 +194,7 @@ class _Growth:
     """Growth of the least stable motion over a parameter; values are computed once.
 
     Made from a function that gives the model and the spin speed at a point, and options of
-    :func:`margins_over`. Where the parameter is the speed there is one model at all points.
+    :func:`motions_in`. Where the parameter is the speed there is one model at all points.
     """
 
     def __init__(
@@ -225,18 +207,30 @@ class _Growth:
         """Compute the margin at points; NaN where there are no coefficients, with one warning."""
         points = [float(point) for point in points]
         if self.is_speed:
-            margins = margins_over(self.model_at(points[0])[0], points, **self.given)
-            self.known.update(zip(points, margins.tolist(), strict=True))
+            model = self.model_at(points[0])[0]
+            self.known.update(zip(points, self._margins(model, points), strict=True))
             return
         refused = []
         for point in points:
             try:
                 model, speed = self.model_at(point)
-                self.known[point] = float(margins_over(model, [speed], **self.given)[0])
+                self.known[point] = self._margins(model, [speed])[0]
             except _NONE as error:
                 self.known[point] = np.nan
                 refused.append((f"{point:.5g}", error))
         warn_of_refused(refused, len(points))
+
+    def _margins(self, model: LinearModel, speeds: Sequence[float]) -> list[float]:
+        """Return by how much the least stable motion grows beyond its bound [1/s]; NaN for none.
+
+        Of motions that are not neutral; less the bound where all are.
+        """
+        stack = model.at_all(speeds)
+        how = {"held": True, "least_stable": True, "warns": False}
+        found = motions_in(model, stack, **self.given, **how)
+        moves = np.abs(found.values.real) > found.bounds[:, None]
+        growth = np.where(moves, found.values.real, -np.inf).max(axis=1, initial=-np.inf)
+        return (np.where(np.any(moves, axis=1), growth, 0.0) - found.bounds).tolist()
 
     def __call__(self, point: float) -> float:
         """Return the margin at a point between two that have one; negative where it has none."""
@@ -352,8 +346,8 @@ def stability_threshold(
     array([300.])
     >>> given = {"supports": damped, "speed": 300.0, "samples": 4}
     >>> print(stability_threshold(rotor, 2.0, 20.0, label="inner damping", **given).table())
-    inner damping   above        frequency [Hz]  n  whirl      kind
-                5   unstable              15.915  1  forward    lateral
+    inner damping  above     inertial [Hz]  n  whirl    kind
+                5  unstable        15.9155  1  forward  lateral
     """
     low = checks.number(low, "low")
     high = checks.number(high, "high", above=low)
@@ -385,8 +379,18 @@ def stability_threshold(
     growth = _Growth(model_at, is_speed, method=method, tolerance=tolerance)
     parts = _INNER if _is_constant(*model_at(0.5 * (low + high))) else _PERIODIC
     points = np.linspace(low, high, parts * samples + 1)
-    growth.at(np.union1d(points, kinks[(kinks > low) & (kinks < high)]))
+    points = np.union1d(points, kinks[(kinks > low) & (kinks < high)])
+    return _found(growth, points, label, accuracy)
+
+
+@one_thread()
+def _found(
+    growth: _Growth, points: np.ndarray, label: str, accuracy: float | None
+) -> StabilityThresholds:
+    """Return the limits between points."""
+    growth.at(points)
     growth.look_at_peaks()
+    low, high = growth.course[0][[0, -1]].tolist()
     found = growth.changes(_ROOT * max(abs(low), abs(high)))
     limits = _limits(growth, found, high - low, accuracy)
     _warn_of_basis(limits, high - low, label, accuracy)
@@ -443,17 +447,7 @@ def unstable_ranges(
         target, values[-1], supports=supports, body=body, stiffening=stiffening, axes=axes
     )
     growth = _Growth(lambda speed: (model, speed), True, method=method, tolerance=tolerance)
-    growth.at(values)
-    growth.look_at_peaks()
-    points, margins = growth.course
-    found = growth.changes(_ROOT * values[-1])
-    if basis_error.is_known(model, accuracy) and not model.is_full:
-        limits = _limits(growth, found, values[-1] - values[0], accuracy)
-        _warn_of_basis(limits, values[-1] - values[0], "speed [rad/s]", accuracy)
-    edges = [points[0]] if margins[0] > 0.0 else []
-    edges += [value for value, _ in found]
-    edges += [points[-1]] if margins[-1] > 0.0 else []
-    return np.array(edges, dtype=float).reshape(-1, 2)
+    return _found(growth, values, "speed [rad/s]", accuracy).ranges
 
 
 def _is_constant(model: LinearModel, speed: float) -> bool:

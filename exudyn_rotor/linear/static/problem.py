@@ -17,6 +17,7 @@ import numpy as np
 
 from exudyn_rotor.bearings.given import Given, check_interfaces
 from exudyn_rotor.bearings.resting import Nonlinear
+from exudyn_rotor.bearings.series import FloatingRingBearing, SeriesSupport
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.equations import Terms, turned
 from exudyn_rotor.linear.model.assembly import Element
@@ -81,6 +82,8 @@ class Problem:
         for name, supports in model.supports.items():
             plain[name] = []
             for one in supports:
+                if isinstance(one, SeriesSupport | FloatingRingBearing):
+                    one = Support(one.interface, one.linearised().static_stiffness)
                 linear = isinstance(one, Support)
                 if not linear and frame == "rotor" and speed:
                     raise ValueError(
@@ -107,7 +110,7 @@ class Problem:
         ValueError
             Where it changes as the rotor turns.
         """
-        system = self.model.at(self.speed)
+        system = self.model.at(self.speed, 0.0)
         if not system.is_constant:
             raise ValueError(
                 "frame: the supports are not alike in all directions, so that no motion stands "
@@ -257,7 +260,7 @@ class Problem:
 
     def _resistance(self, element: Element) -> np.ndarray:
         """Return the stiffness of an element in the axes of the loads, past which it may turn."""
-        K, D = element.matrices(self.speed)
+        K, D = element.matrices(self.speed, 0.0)
         return K + (self._turns - element.turns) * self.speed * D @ axial_skew(len(D))
 
     def _label(self, ends: Sequence[tuple[str, str]]) -> str:

@@ -15,9 +15,8 @@ from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.sensors import add_function_sensor
 from exudyn_rotor.multibody.supports.connector import Connector, Force
-from exudyn_rotor.multibody.supports.ends import BaseEnd, RotorEnd
+from exudyn_rotor.multibody.supports.ends import Base, BaseEnd, RotorEnd, Seat
 from exudyn_rotor.multibody.supports.native import PYTHON, SYMBOLIC, symbolic_function
-from exudyn_rotor.multibody.supports.seats import Base, Seat
 
 _KINDS = exudyn.OutputVariableType
 _STEP = 1e-6  # of the speed, or of 1 rad/s

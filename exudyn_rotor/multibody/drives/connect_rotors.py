@@ -19,9 +19,8 @@ from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.sensors import add_function_sensor
 from exudyn_rotor.multibody.supports.connector import Connector, Force
-from exudyn_rotor.multibody.supports.ends import RotorEnd
+from exudyn_rotor.multibody.supports.ends import RotorEnd, Seat
 from exudyn_rotor.multibody.supports.native import PYTHON
-from exudyn_rotor.multibody.supports.seats import Seat
 from exudyn_rotor.solid.places import off_place
 from exudyn_rotor.theory.formulation import ConstantSpeed, PrescribedMotion, start_values
 

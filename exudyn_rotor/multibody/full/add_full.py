@@ -7,15 +7,13 @@ from collections.abc import Callable
 import exudyn
 import numpy as np
 import scipy.sparse as sp
+from exudyn.graphics import FromPointsAndTrigs
 
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
-from exudyn_rotor.multibody.full.full_drawing import surface_drawing
 from exudyn_rotor.multibody.full.full_equations import sparse_object, spin_coupling_object
 from exudyn_rotor.multibody.full.full_plan import FullPlan
 from exudyn_rotor.multibody.full.ties import FieldNode, Ties, add_ties
-from exudyn_rotor.multibody.rotor import inputs
-from exudyn_rotor.multibody.rotor.known_rotor import note_rotor
-from exudyn_rotor.multibody.rotor.locking import add_constraints, driving_force
+from exudyn_rotor.multibody.rotor.frame import add_constraints, driving_force
 from exudyn_rotor.multibody.rotor.marker_body import (
     MarkerBodyMesh,
     add_weight,
@@ -23,8 +21,10 @@ from exudyn_rotor.multibody.rotor.marker_body import (
     marker_body_mesh,
     marker_body_object,
 )
-from exudyn_rotor.multibody.rotor.plan import generic_node
+from exudyn_rotor.multibody.rotor.plan import generic_node, item_name
+from exudyn_rotor.multibody.rotor.rotor_items import note_rotor
 from exudyn_rotor.reduction.fields import ReducedInterface
+from exudyn_rotor.solid.surface import flat_triangles
 from exudyn_rotor.theory.full_motion import principal
 
 
@@ -35,7 +35,7 @@ def add_full(mbs: exudyn.MainSystem, plan: FullPlan) -> FullRotorBody:
     ties, mesh, weight = _ties_and_mesh(plan)
     rigid = mbs.AddNode(plan.rigid_node())
     start = plan.start
-    name = inputs.item_name("NodeGeneric:", plan.setup.name)
+    name = item_name("NodeGeneric:", plan.setup.name)
     fields = mbs.AddNode(generic_node(*start, name))
     place = FieldNode(fields, len(plan.modal_start), 0)
     motion = plan.motion
@@ -144,3 +144,30 @@ def _ties_and_mesh(plan: FullPlan) -> tuple[Ties, MarkerBodyMesh, np.ndarray]:
     weight, first = np.zeros((3, ties.count)), 6 * len(rows)
     weight[:, first : first + directions.shape[1]] = plan.motion.invariants.mass * directions
     return ties, mesh, weight
+
+
+_KINDS = exudyn.OutputVariableType
+_STATE = exudyn.ConfigurationType.Visualization
+
+
+def surface_drawing(
+    plan: FullPlan, rigid: exudyn.NodeIndex, fields: exudyn.NodeIndex
+) -> Callable | None:
+    """Return Exudyn's graphics function of the rotor's surface; None for a rotor without one.
+
+    Displacements are drawn with the factor ``visualizationSettings.bodies.deformationScaleFactor``.
+    """
+    rotor, color = plan.selection.source, list(plan.setup.color)
+    if not len(rotor.triangles):
+        return None
+    triangles = flat_triangles(rotor.triangles)
+
+    def drawn(mbs, item):
+        factor = mbs.GetSystemContainer().visualizationSettings.bodies.deformationScaleFactor
+        c = mbs.GetNodeOutput(fields, _KINDS.Coordinates, _STATE).reshape(-1, 3)
+        place = mbs.GetNodeOutput(rigid, _KINDS.Position, _STATE)
+        turn = mbs.GetNodeOutput(rigid, _KINDS.RotationMatrix, _STATE).reshape(3, 3)
+        points = place + plan.frame.points(rotor.nodes + factor * c) @ turn.T
+        return [FromPointsAndTrigs(points, triangles, color)]
+
+    return drawn

@@ -16,7 +16,7 @@ from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 
 from exudyn_rotor.multibody.full.ties import container, no_jacobian
 from exudyn_rotor.multibody.rotor.equations import Layout
-from exudyn_rotor.multibody.rotor.locking import LockedForce
+from exudyn_rotor.multibody.rotor.frame import LockedForce
 from exudyn_rotor.theory.full_motion import FullMotion
 
 

@@ -1,4 +1,8 @@
-"""Planning a full body: a solid rotor with all its nodal displacements, checked before adding."""
+"""Planning a full body, a solid rotor with all its nodal displacements, checked before adding.
+
+Exudyn factorises the Jacobian of an implicit step by Eigen's ``SparseLU``, ordered by columns
+(COLAMD), which fills it several times as much as nested dissection and takes no notice of symmetry.
+"""
 
 from __future__ import annotations
 
@@ -9,12 +13,13 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor import inputs
-from exudyn_rotor.multibody.rotor.plan import Plan, laid_out
+from exudyn_rotor.multibody.rotor.plan import Plan, Setup, laid_out
 from exudyn_rotor.prestress.static_solution import relief_rotations
 from exudyn_rotor.solid.clamp import clamped_coordinates
 from exudyn_rotor.solid.damping import sparse_damping
 from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.solvers.choice import estimated_fill
+from exudyn_rotor.solvers.memory import TooLittleMemoryError, available_memory
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.full_motion import (
     Conditions,
@@ -24,6 +29,34 @@ from exudyn_rotor.theory.full_motion import (
 )
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.stiffening import NO_PRESTRESS
+
+# coordinates below which a step takes less memory than any machine has
+_QUICK = 20_000
+_QUICK_MEMORY = 2e9
+# bytes for every entry of the stiffness matrix, which Exudyn holds many times, and for every
+# estimated entry of a factor; peaks of runs of a disc on a shaft with 10,000 to 70,000 coordinates
+_PER_ENTRY, _PER_FACTOR_ENTRY = 300.0, 22.0
+
+
+def needed_bytes(rotor: SolidRotor) -> float:
+    """Return about what a full body takes in an implicit run, beside the rotor itself [bytes]."""
+    fill = estimated_fill(3 * rotor.node_count)
+    return _PER_ENTRY * rotor.stiffness.nnz + _PER_FACTOR_ENTRY * fill.entries
+
+
+def check_memory(rotor: SolidRotor) -> None:
+    """Raise TooLittleMemoryError where an implicit run with a full body would not fit."""
+    size, available = 3 * rotor.node_count, available_memory()
+    if size < _QUICK and available > _QUICK_MEMORY:
+        return
+    needed = needed_bytes(rotor)
+    if needed > available:
+        raise TooLittleMemoryError(
+            f"rotor: a full body with {size} displacements needs about {needed / 1e9:.2g} GB in a "
+            f"step of Exudyn's sparse solver, and {available / 1e9:.2g} GB of memory are "
+            "available; add the reduced rotor, rotor.reduce(…), or use a coarser mesh"
+        )
+
 
 _ROUNDING = 1e-12  # of the accelerations that balance a load, for one of 1 rad/s²
 _BROKEN = 1e-9  # share of a displacement that a condition may find in it
@@ -57,7 +90,7 @@ class FullPlan(Plan):
     motion: FullMotion
 
 
-def make_full_plan(rotor: SolidRotor, setup: inputs.Setup) -> FullPlan:
+def make_full_plan(rotor: SolidRotor, setup: Setup) -> FullPlan:
     """Check what needs the model, and lay out the equations.
 
     `rotor` carries its prestress where ``setup.stiffening`` is 'full'.

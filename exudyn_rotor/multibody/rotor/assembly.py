@@ -27,9 +27,9 @@ import exudyn
 import numpy as np
 
 from exudyn_rotor.multibody.rotor.connections import ConnectionWarning, lost_connections
-from exudyn_rotor.multibody.rotor.known_rotor import KnownRotor, known_rotors
 from exudyn_rotor.multibody.rotor.marker_body import append_nodes, virtual_nodes
 from exudyn_rotor.multibody.rotor.node_motion import NODE_MARKERS, add_node_marker
+from exudyn_rotor.multibody.rotor.rotor_items import KnownRotor, known_rotors
 from exudyn_rotor.solid.interface import rotation_moments
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew

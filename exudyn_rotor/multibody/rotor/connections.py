@@ -14,9 +14,8 @@ from typing import Any
 import exudyn
 import numpy as np
 
-from exudyn_rotor.multibody.rotor.known_rotor import KnownRotor, known_rotor
 from exudyn_rotor.multibody.rotor.node_motion import NODE_MARKERS
-from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
+from exudyn_rotor.multibody.rotor.rotor_items import KnownRotor, RotorItems, known_rotor
 
 _ALONG = 1e-6  # sine of the angle up to which a direction counts as that of the spin axis
 _COORDINATES = ("NodeCoordinate", "NodeCoordinates", "NodeRotationCoordinate")
@@ -47,16 +46,24 @@ class ConnectionWarning(UserWarning):
 def lost_connections(mbs: exudyn.MainSystem, rotor: KnownRotor) -> tuple[str, ...]:
     """Return what the rotor cannot carry, one sentence each, for an assembled system."""
     walk = _Walk(mbs, rotor)
-    lost = (*walk.loads(), *walk.objects())
-    return tuple(f"{item}: {reason}" for item, reason in (*lost, *walk.sensors()))
+    loads = [(f"load {mbs.GetLoad(n)['name']!r}", reason) for n, reason in walk.loads()]
+    objects = [
+        (f"{(item := mbs.GetObject(n))['objectType']} {item['name']!r}", reason)
+        for n, reason in walk.objects()
+    ]
+    return tuple(f"{item}: {reason}" for item, reason in (*loads, *objects, *walk.sensors()))
 
 
-def lost_loads(body: RotorItems) -> int:
-    """Return how many loads and connectors a rotor cannot carry; sensors change no motion."""
+def lost_items(body: RotorItems) -> list[tuple[bool, int]]:
+    """Return which items a rotor cannot carry: whether each is a load, and its number.
+
+    Sensors change no motion and do not count.
+    """
     if "marker_body" not in body.objects:
-        return 0
+        return []
     walk = _Walk(body.mbs, known_rotor(body))
-    return len([*walk.loads(), *walk.objects()])
+    loads = [(True, number) for number, _ in walk.loads()]
+    return loads + [(False, number) for number, _ in walk.objects()]
 
 
 class _Walk:
@@ -87,8 +94,8 @@ class _Walk:
         apart = float(np.linalg.norm(plan.frame.node - plan.selection.origin - inv.center))
         return apart if apart > _APART * np.sqrt(np.trace(inv.J) / inv.mass) else 0.0
 
-    def loads(self) -> Iterator[tuple[str, str]]:
-        """Yield loads, and why they are lost."""
+    def loads(self) -> Iterator[tuple[int, str]]:
+        """Yield numbers of loads, and why they are lost."""
         for number in range(self.mbs.systemData.NumberOfLoads()):
             load = self.mbs.GetLoad(number)
             marker, reason = int(load["markerNumber"]), None
@@ -99,10 +106,10 @@ class _Walk:
             elif marker in self.offset and load["loadType"] == "ForceVector":
                 reason = _offset("a force")
             if reason:
-                yield f"load {load['name']!r}", reason
+                yield number, reason
 
-    def objects(self) -> Iterator[tuple[str, str]]:
-        """Yield connectors and joints, and what of them is lost or wrong."""
+    def objects(self) -> Iterator[tuple[int, str]]:
+        """Yield numbers of connectors and joints, and what of them is lost or wrong."""
         own = self.rotor.own | {int(drive.object) for drive in self.rotor.drives}
         for number in range(self.mbs.systemData.NumberOfObjects()):
             item = self.mbs.GetObject(number)
@@ -119,7 +126,7 @@ class _Walk:
                 elif marker in self.carriers:
                     reason = self._damping(item)
                 if reason:
-                    yield f"{item['objectType']} {item['name']!r}", reason
+                    yield number, reason
 
     def sensors(self) -> Iterator[tuple[str, str]]:
         """Yield sensors of the frame's node that show less than on Exudyn's body."""

@@ -15,7 +15,7 @@ import exudyn
 import numpy as np
 from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 
-from exudyn_rotor.multibody.rotor.locking import LockedForce
+from exudyn_rotor.multibody.rotor.frame import LockedForce
 from exudyn_rotor.theory.kernel import Kernel, constant_part
 from exudyn_rotor.theory.motion import Motion
 

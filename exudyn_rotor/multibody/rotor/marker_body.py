@@ -17,7 +17,7 @@ from exudyn.itemInterface import (
 )
 
 from exudyn_rotor.multibody.rotor.frame import BodyFrame
-from exudyn_rotor.multibody.rotor.inputs import MarkerRequest, Setup, marker_name
+from exudyn_rotor.multibody.rotor.plan import MarkerRequest, Setup, marker_name
 from exudyn_rotor.reduction.fields import ModeShapes, ReducedInterface
 from exudyn_rotor.theory.axis import SpinAxis
 

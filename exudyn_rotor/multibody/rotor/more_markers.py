@@ -10,8 +10,8 @@ from exudyn.itemInterface import MarkerSuperElementPosition, MarkerSuperElementR
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor.inputs import MARKER_KINDS
 from exudyn_rotor.multibody.rotor.marker_body import append_nodes, virtual_nodes
+from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.solid.interface import rotation_moments
 from exudyn_rotor.theory.axis import SpinAxis

@@ -21,8 +21,8 @@ import exudyn
 import numpy as np
 from exudyn.itemInterface import MarkerSuperElementPosition, MarkerSuperElementRigid
 
-from exudyn_rotor.multibody.rotor.known_rotor import KnownRotor
 from exudyn_rotor.multibody.rotor.marker_body import append_nodes, virtual_nodes
+from exudyn_rotor.multibody.rotor.rotor_items import KnownRotor
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
 

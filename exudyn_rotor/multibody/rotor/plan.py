@@ -1,23 +1,236 @@
-"""Planning a new rotor body: everything about it, checked, before the system is touched."""
+"""Planning a new rotor body: what a user asks, checked and laid out before it is added."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
+import exudyn
 import numpy as np
 from exudyn.itemInterface import NodeGenericODE2, NodeRigidBodyRxyz, VNodeRigidBodyRxyz
+from numpy.typing import ArrayLike
 
-from exudyn_rotor.multibody.rotor import inputs
+from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor.equations import Layout
-from exudyn_rotor.multibody.rotor.frame import BodyFrame
-from exudyn_rotor.multibody.rotor.locking import MODES, Locks, lock_masses
+from exudyn_rotor.multibody.rotor.frame import MODES, BodyFrame, Locks, lock_masses
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import Selection, select_modes
-from exudyn_rotor.theory.formulation import Formulation
+from exudyn_rotor.theory.formulation import Formulation, start_values
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.stiffening import stiffening as second_order
+
+MARKER_KINDS = ("rigid", "position")
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """Where the rotor stands and how it starts.
+
+    Attributes
+    ----------
+    position : ndarray, shape (3,)
+        Place of the mesh origin, inertial axes [m].
+    rotation : ndarray, shape (3, 3)
+        Mesh axes → inertial axes at θ = 0.
+    translation : ndarray, shape (3,)
+        Initial translation of the frame origin, inertial axes [m]; a plan adds by how much
+        the initial angle moves it.
+    velocity : ndarray, shape (3,)
+        Initial velocity of the frame origin, inertial axes [m/s].
+    angle, speed : float
+        Initial spin angle [rad] and speed [rad/s].
+    """
+
+    position: np.ndarray
+    rotation: np.ndarray
+    translation: np.ndarray
+    velocity: np.ndarray
+    angle: float
+    speed: float
+
+
+@dataclass(frozen=True, eq=False)
+class MarkerRequest:
+    """A marker to be made at an interface: its kind, offset [m, mesh axes], and visibility."""
+
+    kind: str
+    offset: np.ndarray
+    show: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Setup:
+    """A rotor body as it was asked for; the attributes are arguments of ``add_rotor``, checked.
+
+    ``modal_coordinates`` and ``modal_velocities`` are checked with the modes, by the plan.
+    """
+
+    name: str | None
+    formulation: Formulation
+    stiffening: str
+    placement: Placement
+    modal_coordinates: ArrayLike | None
+    modal_velocities: ArrayLike | None
+    gravity: np.ndarray
+    mass_damping: float
+    stiffness_damping: float
+    markers: Mapping[str, MarkerRequest]
+    condense_markers: bool
+    locking: str
+    frame_node: str
+    marker_body: bool
+    negligible: float
+    color: tuple[float, ...]
+
+
+def placement(
+    formulation: Formulation,
+    direction: np.ndarray,
+    position: ArrayLike,
+    rotation: ArrayLike | None,
+    initial_velocity: ArrayLike,
+    initial_angle: float | None,
+    initial_speed: float | None,
+) -> Placement:
+    """Check and complete the placement; a prescribed motion brings its own initial values.
+
+    `direction` is the spin axis in mesh axes.
+    """
+    place = checks.vector(position, "position", "m")
+    turn = np.eye(3) if rotation is None else checks.rotation(rotation)
+    velocity = checks.vector(initial_velocity, "initial_velocity", "m/s")
+    start = np.zeros(3)
+    if formulation.moves_origin:
+        if np.any(velocity):
+            raise ValueError(
+                "velocity given twice: by initial_velocity and by the translation τ(t)"
+            )
+        start, velocity, _ = start_values(formulation.translation, "translation")
+    else:
+        _check_direction(formulation, velocity, turn @ direction)
+    if formulation.has_spin:
+        angle = 0.0 if initial_angle is None else initial_angle
+        speed = 0.0 if initial_speed is None else initial_speed
+        angle = checks.number(angle, "initial_angle", "rad")
+        speed = checks.number(speed, "initial_speed", "rad/s")
+        return Placement(place, turn, start, velocity, angle, speed)
+    for name, value in (("initial_angle", initial_angle), ("initial_speed", initial_speed)):
+        if value is not None:
+            raise ValueError(
+                f"spin given twice: {name}={checks.shown(value)} and a prescribed spin; leave "
+                f"{name} out"
+            )
+    angle, speed, _ = start_values(formulation.spin, "spin")
+    return Placement(place, turn, start, velocity, angle, speed)
+
+
+def _check_direction(formulation: Formulation, velocity: np.ndarray, axis: np.ndarray) -> None:
+    """Refuse a velocity that the formulation cannot have; `axis` in inertial axes."""
+    if np.any(velocity) and formulation.translation_count == 0:
+        raise ValueError(
+            f"initial_velocity {velocity.tolist()} m/s: translation='none' holds the rotor"
+        )
+    along = abs(axis @ velocity)
+    if formulation.translation_count == 2 and along > 1e-9 * np.linalg.norm(velocity):
+        raise ValueError(
+            f"initial_velocity {velocity.tolist()} m/s has {along:.3g} m/s along the spin axis: "
+            "translation='in-plane' has no such motion; give it as a modal velocity of "
+            "'translation along axis', or use translation='free'"
+        )
+
+
+def modal_values(values: ArrayLike | None, name: str, labels: tuple[str, ...]) -> np.ndarray:
+    """Return one value per mode, zeros for None."""
+    if values is None:
+        return np.zeros(len(labels))
+    described = f"{name} (one per mode: {', '.join(labels)})"
+    return checks.vector(values, described, "√kg m", size=len(labels))
+
+
+def color_of(values: Sequence[float]) -> tuple[float, ...]:
+    """Return red, green, blue and opacity, each from 0 to 1."""
+    result = checks.vector(values, "color", "RGBA", size=4)
+    if np.any((result < 0.0) | (result > 1.0)):
+        raise ValueError(f"color: needs 4 numbers from 0 to 1 (RGBA), got {checks.shown(values)}")
+    return tuple(result.tolist())
+
+
+def marker_requests(
+    reduced: ReducedRotor,
+    markers: Mapping[str, str] | str | None,
+    offsets: Mapping[str, ArrayLike] | None,
+    show: bool,
+    marker_body: bool,
+) -> dict[str, MarkerRequest]:
+    """Return the markers to make; None asks for rigid markers at all interfaces.
+
+    Without the marker body none can be made, and None asks for none.
+    """
+    checks.flag(show, "show_markers")
+    checks.flag(marker_body, "marker_body")
+    if markers is None:
+        markers = "rigid" if marker_body else {}
+    if isinstance(markers, str):
+        markers = dict.fromkeys(reduced.interfaces, checks.choice(markers, "markers", MARKER_KINDS))
+    elif not isinstance(markers, Mapping):
+        raise TypeError(
+            "markers: needs 'rigid', 'position' or a mapping of interface to one of them, got "
+            f"{checks.shown(markers)}"
+        )
+    offsets = {} if offsets is None else offsets
+    checks.mapping(markers, "markers", "kind", reduced.interfaces)
+    checks.mapping(offsets, "marker_offsets", "offset", reduced.interfaces)
+    for name in offsets:
+        if name not in markers:
+            raise ValueError(
+                f"marker_offsets: interface {name!r} gets no marker; add it to markers"
+            )
+    if markers and not marker_body:
+        raise ValueError("markers need the marker body: leave marker_body=True, or ask for none")
+    return {
+        name: MarkerRequest(
+            checks.choice(kind, f"markers: kind of {name!r}", MARKER_KINDS),
+            checks.vector(offsets.get(name, np.zeros(3)), f"marker_offsets: {name!r}", "m"),
+            show,
+        )
+        for name, kind in markers.items()
+    }
+
+
+def main_system(mbs: exudyn.MainSystem) -> exudyn.MainSystem:
+    """Return an Exudyn system."""
+    return checks.instance(
+        mbs, "mbs", exudyn.MainSystem, "exudyn.SystemContainer().AddSystem() makes one"
+    )
+
+
+def item_name(prefix: str, name: str | None) -> str:
+    """Return the name of an item, empty for a rotor without a name."""
+    return "" if name is None else f"{prefix}{name}"
+
+
+def marker_name(name: str | None, interface: str) -> str:
+    """Return the name of an interface's marker."""
+    return interface if name is None else f"{name}:{interface}"
+
+
+def check_free_names(mbs: exudyn.MainSystem, setup: Setup) -> None:
+    """Refuse a name that an item of `mbs` already has."""
+    name = setup.name
+    taken = [(mbs.GetMarkerNumber, marker_name(name, interface)) for interface in setup.markers]
+    if name is not None:
+        taken += [
+            (mbs.GetObjectNumber, name),
+            (mbs.GetNodeNumber, item_name("NodeRigidBody:", name)),
+            (mbs.GetNodeNumber, item_name("NodeGeneric:", name)),
+        ]
+    for find, item in taken:
+        if int(find(item)) != -1:
+            raise ValueError(
+                f"name {name!r}: this system already has an item {item!r}; "
+                "give the second rotor another name"
+            )
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +253,7 @@ class Plan:
         Initial modal coordinates [√kg m] and velocities [√kg m/s].
     """
 
-    setup: inputs.Setup
+    setup: Setup
     selection: Selection
     frame: BodyFrame
     locks: Locks
@@ -62,7 +275,7 @@ class Plan:
         values[:3], rates[:3] = start.translation, start.velocity
         values[spin], rates[spin] = start.angle, start.speed
         return NodeRigidBodyRxyz(
-            name=inputs.item_name("NodeRigidBody:", self.setup.name),
+            name=item_name("NodeRigidBody:", self.setup.name),
             referenceCoordinates=[*self.frame.position, *self.frame.angles],
             initialCoordinates=values,
             initialVelocities=rates,
@@ -75,7 +288,7 @@ class Plan:
         spin = int(self.setup.formulation.has_spin)
         values = [*(free @ place.translation), *[place.angle] * spin, *self.modal_start]
         rates = [*(free @ place.velocity), *[place.speed] * spin, *self.modal_start_rate]
-        return generic_node(values, rates, inputs.item_name("NodeGeneric:", self.setup.name))
+        return generic_node(values, rates, item_name("NodeGeneric:", self.setup.name))
 
 
 PlanKind = TypeVar("PlanKind", bound=Plan)
@@ -83,7 +296,7 @@ PlanKind = TypeVar("PlanKind", bound=Plan)
 Motions = Callable[[Formulation, np.ndarray | None, np.ndarray | None], Motion]
 
 
-def make_plan(reduced: ReducedRotor, setup: inputs.Setup) -> Plan:
+def make_plan(reduced: ReducedRotor, setup: Setup) -> Plan:
     """Check what needs the modes, and lay out the equations."""
     damped = reduced.with_damping(mass=setup.mass_damping, stiffness=setup.stiffness_damping)
     selection = select_modes(damped, setup.formulation, setup.negligible)
@@ -104,14 +317,14 @@ def make_plan(reduced: ReducedRotor, setup: inputs.Setup) -> Plan:
         setup,
         selection,
         motion,
-        modal_start=inputs.modal_values(setup.modal_coordinates, "modal_coordinates", labels),
-        modal_start_rate=inputs.modal_values(setup.modal_velocities, "modal_velocities", labels),
+        modal_start=modal_values(setup.modal_coordinates, "modal_coordinates", labels),
+        modal_start_rate=modal_values(setup.modal_velocities, "modal_velocities", labels),
     )
 
 
 def laid_out(
     kind: type[PlanKind],
-    setup: inputs.Setup,
+    setup: Setup,
     selection: Selection,
     motions: Motions,
     **more: Any,
@@ -155,7 +368,7 @@ def laid_out(
     )
 
 
-def _layout(setup: inputs.Setup, locks: Locks, motion: Motion) -> Layout:
+def _layout(setup: Setup, locks: Locks, motion: Motion) -> Layout:
     """Return where the unknowns stand among the coordinates of the nodes, and what is locked."""
     if not setup.marker_body:
         return Layout.unlocked(motion.size)

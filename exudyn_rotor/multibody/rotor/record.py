@@ -8,7 +8,7 @@ import exudyn
 import numpy as np
 from exudyn.itemInterface import SensorNode, SensorObject
 
-from exudyn_rotor.multibody.rotor.locking import LOCKS, MODES
+from exudyn_rotor.multibody.rotor.frame import LOCKS, MODES
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 
 _KINDS = exudyn.OutputVariableType
@@ -127,12 +127,6 @@ def last_solver(body: RotorItems) -> Solver | None:
     method = solver.GetSolverName().partition("(")[2].rstrip(")")
     step = min(step, solver.it.currentStepSize)
     return Solver(step, explicit=True, method=method, steps=integration.numberOfSteps)
-
-
-def newton_tolerance(body: RotorItems) -> float:
-    """Return the relative tolerance of Newton's method in the last solution; 0 before one."""
-    settings = body.mbs.sys.get("simulationSettings")
-    return 0.0 if settings is None else settings.timeIntegration.newton.relativeTolerance
 
 
 def _stored(body: RotorItems, name: str, item: int, kind) -> np.ndarray:

@@ -12,8 +12,7 @@ import exudyn
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor import sensors
 from exudyn_rotor.multibody.rotor.connections import ConnectionWarning, lost_connections
-from exudyn_rotor.multibody.rotor.known_rotor import known_rotor
-from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
+from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, known_rotor
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -12,7 +12,7 @@ import numpy as np
 from exudyn.itemInterface import SensorMarker, SensorSuperElement, SensorUserFunction
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor.locking import LOCKS, driving_force
+from exudyn_rotor.multibody.rotor.frame import LOCKS, driving_force
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.energy import energy_of

@@ -19,21 +19,25 @@ from exudyn_rotor.bearings.bearing import Bearing, bearing_of
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.rolling import RollingBearing
-from exudyn_rotor.bearings.support import Support, acts
+from exudyn_rotor.bearings.series import FloatingRingBearing, SeriesSupport
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
-from exudyn_rotor.multibody.rotor.known_rotor import carrying_rotor
 from exudyn_rotor.multibody.rotor.plan import generic_node
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_items import carrying_rotor
 from exudyn_rotor.multibody.rotor.sensors import add_function_sensor
-from exudyn_rotor.multibody.supports.bearing_connector import BearingConnector, has_torque
-from exudyn_rotor.multibody.supports.clearances import watch_clearance
-from exudyn_rotor.multibody.supports.connector import CURRENT, Connector
-from exudyn_rotor.multibody.supports.ends import FoundationEnd, RotorEnd
-from exudyn_rotor.multibody.supports.magnetic_connector import MagneticConnector
+from exudyn_rotor.multibody.supports.connector import (
+    CURRENT,
+    BearingConnector,
+    Connector,
+    MagneticConnector,
+    SupportConnector,
+    has_torque,
+    watch_clearance,
+)
+from exudyn_rotor.multibody.supports.ends import Base, FoundationEnd, RotorEnd, Seat
 from exudyn_rotor.multibody.supports.native import PYTHON, native_parts
-from exudyn_rotor.multibody.supports.seats import Base, Seat
-from exudyn_rotor.multibody.supports.support_connector import SupportConnector
 
 _PARALLEL = 1e-9  # of the cosine between axes of two rotors
 
@@ -123,7 +127,7 @@ def add_supports(
 ) -> tuple[SceneSupport, ...]:
     """Put a rotor in a scene on the supports that linear analyses take.
 
-    Call it before ``mbs.Assemble()``. Tables over the speed and supports in the rotor's frame
+    Call it before ``mbs.Assemble()``. Tables over the speed, and supports in the rotor's frame,
     follow the rotor's spin at every instant, prescribed or free.
 
     Parameters
@@ -195,9 +199,16 @@ def add_supports(
         )
     check_interfaces(supports, body.selection.source.interfaces)
     for support in supports:
+        if isinstance(support, SeriesSupport | FloatingRingBearing):
+            raise ValueError(
+                f"supports: what is in series at {support.interface!r} has a ring, which is a body "
+                "of a scene: add the ring as a rotor with the outer bearing, and give the inner "
+                "one base=ring.marker(…)"
+            )
         if isinstance(support, Bearing):
             _check_law(body, support)
         elif isinstance(support, Support):
+            _check_support(support)
             _check_about_the_axis(body, support)
     _check_base(body, base)
     seats = [Seat.of(body, support.interface, base) for support in supports]
@@ -271,14 +282,30 @@ def _check_law(body: RotorBody | FullRotorBody, bearing: Bearing) -> None:
         )
 
 
+def _check_support(support: Support) -> None:
+    """Refuse coefficients over the frequency, and a mass that is not alike across the axis."""
+    where = f"support at {support.interface!r}"
+    if support.over_frequency:
+        raise ValueError(
+            f"{where}: a scene has no single frequency, which its coefficients need; give "
+            "support.at_frequency(…), e.g. of the motion of interest, or what has states of its "
+            "own: a MagneticBearing, pads with pad_inertia, a SeriesSupport"
+        )
+    M = support.mass_matrix(0.0)
+    if np.any(M - M[0, 0] * np.diag([1.0, 1.0, 0.0, 0.0, 0.0, 0.0])):
+        raise ValueError(
+            f"{where}: mass: a scene takes one number, alike across the axis [kg], got a matrix"
+        )
+
+
 def _check_about_the_axis(body: RotorBody | FullRotorBody, support: Support) -> None:
     """Refuse what acts against the rotation of a frame whose spin is free."""
     if not body.formulation.has_spin:
         return
     stiffness, damping = support.matrices(body.plan.setup.placement.speed)
-    acting = {"tilt_stiffness": stiffness}
+    acting = {"stiffness": stiffness}
     if support.frame == "rotor":
-        acting["tilt_damping"] = damping
+        acting["damping"] = damping
     for name, matrix in acting.items():
         if np.any(matrix[5]) or np.any(matrix[:, 5]):
             raise ValueError(
@@ -294,9 +321,7 @@ def _check_on_rotor(body: RotorBody | FullRotorBody, support: Given, seat: Seat)
     if rotor is None:
         return
     where = f"base: the support at {support.interface!r} stands on another rotor"
-    tilts = isinstance(support, Support) and (
-        acts(support.tilt_stiffness) or acts(support.tilt_damping)
-    )
+    tilts = isinstance(support, Support) and support.tilts
     across = isinstance(support, Support) and not tilts
     if not across and abs(rotor.axis @ seat.axes[:, 2]) < 1.0 - _PARALLEL:
         raise ValueError(

@@ -23,7 +23,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.foundations.record import BaseRecord
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.full.ties import container, no_jacobian
-from exudyn_rotor.multibody.rotor.inputs import main_system
+from exudyn_rotor.multibody.rotor.plan import main_system
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation
@@ -134,11 +134,13 @@ def _add_forces(body: RotorItems, load: Callable) -> exudyn.ObjectIndex:
     """Add an object of forces, without inertia or stiffness, on the nodes of a rotor."""
     motion, layout = body.plan.motion, body.plan.layout
     empty = container(sp.csr_array((layout.size, layout.size)))
+    held = [place for place in body.locks.fixed if place < 3 and "marker_body" in body.objects]
 
     def forces(mbs, t, item, q, q_t):
-        total = np.zeros(layout.size)
+        total, acceleration = np.zeros(layout.size), load(mbs, t, None)
         unknown = np.asarray(q)[layout.unknowns]
-        total[layout.unknowns] = motion.body_forces(t, unknown, load(mbs, t, None))
+        total[layout.unknowns] = motion.body_forces(t, unknown, acceleration)
+        total[held] = motion.invariants.mass * np.asarray(acceleration)[held]
         return total.tolist()
 
     return body.mbs.AddObject(

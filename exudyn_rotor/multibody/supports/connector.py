@@ -3,19 +3,34 @@
 A law has forces by the motion x of ports, with the rows J of the coordinates: displacement and
 rotation of an interface against what carries it, and coordinates of the law's own, of a controller
 or of pads. Exudyn gets ``Jᵀf`` and the tangent ``Jᵀ(K, D)J``; a law may have a mass matrix.
+
+Newton's method may try states in which a journal is outside its clearance, where forces go on by a
+tangent; a step that has been accepted there means nothing. A connector that is evaluated outside
+looks at the beginning of its step, the state accepted last, and ends the run by an error where that
+was outside, too. Where a :class:`ClearanceStop` acts at the same interface, contact is meant.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from math import cos, hypot, inf, sin
 from typing import NamedTuple
 
 import exudyn
 import numpy as np
 from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 
+from exudyn_rotor.bearings.annular_seal import AnnularSeal
+from exudyn_rotor.bearings.bearing import Bearing, Law, LawWithTorque
+from exudyn_rotor.bearings.clearance_stop import ClearanceStop
+from exudyn_rotor.bearings.journal_bearing import FilmLaw, JournalBearing, RememberingLaw
+from exudyn_rotor.bearings.magnetic import MagneticBearing
+from exudyn_rotor.bearings.support import Support, acts
+from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
+from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, entry
 from exudyn_rotor.multibody.supports.ends import BaseEnd, RotorEnd
+from exudyn_rotor.theory.rotating_axes import axial_rotation, axial_skew
 
 _KINDS = exudyn.OutputVariableType
 CURRENT, START = exudyn.ConfigurationType.Current, exudyn.ConfigurationType.StartOfStep
@@ -221,3 +236,415 @@ class Connector(ABC):
             visualization=VObjectGenericODE2(show=False),
             **given,
         )
+
+
+class SupportConnector(Connector):
+    """A linear support: stiffness and damping in axes that stand still or turn with the rotor.
+
+    About the axis a spring acts on the twist, a damper that stands still on the whole spin. What
+    turns with the rotor is driven there: the reaction of its moments does not act on the spin.
+    """
+
+    def __init__(
+        self, support: Support, end: RotorEnd, base: BaseEnd | None, on_rotor: bool
+    ) -> None:
+        super().__init__(end, base)
+        self.support, self._turns = support, support.frame == "rotor"
+        self.whole = support.tilts
+        self._between = on_rotor  # tables are over the difference of both speeds
+
+    @property
+    def _motion(self) -> tuple[np.ndarray, np.ndarray]:
+        """Motion (6,) and rate (6,) against the base, the spin in the last rate alone."""
+        end, base = self.end, self.base
+        none = (0.0, 0.0, 0.0)
+        x = np.array([*end.place, *(end.tilt or none)])
+        x_t = np.array([*end.rate, *(end.tilt_rate or none)])
+        if base is not None:
+            x -= [*base.place, *base.tilt]
+            x_t -= [*base.rate, *base.tilt_rate]
+        x_t[5] += end.speed
+        return x, x_t
+
+    def _matrices(self) -> tuple[np.ndarray, np.ndarray]:
+        end, base = self.end, self.base
+        speed = end.speed - base.speed if self._between else end.speed
+        self.support.check_range(speed)
+        K, D = self.support.matrices(speed)
+        if self._turns:
+            R = np.kron(np.eye(2), axial_rotation(end.angle))
+            K, D = R @ K @ R.T, R @ D @ R.T
+        return K, D
+
+    @property
+    def has_mass(self) -> bool:
+        """Whether a mass goes with the rotor."""
+        return acts(self.support.mass)
+
+    def added_mass(self) -> float:
+        """Return the mass that goes with the rotor at its speed [kg]."""
+        between = self.base.speed if self._between else 0.0
+        return float(self.support.mass_matrix(self.end.speed - between)[0, 0])
+
+    def wrench(self, t: float) -> tuple:
+        """Return force and moment on the rotor."""
+        (K, D), (x, x_t), speed = self._matrices(), self._motion, self.end.speed
+        if self._turns:
+            x_t = x_t - speed * (axial_skew(6) @ x)
+            x_t[5] -= speed
+        fx, fy, fz, *moment = (-K @ x - D @ x_t).tolist()
+        if not self.whole:
+            return fx, fy, fz
+        if self._turns and self.end.tilt:
+            a, b, _ = self.end.tilt
+            moment[2] += b * moment[0] - a * moment[1]
+        return fx, fy, fz, moment
+
+    def tangent(self, t: float) -> Force:
+        """Return the force, its tangent, and rows (6, size)."""
+        K, D = self._matrices()
+        if self._turns:
+            K = K - self.end.speed * D @ axial_skew(6)
+        force = np.zeros(6)
+        fx, fy, fz, *moment = self.wrench(t)
+        force[:3] = fx, fy, fz
+        force[3:] = moment[0] if moment else 0.0
+        return Force(force, self.rows(), self.rate_rows(), K, D)
+
+
+class MagneticConnector(Connector):
+    """Magnets that pull by the controller's coordinates, which follow what the sensors show.
+
+    The coordinates are pairs along (n1, n2), with the equations of
+    :mod:`exudyn_rotor.bearings.pid_controller` times a stiffness, so that they are those of linear
+    analyses.
+
+    Attributes
+    ----------
+    bearing : MagneticBearing
+    outside : bool
+        Whether it was evaluated beyond the air gap.
+    """
+
+    def __init__(
+        self,
+        bearing: MagneticBearing,
+        ends: tuple[RotorEnd, BaseEnd | None],
+        sensors: tuple[RotorEnd, BaseEnd | None],
+        own: exudyn.NodeIndex,
+    ) -> None:
+        realised = bearing.controller.realisation()
+        super().__init__(*ends, own, 2 * len(realised.inertia))
+        self.bearing, self.parts, self.outside = bearing, [bearing], False
+        self._sensor, self.sensor_base = sensors
+        self._turn, self._offset = bearing.control_axes, bearing.sensor_offset
+        parts = realised.by_place, realised.by_rate
+        self._by_place, self._by_rate = (np.kron(part, self._turn) for part in parts)
+        self._shares = bearing.scale * realised.place
+        self._least = bearing.clearance_along() ** 2
+
+    def read(self, q: list[float], q_t: list[float]) -> None:
+        """Take the motion of magnets, sensors and controller."""
+        super().read(q, q_t)
+        first, second = self._first, self._second
+        if self._sensor is not self.end:
+            self._sensor.read(q[:first], q_t[:first])
+        if self.sensor_base is not self.base:
+            self.sensor_base.read(q[first:second], q_t[first:second])
+        self._currents = -self._by_place.dot(q[second:]) - self._by_rate.dot(q_t[second:])
+
+    def motions(self) -> list[tuple[float, ...]]:
+        """Return x, y, ẋ, ẏ, θ and Ω of the journal, as one of a list."""
+        return [self.relative]
+
+    @property
+    def axes_states(self) -> list[tuple[float, float]]:
+        """Current [A] and place [m] of each control axis."""
+        return list(zip(self._currents.tolist(), (self._turn @ self.relative[:2]), strict=True))
+
+    def wrench(self, t: float) -> tuple:
+        """Return the force on the rotor, and what drives the controller's coordinates."""
+        x, y = self.relative[:2]
+        if x * x + y * y >= self._least:
+            self.outside = True
+        law = self.bearing.actuator.law
+        force = self._turn.T @ [law(*state) for state in self.axes_states]
+        seen = np.array(self._sensor.place[:2])
+        if self.sensor_base is not None:
+            seen = seen - self.sensor_base.place[:2]
+        own = np.outer(self._shares, seen + self._offset).ravel()
+        return float(force[0]), float(force[1]), 0.0, None, own
+
+    def tangent(self, t: float) -> Force:
+        """Return the force, its tangent, and rows: of magnets, sensors and own coordinates."""
+        slopes = [self.bearing.actuator.slopes(*state) for state in self.axes_states]
+        return self.assembled(slopes)
+
+    def assembled(self, slopes: list[tuple[float, float]]) -> Force:
+        """Return force and tangent on the ports, from the slopes of the actuators."""
+        D, K = self.bearing.coupling(np.array(slopes))
+        fx, fy, _, _, own = self.wrench(0.0)
+        J = np.zeros((4 + self.own, self.size))
+        J[:2] = self.rows()[:2]
+        J[2:4, : self._first] = self._sensor.rows()[:2]
+        if self.sensor_base is not None:
+            J[2:4, self._first : self._second] = -self.sensor_base.rows()[:2]
+        J[4:, self._second :] = np.eye(self.own)
+        L = np.zeros_like(J)
+        L[:2, : self._first] = self.end.rate_rows()[:2]
+        return Force(np.array([fx, fy, 0.0, 0.0, *own]), J, L, K, D)
+
+
+_SPEED_STEP = 1e-6  # of the speed, or of 1 rad/s: differences of friction by it
+FilmPoint = tuple[tuple[float, ...], np.ndarray, np.ndarray, np.ndarray | None]
+
+
+class BearingConnector(Connector):
+    """A bearing across the axis, or the films of pads, whose tilts are own coordinates.
+
+    A law holds in axes of the bore. One that turns about the axis at the rate w sees the rotor turn
+    at Ω − w, and move by ``v − w e × u``: a film drags by what the two turn against each other. On
+    another rotor the bore turns by its spin angle, too: grooves turn with it, and so does the outer
+    ring whose elements an inner ring takes along. Forces act along the axes at rest, also where the
+    base tilts, and pull at the middles of journal and bore: about the axis the base lacks the
+    moment ``u × F`` of their distance u.
+
+    Attributes
+    ----------
+    bearing : Bearing
+    parts : list of Bearing
+        The bearing, or the films of pads.
+    outside : bool
+        Whether it was evaluated beyond the least clearance.
+    """
+
+    def __init__(
+        self,
+        bearing: Bearing,
+        end: RotorEnd,
+        base: BaseEnd | None,
+        brakes: bool,
+        feels: bool,
+        own: exudyn.NodeIndex | None = None,
+    ) -> None:
+        pads = isinstance(bearing, TiltingPadBearing)
+        self.parts = bearing.pad_bearings if pads else [bearing]
+        super().__init__(end, base, own, len(self.parts) if pads else 0)
+        self.bearing, self.outside, self.feels = bearing, False, feels
+        self.levers = -bearing.film.radius * bearing.tangents if pads else None
+        self.brakes = self.whole = brakes and has_torque(bearing)
+        self.laws = [_law_of(one, self.brakes) for one in self.parts]
+        self._remembers = isinstance(bearing, JournalBearing) and bearing.remembers
+        self._least = self.parts[0].clearance_along() ** 2
+        self._begun: tuple[float, float] | None = None
+
+    def read(self, q: list[float], q_t: list[float]) -> None:
+        """Take the motion of the ends, and of the pads."""
+        super().read(q, q_t)
+        if self.own:
+            self._tilts = np.array([q[self._second :], q_t[self._second :]])
+
+    def motions(self) -> list[tuple[float, ...]]:
+        """Return x, y, ẋ, ẏ, θ and Ω of the journal as each film sees it."""
+        motion = self.relative
+        self._turn = None
+        if self.feels:
+            motion = self._from_bore(*motion)
+        if self.levers is None:
+            return [motion]
+        x, y, vx, vy, angle, speed = motion
+        moved = (self.levers.T * self._tilts[0]).T.tolist()
+        rates = (self.levers.T * self._tilts[1]).T.tolist()
+        return [
+            (x - a, y - b, vx - c, vy - d, angle, speed)
+            for (a, b), (c, d) in zip(moved, rates, strict=True)
+        ]
+
+    def _from_bore(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, ...]:
+        turn, w = self.base.turn, self.base.speed
+        vx, vy = vx + w * y, vy - w * x
+        if turn:
+            c, s = self._turn = cos(turn), sin(turn)
+            x, y, vx, vy = c * x + s * y, c * y - s * x, c * vx + s * vy, c * vy - s * vx
+        return x, y, vx, vy, angle - turn, speed - w
+
+    def wrench(self, t: float) -> tuple:
+        """Return force and torque on the rotor, and moments on pads."""
+        motions = self.motions()
+        x, y = motions[0][:2]
+        if x * x + y * y >= self._least:
+            self.outside = True
+        if self.levers is None:
+            force = self.laws[0](*motions[0])
+            fx, fy = force[:2]
+            if self._turn is not None:
+                c, s = self._turn
+                fx, fy = c * fx - s * fy, s * fx + c * fy
+            return (fx, fy, 0.0, (0.0, 0.0, force[2])) if self.brakes else (fx, fy)
+        self.outside |= any(m[0] ** 2 + m[1] ** 2 >= self._least for m in motions)
+        forces = np.array([law(*m) for law, m in zip(self.laws, motions, strict=True)])
+        total, own = forces.sum(axis=0).tolist(), -(forces[:, :2] * self.levers).sum(axis=1)
+        return *total[:2], 0.0, (0.0, 0.0, total[2]) if self.brakes else None, own
+
+    def tangent(self, t: float) -> Force:
+        """Return the force, its tangent, and rows: across the axis, of the spin, and of pads."""
+        parts = zip(self.parts, self.laws, self.motions(), strict=True)
+        return self.assembled([_tangent(*each) for each in parts])
+
+    def assembled(self, parts: list[FilmPoint]) -> Force:
+        """Return force and tangent on the ports, from the values and K, D (2, 2) of each film.
+
+        A third value is a torque, with less its derivative, and that of the force, by the speed.
+        """
+        count = 3 + self.own
+        force, (K, D) = np.zeros(count), np.zeros((2, count, count))
+        for number, (values, k, d, by_speed) in enumerate(parts):
+            if self.feels:
+                w = self.base.speed
+                k = k + w * d @ np.array([[0.0, 1.0], [-1.0, 0.0]])
+                if self._turn is not None:
+                    c, s = self._turn
+                    R = np.array([[c, -s], [s, c]])
+                    k, d, values = R @ k @ R.T, R @ d @ R.T, [*(R @ values[:2]), *values[2:]]
+            force[:2] += values[:2]
+            K[:2, :2] += k
+            D[:2, :2] += d
+            if len(values) > 2:
+                force[2] += values[2]
+                D[:2, 2] += by_speed[:2]
+                D[2, 2] += by_speed[2]
+            if self.levers is not None:
+                self._add_pad(number, values, k, d, by_speed, force, K, D)
+        J, L = np.zeros((2, count, self.size))
+        J[:3], L[:3] = self.rows()[[0, 1, 5]], self.rate_rows()[[0, 1, 5]]
+        J[3:, self._second :] = np.eye(self.own)
+        return Force(force, J, L, K, D)
+
+    def _add_pad(
+        self,
+        number: int,
+        values: np.ndarray,
+        k: np.ndarray,
+        d: np.ndarray,
+        by_speed: np.ndarray | None,
+        force: np.ndarray,
+        K: np.ndarray,
+        D: np.ndarray,
+    ) -> None:
+        """Add what the film of a pad does to its tilt, by the lever on its journal's motion."""
+        lever, own = -self.levers[number], 3 + number
+        force[own] += lever @ values[:2]
+        for total, part in ((K, k), (D, d)):
+            total[own, :2] += lever @ part
+            total[:2, own] += part @ lever
+            total[own, own] += lever @ part @ lever
+        if by_speed is not None:
+            D[own, 2] += lever @ by_speed[:2]
+
+    @property
+    def has_mass(self) -> bool:
+        """Whether a mass goes with the rotor: that of the leakage in a seal."""
+        return isinstance(self.bearing, AnnularSeal)
+
+    def added_mass(self) -> float:
+        """Return the mass that goes with the rotor at its speed [kg]."""
+        speed = self.end.speed - (self.base.speed if self.feels else 0.0)
+        return self.bearing.added_mass(speed)
+
+    def friction(self) -> float:
+        """Return the torque on the journal that a prescribed spin does not feel [N m]."""
+        if self.brakes or not has_torque(self.bearing):
+            return 0.0
+        pairs = zip(self.parts, self.laws, self.motions(), strict=True)
+        return sum(_torque(*each) for each in pairs)
+
+    def begin(self, mbs: exudyn.MainSystem, t: float) -> None:
+        """Give a film with a memory the state at the beginning of the step.
+
+        Exudyn repeats steps and evaluates forces at trial states; the configuration of the
+        beginning of the step alone holds what has been accepted.
+        """
+        if not self._remembers:
+            return
+        time = mbs.systemData.GetTime(START)
+        if self._begun != (time, t):
+            self._begun = time, t
+            self.read(*self.state(mbs, START))
+            *moved, _, speed = self.motions()[0]
+            self.laws[0].begin(time, *moved, speed, t)
+
+
+def has_torque(bearing: Bearing) -> bool:
+    """Return whether a bearing has a torque about the axis in scenes."""
+    if isinstance(bearing, JournalBearing | TiltingPadBearing):
+        return True
+    return bearing.law_with_torque is not None
+
+
+def _law_of(bearing: Bearing, torque: bool) -> Law | LawWithTorque:
+    """Return the law of a bearing, or of one pad's film, by x, y, ẋ, ẏ, θ and Ω."""
+    if isinstance(bearing, JournalBearing) and bearing.remembers:
+        return RememberingLaw(bearing.film, torque=torque)
+    return bearing.law_with_torque if torque else bearing.law
+
+
+def _tangent(bearing: Bearing, law: Law | LawWithTorque, motion: tuple[float, ...]) -> FilmPoint:
+    """Return values of a law, K and D (2, 2), and with a torque less the slopes by the speed."""
+    values, faster = law(*motion), None
+    if len(values) > 2:
+        step = _SPEED_STEP * max(abs(motion[5]), 1.0)
+        ahead = law(*motion[:5], motion[5] + step)
+        faster = (np.array(values) - ahead) / step
+        values = law(*motion)  # films know the tangent of their last call
+    slopes = law.slopes if isinstance(law, FilmLaw) else bearing.slopes
+    return values, *slopes(*motion), faster
+
+
+def _torque(bearing: Bearing, law: Law | LawWithTorque, motion: tuple[float, ...]) -> float:
+    """Return the torque of a law that is asked for its force alone [N m]."""
+    if isinstance(law, FilmLaw):
+        return law.torque(*motion)
+    return bearing.law_with_torque(*motion)[2]
+
+
+_STOPS = "clearance stops"
+
+
+def watch_clearance(body: RotorItems, connector: BearingConnector | MagneticConnector) -> None:
+    """Let runs of the scene stop where the journal of a connector leaves its bearing."""
+    bearing, name = connector.bearing, body.name
+    stops = entry(body.mbs).setdefault(_STOPS, set())
+    place = body.mark, bearing.interface
+    if isinstance(bearing, ClearanceStop):
+        stops.add(place)
+        return
+    if connector.parts[0].clearance_along() == inf:
+        return
+
+    def guard(mbs: exudyn.MainSystem) -> None:
+        time = mbs.systemData.GetTime(START)
+        if time <= 0.0 or place in stops:  # nothing has been accepted yet, or a rub is meant
+            return
+        connector.read(*connector.state(mbs, START))
+        for part, motion in zip(connector.parts, connector.motions(), strict=True):
+            distance = hypot(*motion[:2])
+            beyond = distance - part.clearance_along(np.array(motion[:2]) / distance)
+            if beyond >= 0.0:
+                raise ValueError(
+                    f"rotor {name!r} left its bearing at {bearing.interface!r} at t = {time:g} s: "
+                    f"its journal is {distance:.3g} m from the centre, {beyond:.2g} m beyond the "
+                    f"clearance that way; {_advice(part)} ClearanceStop at that interface for a rub"
+                )
+
+    connector.guard = guard
+
+
+def _advice(part: object) -> str:
+    if isinstance(part, MagneticBearing):
+        return (
+            "is the loop of controller and magnets unstable? stability(reduced, speeds, "
+            "supports=…) tells; else reduce the load, or add a"
+        )
+    return "take smaller steps, begin from steady_state(body), reduce the load, or add a"

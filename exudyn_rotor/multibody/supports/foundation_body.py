@@ -29,9 +29,8 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.multibody.rotor.inputs import main_system
 from exudyn_rotor.multibody.rotor.marker_body import add_weight, append_nodes, virtual_nodes
-from exudyn_rotor.multibody.rotor.plan import generic_node
+from exudyn_rotor.multibody.rotor.plan import generic_node, main_system
 from exudyn_rotor.theory.axis import SpinAxis
 
 _ARM = 0.1  # m, of the virtual nodes of a point; any does

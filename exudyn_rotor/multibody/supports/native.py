@@ -18,9 +18,8 @@ from exudyn.advancedUtilities import CreateSymbolicUserFunction
 from exudyn.itemInterface import CartesianSpringDamper, RigidBodySpringDamper
 
 from exudyn_rotor.bearings.support import Support, acts, varies
-from exudyn_rotor.multibody.mark import entry
-from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
-from exudyn_rotor.multibody.supports.seats import Seat, point_marker, rigid_marker
+from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, entry
+from exudyn_rotor.multibody.supports.ends import Seat, point_marker, rigid_marker
 
 NATIVE, SYMBOLIC, PYTHON = "Exudyn", "symbolic function", "Python function"
 _ROUNDING = 1e-13  # of the largest entry of a turned matrix
@@ -37,7 +36,7 @@ def native_parts(
     """
     parts, left = [], {}
     across, tilts = ("stiffness", "damping"), ("tilt_stiffness", "tilt_damping")
-    if support.frame == "rotor":
+    if support.frame == "rotor" or support.couples:
         return parts, support
     constant = [
         not any(varies(getattr(support, name)) for name in kind) for kind in (across, tilts)

@@ -137,28 +137,31 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     from exudyn.FEM import FEMinterface
 
     from exudyn_rotor import checks
-    from exudyn_rotor.multibody.rotor import inputs
-    from exudyn_rotor.multibody.twins import swapped_body
+    from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS, main_system, marker_name
+    from exudyn_rotor.multibody.twins.swapped_body import (
+        State,
+        add_swapped_body,
+        checked_options,
+        numbers,
+        solid_rotor,
+    )
 
     given = locals()
-    inputs.main_system(mbs)
+    main_system(mbs)
     checks.instance(femInterface, "femInterface", FEMinterface)
     checks.flag(showMarkers, "showMarkers")
     checks.flag(verbose, "verbose")
-    checks.choice(markers, "markers", inputs.MARKER_KINDS)
+    checks.choice(markers, "markers", MARKER_KINDS)
     own = (translation, spin, spin_coupling, stiffening, locking)
-    options = swapped_body.checked_options(*own, markers, condense_markers, prestress)
-    start = swapped_body.State.checked("referencePosition", "referenceRotationMatrix", given)
-    rotor = swapped_body.solid_rotor(femInterface, axis, start)
+    options = checked_options(*own, markers, condense_markers, prestress)
+    start = State.checked("referencePosition", "referenceRotationMatrix", given)
+    rotor = solid_rotor(femInterface, axis, start)
     offsets = _offsets(list(rotor.interfaces), superElementRigidMarkersOffsets)
-    body = swapped_body.add_swapped_body(
-        mbs, name, femInterface, rotor, start, options, offsets, showMarkers
-    )
+    body = add_swapped_body(mbs, name, femInterface, rotor, start, options, offsets, showMarkers)
     if verbose:
         exudyn.Print(body.report())
-    return {"FFRFReducedOrderObjectDict": swapped_body.numbers(body)} | {
-        inputs.marker_name(body.name, interface): marker
-        for interface, marker in body.markers.items()
+    return {"FFRFReducedOrderObjectDict": numbers(body)} | {
+        marker_name(body.name, interface): marker for interface, marker in body.markers.items()
     }
 
 

@@ -13,7 +13,7 @@ from exudyn.FEM import FEMinterface
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor import inputs
+from exudyn_rotor.multibody.rotor.plan import main_system
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.twins.swapped_body import (
     State,
@@ -191,7 +191,7 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
             For bad input; nothing has been added then.
         """
         given = locals()
-        inputs.main_system(mbs)
+        main_system(mbs)
         label = None if isinstance(name, str) and name == "" else checks.label(name, "name")
         if np.size(rotationMatrixRef) == 0:
             given["rotationMatrixRef"] = np.eye(3)

@@ -12,11 +12,10 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.add_rotor import add_rotor
-from exudyn_rotor.multibody.rotor import inputs
-from exudyn_rotor.multibody.rotor.frame import MESH_ORIGIN
-from exudyn_rotor.multibody.rotor.known_rotor import known_rotor
-from exudyn_rotor.multibody.rotor.locking import LOCKINGS
+from exudyn_rotor.multibody.rotor.frame import LOCKINGS, MESH_ORIGIN
+from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS, color_of
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_items import known_rotor
 from exudyn_rotor.multibody.twins.axis_of_body import axis_at_rest, axis_of_motion
 from exudyn_rotor.reduction.mean_axis import frame_shares, warn_of_held_frame
 from exudyn_rotor.solid.carried_prestress import Prestress
@@ -75,7 +74,7 @@ class State:
             mass_damping=by_mass,
             stiffness_damping=by_stiffness,
             gravity=checks.vector(given["gravity"], "gravity", "m/s²"),
-            color=inputs.color_of(given["color"]),
+            color=color_of(given["color"]),
         )
 
 
@@ -92,7 +91,7 @@ def checked_options(
     """Return what the twins take beyond the arguments of Exudyn's calls, or refuse it."""
     _check_prestress(chosen_level(stiffening, prestress is not None), prestress)
     if markers is not None:
-        checks.choice(markers, "markers", inputs.MARKER_KINDS)
+        checks.choice(markers, "markers", MARKER_KINDS)
     suited = suited_translation(translation, grounded=False)
     Formulation(suited, spin, spin_coupling=spin_coupling)  # or refuse it
     return {

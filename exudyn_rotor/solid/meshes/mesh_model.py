@@ -47,7 +47,8 @@ def import_model(
     lengths, moduli, densities = _SI[checks.choice(length_unit, "length_unit", _SI)]
     if isinstance(leave_out, str):
         raise TypeError(f"leave_out: needs a list of names, got the text {leave_out!r}")
-    refusals = Refusals("mesh", checks.items(leave_out, "leave_out", "names"))
+    names = checks.items(leave_out, "leave_out", "names")
+    refusals = Refusals("mesh", [checks.label(name, "leave_out") for name in names])
     data = _read(mesh, refusals)
     if not data.groups:
         raise ValueError("mesh: needs tetrahedra, wedges or hexahedra, got no solid element")

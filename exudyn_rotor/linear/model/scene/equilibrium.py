@@ -7,11 +7,12 @@ sliding: an equilibrium has none of it.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import scipy.linalg
 
 from exudyn_rotor.linear.equations import UnconvergedError
-from exudyn_rotor.linear.model.scene.along_axis import held_along_axis
 from exudyn_rotor.linear.model.scene.journal_start import journal_start
 from exudyn_rotor.linear.model.scene.probe import Probe, linearised
 from exudyn_rotor.linear.model.scene.scene_coordinates import UNHELD, Motion, SceneCoordinates
@@ -44,7 +45,6 @@ def motion_at_rest(
     UnconvergedError
         Where there is no equilibrium.
     """
-    kept = held_along_axis(scene, probe)
     first, start = begin or (np.arange(-1, 2), journal_start(scene, 0.0, np.arange(-1, 2)))
     count = _SAMPLES
     while True:
@@ -53,7 +53,7 @@ def motion_at_rest(
         values = []
         for theta in angles:
             near = values[-1] if values else (np.exp(1j * theta * first) @ start).real
-            values.append(equilibrium(scene, probe, theta, near, tolerance, kept))
+            values.append(_at_angle(scene, probe, theta, near, tolerance))
         harmonics = np.exp(-1j * np.outer(orders, angles)) @ values / count
         sizes = np.abs(harmonics).max(axis=1)
         if sizes[[0, -1]].max() <= tolerance * sizes.max() or count > 2 * _SAMPLES:
@@ -61,69 +61,92 @@ def motion_at_rest(
         count = 2 * count + 1
 
 
+def _at_angle(
+    scene: SceneCoordinates, probe: Probe, theta: float, start: np.ndarray, tolerance: float
+) -> np.ndarray:
+    """Return the coordinates (k,) of an equilibrium at one angle of the rotor [rad]."""
+    still = np.zeros_like(start)
+
+    def at(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        point = linearised(probe, theta, y, still, still)
+        return point.K, point.residual
+
+    def unbalanced(y: np.ndarray) -> np.ndarray:
+        return probe.unbalanced(theta, y)
+
+    metres = 1.0 / scene.metre(probe.masses)
+    where = f"scene at rest, at the angle {theta:g} rad of the rotor"
+    return equilibrium(scene, at, unbalanced, metres, start, tolerance, where)
+
+
 def equilibrium(
     scene: SceneCoordinates,
-    probe: Probe,
-    theta: float,
+    linearised: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]],
+    unbalanced: Callable[[np.ndarray], np.ndarray],
+    metres: np.ndarray,
     start: np.ndarray,
     tolerance: float,
-    kept: np.ndarray,
+    where: str,
 ) -> np.ndarray:
-    """Return the coordinates (k,) of an equilibrium at rest, at one angle of the rotor [rad].
+    """Return the coordinates (k,) of an equilibrium.
 
     Parameters
     ----------
     scene : SceneCoordinates
-    probe : Probe
-        At the speed 0.
-    theta : float
+    linearised : callable
+        Takes coordinates, gives stiffness (k, k) and what is unbalanced (k,).
+    unbalanced : callable
+        Gives the latter alone.
+    metres : ndarray, shape (k,)
+        Metres per unit of each coordinate.
     start : ndarray, shape (k,)
     tolerance : float
         Largest last step, relative to the motion.
-    kept : ndarray, shape (k, r)
-        Orthonormal motions in which it is looked for.
+    where : str
+        Of messages.
 
     Raises
     ------
     UnconvergedError
         Where something is not held, or no equilibrium is found.
     """
-    y, still, reach = start, np.zeros_like(start), _FIRST_REACH
+    y, reach = start, _FIRST_REACH
     for iteration in range(_MOST_ITERATIONS):
-        point = linearised(probe, theta, y, still, still)
-        metres = 1.0 / scene.metre(np.diag(point.M))
-        step, left = solved_in(kept, point.K, -point.residual)
+        K, residual = linearised(y)
+        step, left = solved(K, -residual)
         pull = left / metres
-        held = np.abs(pull).max() <= UNHELD * scene.mass
-        most = np.abs(point.residual / metres).max()
+        held = np.abs(pull).max(initial=0.0) <= UNHELD * scene.mass
+        most = np.abs(residual / metres).max(initial=0.0)
         if held and iteration > _FEW_ITERATIONS and most <= BALANCED * scene.mass:
             return y
         if not held:
             soft = np.abs(pull).max() / reach * np.diag(metres**2)
-            step = solved_in(kept, point.K + soft, -point.residual)[0]
+            step = solved(K + soft, -residual)[0]
             reach *= _FURTHER
 
         def slope(share: float, y: np.ndarray = y, step: np.ndarray = step) -> float:
-            return float(step @ probe.unbalanced(theta, y + share * step))
+            return float(step @ unbalanced(y + share * step))
 
         y = y + step_share(slope) * step
-        size = np.abs(y * metres).max()
+        size = np.abs(y * metres).max(initial=0.0)
         if size > FAR * scene.length:
             raise UnconvergedError(
-                "scene at rest: a load that nothing holds takes the rotor away; add a support in "
-                "its direction"
+                f"{where}: a load that nothing holds takes the rotor away; add a support in its "
+                "direction"
             )
-        if held and np.abs(step * metres).max() < tolerance * max(size, SMALLEST):
+        if held and np.abs(step * metres).max(initial=0.0) < tolerance * max(size, SMALLEST):
             return y
     raise UnconvergedError(
-        f"scene at rest: no equilibrium found at the angle {theta:g} rad of the rotor; is a "
-        "bearing or a magnetic force stronger than what holds the rotor? A damped run from rest "
-        "shows what it does; about='given' needs no equilibrium"
+        f"{where}: no equilibrium found; is a bearing or a magnetic force stronger than what holds "
+        "the rotor? A damped run from rest shows what it does; about='given' needs no equilibrium"
     )
 
 
 def solved(K: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Solve with motions that nothing holds left at rest; return what remains of the load, too."""
+    """Solve with motions that nothing holds left at rest; return what remains of the load, too.
+
+    So is a rotor along its axis that springs, films and rolling elements across it leave free.
+    """
     sizes = np.abs(K)
     held = np.maximum(sizes.max(axis=1), sizes.max(axis=0)) > _ROUNDING * sizes.max()
     among, answer = K[np.ix_(held, held)], np.zeros(len(load), dtype=np.result_type(K, load))
@@ -136,9 +159,3 @@ def solved(K: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     solution = scipy.linalg.lstsq(scaled, scale * load[held], cond=1e-12, lapack_driver="gelsy")
     answer[held] = scale * solution[0]
     return answer, load - K @ answer
-
-
-def solved_in(kept: np.ndarray, K: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return as :func:`solved`, in orthonormal motions (k, r) alone."""
-    answer, left = solved(kept.T @ K @ kept, kept.T @ load)
-    return kept @ answer, load - kept @ (kept.T @ load - left)

@@ -63,7 +63,7 @@ def journal_start(scene: SceneCoordinates, speed: float, orders: np.ndarray) -> 
 def _tilts(scene: SceneCoordinates, speed: float) -> np.ndarray:
     """Return the tilts of pads in equilibrium [rad] by the free coordinates."""
     found = np.zeros(len(scene.rest))
-    loads = dict(_loads(scene.body))
+    loads = static_loads(scene.body)
     for one in scene.body.supports:
         if isinstance(one.support, TiltingPadBearing) and np.any(loads.get(one.support, 0.0)):
             tilts = one.support.tilts(speed, loads[one.support])
@@ -82,7 +82,7 @@ def across(scene: SceneCoordinates, name: str) -> np.ndarray:
 
 def journal_places(body: RotorBody, speed: float) -> dict[str, np.ndarray]:
     """Return the equilibria of journals by interface, (2,) [m]; none of those in their centres."""
-    loads = _loads(body)
+    loads = static_loads(body).items()
     places, cage = {}, spin_at_start(body)[0]
     for bearing, load in loads:
         if np.any(load) and isinstance(bearing, RollingBearing):
@@ -96,7 +96,7 @@ def journal_places(body: RotorBody, speed: float) -> dict[str, np.ndarray]:
     return {name: place for name, place in places.items() if np.any(place)}
 
 
-def _loads(body: RotorBody) -> list[tuple[Bearing, np.ndarray]]:
+def static_loads(body: RotorBody) -> dict[Bearing, np.ndarray]:
     """Return bearings and their static loads: on two the weight by the lever rule, or their own."""
     bearings = [each.support for each in body.supports if isinstance(each.support, Bearing)]
     bearings = [bearing for bearing in bearings if bearing.carries]
@@ -106,7 +106,7 @@ def _loads(body: RotorBody) -> list[tuple[Bearing, np.ndarray]]:
         pairs = zip(weights, loads, strict=True)
         loads = [weight if np.any(weight) else load for weight, load in pairs]
     pairs = zip(bearings, loads, strict=True)
-    return [(bearing, load) for bearing, load in pairs if load is not None]
+    return {bearing: load for bearing, load in pairs if load is not None}
 
 
 def _weights(body: RotorBody, names: list[str]) -> list[np.ndarray]:

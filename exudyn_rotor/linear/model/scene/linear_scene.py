@@ -1,38 +1,43 @@
-"""A scene with a rotor, linearised over one revolution of its steady state.
+"""A scene with a rotor, ready to be linearised about its equilibrium or searched for its motion.
 
 The unknowns are the rotor's translations in axes that turn with it, its modal coordinates, and the
 coordinates of everything else as they are in the scene: foundations stay inertial. The spin is
-prescribed, θ = Ωt. What is beside the rotor comes from central differences of Exudyn's forces, with
-the state turning at Ω, taken at several angles of a revolution, so that no angle is frozen.
+prescribed, θ = Ωt.
 
 Neglected: the change of mass matrices and constraint directions along small steady motions.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import exudyn
 import numpy as np
+import scipy.linalg as la
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.journal_bearing import JournalBearing
+from exudyn_rotor.bearings.actuator import SaturatingActuator
+from exudyn_rotor.bearings.annular_seal import AnnularSeal
+from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.given import Given
+from exudyn_rotor.bearings.magnetic import MagneticBearing
+from exudyn_rotor.calls import kept
+from exudyn_rotor.linear.model.body import RotorAlone
+from exudyn_rotor.linear.model.linear_model import beside
 from exudyn_rotor.linear.model.scene.equilibrium import motion_at_rest
-from exudyn_rotor.linear.model.scene.probe import LinearPoint, Probe, probing
+from exudyn_rotor.linear.model.scene.journal_start import static_loads
+from exudyn_rotor.linear.model.scene.probe import probing
 from exudyn_rotor.linear.model.scene.scene_checks import check_period, check_scene
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates, nullspace
-from exudyn_rotor.linear.model.scene.steady_motion import points_about, steady_motion
+from exudyn_rotor.linear.model.scene.steady_motion import steady_motion
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import spin_at_start
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.multibody.supports.ends import BaseEnd
+from exudyn_rotor.reduction.fields import ModeKind
 
-Journal = Sequence[tuple[np.ndarray, np.ndarray] | None]
-_ANGLES = 12  # of a revolution, for the mean mass
-ABOUT = ("steady", "equilibrium", "given")
+_HELD = 1e-8  # share of a motion of the rotor that is none of the scene
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,12 +46,16 @@ class LinearScene(SceneCoordinates):
 
     Attributes
     ----------
-    body, free, N, rest, about
+    body, free, N, rest
         See :class:`SceneCoordinates`.
+    derivatives : dict
+        Of what is foreign, as far as they are known.
     """
 
+    derivatives: dict = field(default_factory=dict, init=False, repr=False)
+
     @classmethod
-    def of(cls, mbs: exudyn.MainSystem, body: RotorBody, *, about: str = "steady") -> LinearScene:
+    def of(cls, mbs: exudyn.MainSystem, body: RotorBody) -> LinearScene:
         """Prepare the linearisation of an assembled scene; `mbs` is left as it is.
 
         Whether and at which speed the rotor spins in `mbs` plays no part.
@@ -58,7 +67,6 @@ class LinearScene(SceneCoordinates):
             coordinates of first order, and constraints that turn with the rotor.
         """
         check_scene(mbs, body)
-        checks.choice(about, "about", ABOUT)
         rotor = np.asarray(mbs.systemData.GetObjectLTGODE2(body.objects["physics"]), dtype=int)
         alone = SceneCoordinates.of(body)
         rest = alone.rest
@@ -70,43 +78,119 @@ class LinearScene(SceneCoordinates):
                 "linear scene: a constraint turns with the rotor; hold the rotor by springs "
                 "(bearings) instead of joints"
             )
-        return cls(body, free, nullspace(C[0]), rest, about)
+        return cls(body, free, nullspace(C[0]), rest)
+
+    # ------------------------------------------------------------------ the rotor
 
     @cached_property
-    def mass_matrix(self) -> np.ndarray:
-        """Mean mass matrix of the given state, shape (k, k); films need no equilibrium for it."""
-        with self._probing(0.0) as probe:
-            return probe.mean_mass(_ANGLES)
+    def touching(self) -> np.ndarray:
+        """Which of the unknowns move the rotor, (k,)."""
+        return np.any(self.N[: self.modal.stop] != 0.0, axis=0)
 
-    def points(self, speed: float) -> tuple[list[LinearPoint], list[Journal]]:
-        """Return the scene linearised at the angles of its steady motion, and journals of films.
+    @cached_property
+    def columns(self) -> np.ndarray:
+        """Columns of the reduced rotor by the unknowns that move it, (n, r)."""
+        selection = self.body.selection
+        moved = selection.source.invariants.S.T @ self.axes[:, : self.count]
+        return np.hstack([moved, selection.T]) @ self.N[: self.modal.stop, self.touching]
 
-        Of :attr:`remembering` films place [m] and force [N] of the journal along (n1, n2) at these
-        angles, None outside the film. Cages of rolling bearings stand where they are when the rotor
-        starts.
+    @cached_property
+    def spin_column(self) -> np.ndarray:
+        """Columns of the reduced rotor by a free spin, (n, 1); (n, 0) where it is prescribed.
 
-        Raises
-        ------
-        UnconvergedError
-            Where no steady motion is found, or 192 angles do not resolve the coefficients.
+        About the axis: supports, and all that is foreign, leave this motion free.
         """
-        with self._probing(checks.number(speed, "speed", "rad/s")) as probe:
-            return points_about(self, probe), [one.seen[0] for one in probe.remembering]
+        source = self.body.selection.source
+        if not self.body.formulation.has_spin:
+            return np.zeros((source.size, 0))
+        center = source.center_of_mass
+        return source.invariants.moved(source.axis.project(center) - center).g[:, None]
+
+    @kept
+    def held(self, alone: RotorAlone) -> np.ndarray:
+        """Return motions of a rotor that it does not have in the scene, orthonormal (k, f)."""
+        columns = np.hstack([self.columns, self.spin_column])
+        if len(alone.Q) > len(columns):  # in a richer basis
+            inner = self.body.selection.source.in_attached
+            columns = np.hstack([inner @ columns, la.null_space(inner.T)])
+        return la.null_space((columns / np.linalg.norm(columns, axis=0)).T @ alone.Q, rcond=_HELD)
+
+    @kept
+    def rotor(self, alone: RotorAlone, whole: bool) -> RotorAlone:
+        """Return a rotor without motions that it does not have in the scene."""
+        held = self.held(alone)
+        if not held.shape[1]:
+            return alone
+        if not whole:
+            held = la.orth(alone.turning.still @ held)
+        V = beside(held)
+        terms = alone.terms
+        terms = replace(
+            terms,
+            h=V.T @ terms.h,
+            g=V.T @ terms.g,
+            **{
+                name: None if X is None else V.T @ X @ V
+                for name, X in ((n, getattr(terms, n)) for n in ("G", "C_hat", "W", "B", "K4"))
+            },
+        )
+        spin = alone.spin
+        if spin is not None and np.linalg.norm(spin.momentum @ V) < 0.5:
+            spin = None
+        elif spin is not None:
+            spin = replace(
+                spin, momentum=spin.momentum @ V, turn=spin.turn @ V, rigid=V.T @ spin.rigid
+            )
+        return replace(
+            alone,
+            invariants=alone.invariants.in_basis(V),
+            terms=terms,
+            Q=alone.Q @ V,
+            turning=alone.turning.within(V),
+            spin=spin,
+        )
+
+    # ------------------------------------------------------------------ what is beside it
+
+    @cached_property
+    def given(self) -> list[Given]:
+        """Supports and bearings, these with their static load: by the lever rule, or their own."""
+        loads, given = static_loads(self.body), [one.support for one in self.body.supports]
+        return [replace(one, load=loads[one]) if one in loads else one for one in given]
 
     @property
-    def remembering(self) -> list[SceneSupport]:
-        """Journal bearings whose films conserve mass."""
-        journals = [one for one in self.body.supports if isinstance(one.support, JournalBearing)]
-        return [one for one in journals if one.support.remembers]
+    def follows_loads(self) -> bool:
+        """Whether any law depends on the static load."""
+        return any(follows_load(one.support) for one in self.body.supports)
 
-    def base_motion(self, support: SceneSupport) -> np.ndarray:
-        """Return the displacement (3, k) along (n1, n2, e) of what carries a support, inertial."""
-        made, motion = support.connector, np.zeros((3, len(self.rest)))
+    @cached_property
+    def others(self) -> np.ndarray:
+        """Unknowns of what is neither the rotor nor attached to it, shape (o,)."""
+        own = [self.own_unknowns(one) for one in self.body.supports]
+        return np.setdiff1d(np.flatnonzero(~self.touching), np.concatenate([[], *own]))
+
+    def own_unknowns(self, support: SceneSupport) -> np.ndarray:
+        """Return the unknowns that a support brings with it: of a controller or pads, (p,)."""
+        places = [np.flatnonzero(self.free == n) for n in support.own_coordinates(self.body.mbs)]
+        rows = self.N[np.concatenate([[], *places]).astype(int)]
+        return np.argmax(rows != 0.0, axis=1).astype(int)
+
+    @cached_property
+    def mass_beside(self) -> np.ndarray:
+        """Mass matrix of the :attr:`others`, shape (o, o)."""
+        with probing(self, 0.0) as probe:
+            return probe.mass_beside()[np.ix_(self.others, self.others)]
+
+    def base_motion(self, support: SceneSupport, base: BaseEnd) -> np.ndarray:
+        """Return the motion (6, o) along (n1, n2, e) of what carries a support, by the others."""
+        motion = np.zeros((6, len(self.rest)))
         read = self.body.mbs.systemData.GetNodeLTGODE2
-        places = np.concatenate([read(node) for node in made.base.nodes]).astype(int)
-        made.base.read(*np.zeros((2, len(places))).tolist())
-        motion[:, places] = made.base.rows()[:3]
-        return motion[:, self.free] @ self.N
+        places = np.concatenate([read(node) for node in base.nodes]).astype(int)
+        base.read(self.rest[places].tolist(), [0.0] * len(places))
+        motion[:, places] = base.rows()
+        return motion[:, self.free] @ self.N[:, self.others]
+
+    # ------------------------------------------------------------------ steady motion
 
     def steady_motion(
         self, speed: float, tolerance: float, start: tuple | None = None
@@ -133,17 +217,19 @@ class LinearScene(SceneCoordinates):
         Raises
         ------
         UnconvergedError
-            As :meth:`points`, where loads do not repeat with every revolution, and where nothing
-            holds the own spin of a rotor with an elastic drive against a torque.
+            Where no steady motion is found, or 192 angles do not resolve it, where loads do not
+            repeat with every revolution, and where nothing holds the own spin of a rotor with an
+            elastic drive against a torque.
         """
-        with self._probing(checks.number(speed, "speed", "rad/s")) as probe:
+        with probing(self, checks.number(speed, "speed", "rad/s")) as probe:
             check_period(self, probe)
             if speed == 0.0 and ModeKind.SPIN not in self.body.selection.kinds:
                 return motion_at_rest(self, probe, tolerance, spin_at_start(self.body)[0], start)
-            return steady_motion(self, probe, tolerance, start)[1:]
+            return steady_motion(self, probe, tolerance, start)
 
-    @contextmanager
-    def _probing(self, speed: float) -> Iterator[Probe]:
-        """Open the scene for probing, its cages as they are when the rotor starts."""
-        with probing(self, speed, cage=spin_at_start(self.body)[0]) as probe:
-            yield probe
+
+def follows_load(one: Given) -> bool:
+    """Return whether the coefficients of a support depend on its static load."""
+    if isinstance(one, MagneticBearing):
+        return isinstance(one.actuator, SaturatingActuator)
+    return isinstance(one, Bearing) and not isinstance(one, AnnularSeal)

@@ -16,7 +16,7 @@ import numpy as np
 
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
-from exudyn_rotor.reduction.mode_kind import RIGID_KINDS, ModeKind
+from exudyn_rotor.reduction.fields import RIGID_KINDS, ModeKind
 
 _MARGIN = 2.0  # times its estimate that a stiffness may be none
 

@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import exudyn
 import numpy as np
 
-from exudyn_rotor.bearings.journal_bearing import JournalBearing
-from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
-from exudyn_rotor.linear.equations import EPSILON, UnconvergedError
-from exudyn_rotor.linear.model.scene.attached import Attached, AttachedBearing, attached_to
+from exudyn_rotor.linear.equations import EPSILON
+from exudyn_rotor.linear.model.scene.attached import Attached
 from exudyn_rotor.linear.model.scene.differences import (
     CURVATURE,
     chosen_step,
@@ -24,7 +22,7 @@ from exudyn_rotor.linear.model.scene.differences import (
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
 from exudyn_rotor.multibody.rotor.equations import without_forces
-from exudyn_rotor.multibody.supports.support_connector import SupportConnector
+from exudyn_rotor.multibody.rotor.start_state import spin_at_start
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
 
@@ -40,6 +38,14 @@ class Probe:
 
     What is attached to the rotor is known by its laws; differences are taken of what else Exudyn
     has in the scene.
+
+    Attributes
+    ----------
+    scene : SceneCoordinates
+    speed : float
+    laws : list of Attached
+        Of supports and bearings, in their order.
+    drives : list of Attached
     """
 
     def __init__(
@@ -47,14 +53,14 @@ class Probe:
         scene: SceneCoordinates,
         speed: float,
         solver: exudyn.MainSolverStatic,
-        attached: list[Attached],
+        laws: list[Attached],
+        drives: list[Attached],
     ) -> None:
-        self.scene, self.speed, self.solver, self.attached = scene, speed, solver, attached
+        self.scene, self.speed, self.solver = scene, speed, solver
+        self.laws, self.drives = laws, drives
         self.mbs = scene.body.mbs
-        self.bearings = [one for one in attached if isinstance(one, AttachedBearing)]
         self.spin = scene.spin_coordinate
         self.is_constrained = bool(solver.GetAEsize())
-        self.has_foreign = bool(scene.foreign)
         self.rotor = np.arange(scene.modal.stop)
         self.step = self.velocity_step = None
         self.rotor_terms = lru_cache(_KEPT)(self._rotor_terms)
@@ -63,91 +69,16 @@ class Probe:
     @property
     def rounding(self) -> float:
         """Relative error of derivatives: of positions of order 1 m, and of the curvature left."""
-        return EPSILON / self.step + CURVATURE**2
+        return EPSILON / (self.step or _STEPS[0]) + CURVATURE**2
 
     @property
-    def straight(self) -> float:
-        """Motion [m] along which the forces are straight enough for their derivatives."""
-        known = [one for one in self.attached if not isinstance(one.connector, SupportConnector)]
-        return min(self.step, _STEPS[-1]) if known else self.step
-
-    @property
-    def films(self) -> list[AttachedBearing]:
-        """Bearings with films of finite length."""
-        kinds = JournalBearing | TiltingPadBearing
-        return [one for one in self.bearings if isinstance(one.bearing, kinds)]
-
-    @property
-    def remembering(self) -> list[AttachedBearing]:
-        """Bearings whose films conserve mass."""
-        journals = [one for one in self.films if isinstance(one.bearing, JournalBearing)]
-        return [one for one in journals if one.bearing.remembers]
-
-    @contextmanager
-    def without_tangents(self) -> Iterator[None]:
-        """Let films that conserve mass have the same force at all states, and note it."""
-        for one in self.remembering:
-            one.stiff = False
-            one.forget()
-        try:
-            yield
-        finally:
-            for one in self.remembering:
-                one.stiff = True
-
-    @contextmanager
-    def as_in_lists(self, wanted: bool) -> Iterator[None]:
-        """Let bearings be without torque, dampers with the force of small harmonic motions."""
-        try:
-            for one in self.attached:
-                one.rest(wanted)
-            yield
-        finally:
-            for one in self.attached:
-                one.rest(False)
+    def attached(self) -> list[Attached]:
+        """All that is attached to the rotor."""
+        return self.laws + self.drives
 
     def at_rest(self) -> Probe:
         """Return the same at the speed 0."""
-        return Probe(self.scene, 0.0, self.solver, self.attached)
-
-    def forget(self) -> None:
-        """Forget where bearings have been seen."""
-        for one in self.attached:
-            one.forget()
-
-    def see(self, theta: float, y: np.ndarray, y_t: np.ndarray) -> None:
-        """See where bearings are in a motion y (k,) of the rate y_t, at one angle."""
-        T, T1, _ = self.turn(theta)
-        self.force(theta, T @ y, T @ y_t + self.speed * T1 @ y)
-
-    @property
-    def settling(self) -> list[Attached]:
-        """Bearings that lists take otherwise than where they have been seen."""
-        return [one for one in self.attached if one.settles]
-
-    @contextmanager
-    def settled(self, bearings: Sequence[Attached]) -> Iterator[None]:
-        """Take bearings as lists do under the mean of the forces seen.
-
-        Raises
-        ------
-        UnconvergedError
-            Where there is no equilibrium.
-        """
-        try:
-            for one in bearings:
-                self._settle(one)
-            yield
-        finally:
-            for one in bearings:
-                one.release()
-
-    def _settle(self, bearing: Attached) -> None:
-        try:
-            bearing.settle(self.speed)
-        except (ValueError, ArithmeticError) as error:
-            where = f"linear scene at {self.speed:g} rad/s"
-            raise UnconvergedError(f"{where}: {error}") from error
+        return Probe(self.scene, 0.0, self.solver, self.laws, self.drives)
 
     def constraints(self, theta: float) -> np.ndarray:
         """Return the constraints' Jacobian by the free coordinates, rows that are zero left out."""
@@ -162,27 +93,39 @@ class Probe:
         """Return the mass matrix of all but the rotor at the present state, free coordinates."""
         self.solver.ComputeMassMatrix(self.mbs)
         full = np.array(self.solver.GetSystemMassMatrix())
-        mass = full[np.ix_(self.scene.free, self.scene.free)]
-        mass[np.ix_(self.rotor, self.rotor)] = 0.0
-        for one in self.attached:
-            if one.connector.has_mass:  # where the laws have been read
-                whole = np.zeros_like(full)
-                whole[np.ix_(one.places, one.places)] = one.connector.inertia()[0]
-                rotor = self.scene.free[self.rotor]
-                mass[np.ix_(self.rotor, self.rotor)] += whole[np.ix_(rotor, rotor)]
+        free, attached = self.scene.free, self.attached_mass(full.shape)
+        mass = full[np.ix_(free, free)]
+        rotor = free[self.rotor]
+        mass[np.ix_(self.rotor, self.rotor)] = attached[np.ix_(rotor, rotor)]
         return mass
 
-    def mean_mass(self, count: int) -> np.ndarray:
-        """Return the mass matrix (k, k) without deviations, its mean over so many angles."""
-        still, total = np.zeros(len(self.scene.free)), 0.0
-        for theta in 2.0 * np.pi * np.arange(count) / count:
-            q, q_t = self._set(theta, still, still)
-            for one in self.attached:
-                if one.connector.has_mass:
-                    one.read(q, q_t)
-            T = self.turn(theta)[0]
-            total = total + T.T @ (self.rotor_terms(theta)[0] + self.mass()) @ T
-        return total / count
+    def attached_mass(self, shape: tuple[int, int]) -> np.ndarray:
+        """Return the mass matrix of laws, where they have been read, by all coordinates."""
+        whole = np.zeros(shape)
+        for one in self.attached:
+            if one.connector.has_mass:
+                whole[np.ix_(one.places, one.places)] += one.connector.inertia()[0]
+        return whole
+
+    def mass_beside(self) -> np.ndarray:
+        """Return the mass matrix of all but the rotor and laws, without deviations, (k, k)."""
+        self.read(0.0, *np.zeros((2, len(self.scene.free))))
+        free, N = self.scene.free, self.scene.N
+        mass = self.mass() - self.attached_mass((len(self.scene.rest),) * 2)[np.ix_(free, free)]
+        return N.T @ mass @ N
+
+    @cached_property
+    def resisting(self) -> tuple[float, float]:
+        """Largest stiffness and damping of what Exudyn evaluates, though it is known."""
+        given = [self.scene.foundation_matrices, *(one.connector.native for one in self.attached)]
+        sizes = [[0.0 if X is None else np.abs(X).max(initial=0.0) for X in pair] for pair in given]
+        return tuple(np.max(sizes, axis=0).tolist())
+
+    @cached_property
+    def masses(self) -> np.ndarray:
+        """Diagonal of the mass matrix of all without deviations, (k,)."""
+        T = self.turn(0.0)[0]
+        return np.diag(T.T @ self.rotor_terms(0.0)[0] @ T + self.mass_beside())
 
     def _rotor_terms(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Return the rotor's M, D, K and constant force at Ω, in the free coordinates."""
@@ -209,27 +152,46 @@ class Probe:
 
     def force(self, theta: float, x: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Return the forces of all but the rotor's own equations, free coordinates."""
-        return self.foreign(theta, x, v) + self.laws(theta, x, v)[0]
+        return self.foreign(theta, x, v) + self.all_known(theta, x, v)[0]
+
+    def all_known(
+        self, theta: float, x: np.ndarray, v: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return as :meth:`known`, of all that is attached and of foundations."""
+        force, K, D = self.known(theta, x, v, self.attached)
+        q, q_t = self._state(theta, x, v)
+        free, matrices = self.scene.free, self.scene.foundation_matrices
+        resisted = matrices[0] @ q + matrices[1] @ q_t
+        more = (X[np.ix_(free, free)] for X in matrices)
+        return force - resisted[free], *(X + Y for X, Y in zip((K, D), more, strict=True))
 
     def foreign(self, theta: float, x: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Return the forces of what is neither the rotor nor attached to it."""
         q, q_t = self._set(theta, x, v)
         self.solver.ComputeODE2RHS(self.mbs)  # the rotor's own object has none while it is probed
         total = np.array(self.solver.GetSystemResidual())[: len(q)]
+        K, D = self.scene.foundation_matrices
+        total += K @ q + D @ q_t
         for one in self.attached:
             for matrix, state in zip(one.connector.native, (q, q_t), strict=True):
                 if matrix is not None:
                     total[one.places] += matrix @ state[one.places]
         return total[self.scene.free]
 
-    def laws(
-        self, theta: float, x: np.ndarray, v: np.ndarray
+    def read(self, theta: float, x: np.ndarray, v: np.ndarray) -> None:
+        """Let what is attached see a state."""
+        q, q_t = self._set(theta, x, v)
+        for one in self.attached:
+            one.read(q, q_t)
+
+    def known(
+        self, theta: float, x: np.ndarray, v: np.ndarray, attached: Sequence[Attached]
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the forces of what is attached, and less their derivatives by x and v."""
         q, q_t = self._state(theta, x, v)
         size = len(self.scene.rest)
         force, (K, D) = np.zeros(size), np.zeros((2, size, size))
-        for one in self.attached:
+        for one in attached:
             one.read(q, q_t)
             found, places = one.force(self._time(theta)), one.places
             force[places] += found.values @ found.J
@@ -247,12 +209,33 @@ class Probe:
         free = self.scene.free
         return force[free], *(X[np.ix_(free, free)] for X in (K, D))
 
+    def slopes_along(
+        self, theta: float, x: np.ndarray, v: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return less the derivatives by motions and rates along T of what is not attached."""
+        T = self.turn(theta)[0]
+        if not self.scene.foreign:
+            return np.zeros((2, *T.shape))
+        sizes = self.scene.metre(self.masses)
+
+        def moved(x_i: np.ndarray) -> np.ndarray:
+            return self.foreign(theta, x + x_i, v)
+
+        def sped_up(v_i: np.ndarray) -> np.ndarray:
+            return self.foreign(theta, x, v + v_i)
+
+        if self.step is None:
+            self.step = chosen_step(moved, T * sizes, _STEPS)
+            self.velocity_step = chosen_step(sped_up, T * sizes, _VELOCITY_STEPS)
+        faster = self.velocity_step
+        K = -slopes(moved, self.step * T * sizes) / (self.step * sizes)
+        D = -differences(sped_up, faster * T * sizes)[0] / (faster * sizes)
+        return K, D
+
     def unbalanced(self, theta: float, y: np.ndarray) -> np.ndarray:
         """Return what the forces lack for an equilibrium at rest (k,), as the residual of y."""
-        _, _, K, constant = self.rotor_terms(theta)
-        T = self.turn(theta)[0]
-        x = T @ y
-        return T.T @ (K @ x - constant - self.force(theta, x, np.zeros_like(x)))
+        none = np.zeros_like(y)
+        return unbalanced(self, theta, y, none, none)
 
     def _time(self, theta: float) -> float:
         return theta / self.speed if self.speed else 0.0
@@ -278,19 +261,22 @@ class Probe:
 
 
 @contextmanager
-def probing(scene: SceneCoordinates, speed: float, cage: float | None = None) -> Iterator[Probe]:
+def probing(scene: SceneCoordinates, speed: float) -> Iterator[Probe]:
     """Open a scene for probing and leave it as it was.
 
-    With an angle [rad], cages of rolling bearings stand where they are when the spin has it.
+    Cages of rolling bearings stand where they are when the rotor starts.
     """
     body = scene.body
-    attached = attached_to(body.mbs, body.supports, body.drives, cage)
+    made = [one.connector for one in body.drives if getattr(one, "connector", None) is not None]
+    cage = spin_at_start(body)[0]
+    laws = [Attached(body.mbs, one.connector, cage) for one in body.supports]
+    drives = [Attached(body.mbs, connector, cage) for connector in made]
     with (
-        _muted(body.mbs, attached, scene.native),
+        _muted(body.mbs, laws + drives, scene.native),
         without_forces(body.mbs, body.objects["physics"]),
         evaluating(body.mbs) as solver,
     ):
-        yield Probe(scene, speed, solver, attached)
+        yield Probe(scene, speed, solver, laws, drives)
 
 
 @contextmanager
@@ -312,19 +298,6 @@ def _muted(
         let(False)
 
 
-class Rest(NamedTuple):
-    """What is beside the rotor at one angle θ, by the free coordinates x = T y and their rates.
-
-    The mass matrix of x, and ``−TᵀF`` as D and K (k, k) by motions T y with T held.
-    """
-
-    theta: float
-    turns: tuple[np.ndarray, np.ndarray, np.ndarray]
-    mass: np.ndarray
-    D: np.ndarray
-    K: np.ndarray
-
-
 class LinearPoint(NamedTuple):
     """M, D, K (k, k) at one angle, the residual of y, and the forces of all but the rotor (k,)."""
 
@@ -333,7 +306,6 @@ class LinearPoint(NamedTuple):
     K: np.ndarray
     residual: np.ndarray
     forces: np.ndarray
-    rest: Rest
 
 
 def unbalanced(
@@ -354,46 +326,19 @@ def linearised(
     """Return the scene linearised about y at one angle."""
     T, T1, T2 = (probe.speed**n * X for n, X in enumerate(probe.turn(theta)))
     x, v = T @ y, T @ y_t + T1 @ y
-    rotor_M, rotor_D, rotor_K, constant = probe.rotor_terms(theta)
-    foreign = probe.foreign(theta, x, v)
-    law, law_K, law_D = probe.laws(theta, x, v)
-    M = rotor_M + probe.mass()
-    foreign_D, foreign_K = _foreign_slopes(probe, theta, x, v, T, M)
-    force = foreign + law
-    rest_D, rest_K = T.T @ (law_D @ T + foreign_D), T.T @ (law_K @ T + foreign_K)
+    M, rotor_D, rotor_K, constant = probe.rotor_terms(theta)
+    force, law_K, law_D = probe.all_known(theta, x, v)
+    force = force + probe.foreign(theta, x, v)
+    M = M + probe.mass()
+    K, D = probe.slopes_along(theta, x, v)
+    K, D = T.T @ (law_K @ T + K), T.T @ (law_D @ T + D)
     inertia = M @ (T @ y_tt + 2.0 * T1 @ y_t + T2 @ y)
     residual = inertia + rotor_D @ v + rotor_K @ x - constant - force
-    rest = Rest(theta, (T, T1, T2), M - rotor_M, rest_D, rest_K)
-    carried = rest_D @ (T.T @ T1)  # the columns of rest_D are derivatives along T
     return LinearPoint(
         T.T @ M @ T,
-        T.T @ (2.0 * M @ T1 + rotor_D @ T) + rest_D,
-        T.T @ (M @ T2 + rotor_D @ T1 + rotor_K @ T) + rest_K + carried,
+        T.T @ (2.0 * M @ T1 + rotor_D @ T) + D,
+        # the columns of D are derivatives along T
+        T.T @ (M @ T2 + rotor_D @ T1 + rotor_K @ T) + K + D @ (T.T @ T1),
         T.T @ residual,
         T.T @ force,
-        rest,
     )
-
-
-def _foreign_slopes(
-    probe: Probe, theta: float, x: np.ndarray, v: np.ndarray, T: np.ndarray, M: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return less the derivatives by rates and motions along T of what is not attached."""
-    if not probe.has_foreign:
-        probe.step, probe.velocity_step = _STEPS[0], _VELOCITY_STEPS[0]
-        return np.zeros((2, *T.shape))
-    sizes = probe.scene.metre(np.diag(T.T @ M @ T))
-
-    def moved(x_i: np.ndarray) -> np.ndarray:
-        return probe.foreign(theta, x + x_i, v)
-
-    def sped_up(v_i: np.ndarray) -> np.ndarray:
-        return probe.foreign(theta, x, v + v_i)
-
-    if probe.step is None:
-        probe.step = chosen_step(moved, T * sizes, _STEPS)
-        probe.velocity_step = chosen_step(sped_up, T * sizes, _VELOCITY_STEPS)
-    faster = probe.velocity_step
-    K = -slopes(moved, probe.step * T * sizes) / (probe.step * sizes)
-    D = -differences(sped_up, faster * T * sizes)[0] / (faster * sizes)
-    return D, K

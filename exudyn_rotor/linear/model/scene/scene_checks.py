@@ -11,8 +11,8 @@ from exudyn_rotor.linear.model.scene.probe import Probe
 from exudyn_rotor.linear.model.scene.scene_coordinates import UNHELD, SceneCoordinates
 from exudyn_rotor.multibody.drives.connect_rotors import SceneConnection
 from exudyn_rotor.multibody.full.full_body import reduced_body
-from exudyn_rotor.multibody.mark import mark_of
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_items import mark_of
 
 _PERIODIC = 1e-6  # share of the forces that may change from one revolution to the next: round-off
 _ROUNDING = 1e-13  # rad, of an angle after some revolutions

@@ -16,11 +16,14 @@ from exudyn_rotor.multibody.rotor.marker_body import around
 from exudyn_rotor.multibody.rotor.plan import turned_origin
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import StartState
+from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_rotation, axial_skew
 from exudyn_rotor.theory.stiffening import Stiffening, stiffening
 
+# objects without forces: grounds and constraints
+_FORCELESS = ("Ground", "ConnectorCoordinate", "ConnectorCoordinateVector", "ConnectorDistance")
 Motion = tuple[np.ndarray, np.ndarray]  # orders (h,) and harmonics (h, k)
 UNHELD = 1e-6  # m/s² by which loads may accelerate what nothing holds: round-off
 
@@ -41,15 +44,12 @@ class SceneCoordinates:
         Motions that the scene's constraints allow.
     rest : ndarray
         All coordinates of the given state.
-    about : {'steady', 'equilibrium', 'given'}
-        Motion about which the scene is linearised, see :func:`linear_model`.
     """
 
     body: RotorBody
     free: np.ndarray
     N: np.ndarray
     rest: np.ndarray
-    about: str = "steady"
 
     @classmethod
     def of(cls, body: RotorBody) -> SceneCoordinates:
@@ -122,16 +122,37 @@ class SceneCoordinates:
         return [n for n in numbers if "activeConnector" in mbs.GetObject(n)]
 
     @cached_property
-    def foreign(self) -> list[int]:
-        """Objects and loads that are neither the rotor's own nor attached to it."""
+    def foundations(self) -> list[SceneFoundation]:
+        """Foundations that carry supports of the rotor."""
+        bases = [one.base for one in self.body.supports]
+        return list(dict.fromkeys(one for one in bases if isinstance(one, SceneFoundation)))
+
+    @cached_property
+    def foundation_matrices(self) -> tuple[np.ndarray, np.ndarray]:
+        """Stiffness and damping of the :attr:`foundations` by all coordinates."""
+        K, D = np.zeros((2, len(self.rest), len(self.rest)))
+        for one in self.foundations:
+            places = self.body.mbs.systemData.GetObjectLTGODE2(one.objects["physics"])
+            K[np.ix_(places, places)] = one.foundation.stiffness
+            D[np.ix_(places, places)] = one.foundation.damping
+        return K, D
+
+    @cached_property
+    def foreign_objects(self) -> list[int]:
+        """Objects that are neither the rotor's own nor attached to it."""
         mbs, body = self.body.mbs, self.body
         own = {*map(int, body.objects.values()), *map(int, body.constraints.values())}
         own |= {int(n) for one in body.supports for n in one.objects}
         own |= {int(one.object) for one in body.drives}
-        kinds = [mbs.GetObject(n)["objectType"] for n in range(mbs.systemData.NumberOfObjects())]
-        found = [n for n, kind in enumerate(kinds) if n not in own and kind != "Ground"]
-        weight = [] if body.gravity_load is None else [int(body.gravity_load)]
-        return found + [n for n in range(mbs.systemData.NumberOfLoads()) if n not in weight]
+        own |= {int(n) for one in self.foundations for n in one.objects.values()}
+        items = [mbs.GetObject(n) for n in range(mbs.systemData.NumberOfObjects())]
+        return [n for n, item in enumerate(items) if n not in own and _has_force(item)]
+
+    @property
+    def foreign(self) -> bool:
+        """Whether there are objects or loads that are neither the rotor's nor attached to it."""
+        own = self.body.gravity_load is not None
+        return bool(self.foreign_objects or self.body.mbs.systemData.NumberOfLoads() > own)
 
     @cached_property
     def pairs(self) -> np.ndarray:
@@ -172,19 +193,6 @@ class SceneCoordinates:
     def interfaces(self) -> tuple[str, ...]:
         """Names of the interfaces that have a marker."""
         return tuple(self.body.markers)
-
-    @cached_property
-    def unit_unbalance(self) -> np.ndarray:
-        """Load of the rotor's own eccentricity per Ω², (66) and (87), shape (k,), rotor frame.
-
-        A moving frame has its origin in the centre of mass, which then carries the unbalance.
-        """
-        inv, body = self.body.motion.invariants, self.body
-        load = np.zeros(len(self.free))
-        across = body.axis.radial(body.frame.origin)
-        load[: self.count] = self.axes[:, : self.count].T @ (inv.mass * across)
-        load[self.modal] = inv.h
-        return self.N.T @ load
 
     def interface_motion(self, name: str) -> np.ndarray:
         """Return an interface's motion (6, k): displacement and rotation along (n1, n2, e).
@@ -238,6 +246,15 @@ class SceneCoordinates:
         if spin is not None:
             q[spin], q_t[spin] = angle, speed
         return StartState(q, q_t, angle, speed)
+
+
+def _has_force(item: dict) -> bool:
+    """Return whether an object may have a force: no ground, no constraint, no mere mass."""
+    kind = item["objectType"]
+    if kind == "GenericODE2":
+        names = "stiffnessMatrix", "dampingMatrix", "forceVector", "forceUserFunction"
+        return any(np.any(item[name]) for name in names)
+    return kind not in _FORCELESS and not kind.startswith("Joint")
 
 
 def without_spin(body: RotorBody) -> np.ndarray:

@@ -1,13 +1,8 @@
-"""The linear model of a scene: the rotor as in a list of supports, and what Exudyn has beside it.
+"""The linear model of a scene: its rotor and laws as in a list of supports, and what is foreign.
 
-The equations of the rotor are those that it has on supports. What is beside it acts on its motion y
-in the scene, which is told from the coordinates z of the model at every angle of a revolution,
-
-    y = W(θ) z,    W = L exp(−Nθ) + A⁺ (R(−θ) U₀ − A L exp(−Nθ)),
-
-where L takes coordinates of the rotor to those in the scene, A is the motion of the interfaces by
-y, and U₀ the motion that a support in a list sees (:mod:`exudyn_rotor.linear.model.turning`): the
-second term is the unevenness that is averaged, so that connectors see the same motion as supports.
+Laws of this package enter as they do from a list, bearings under the static force that they have
+in the equilibrium of the scene. What else Exudyn has there acts by its derivatives
+(:mod:`.foreign`), and its coordinates are one more body.
 """
 
 from __future__ import annotations
@@ -19,23 +14,29 @@ from functools import cached_property
 import numpy as np
 import scipy.linalg as la
 
+from exudyn_rotor.bearings.clearance_stop import ClearanceStop
+from exudyn_rotor.bearings.given import Given, linear_supports
+from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.equations import PeriodicSystem, Terms, add, joined, turned
-from exudyn_rotor.linear.model.assembly import NO_EQUATIONS, Assembly, is_isotropic_matrix
-from exudyn_rotor.linear.model.body import RotorAlone, RotorBody, StandingBody, rotor_body
-from exudyn_rotor.linear.model.linear_model import LinearModel, beside
-from exudyn_rotor.linear.model.scene.films import film_bodies, film_elements
-from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
-from exudyn_rotor.linear.model.scene.probe import Rest
-from exudyn_rotor.linear.model.scene.sampled_terms import terms_of
-from exudyn_rotor.linear.model.turning import interface_motion
-from exudyn_rotor.theory.rotating_axes import axial_skew
+from exudyn_rotor.linear.equations import PeriodicSystem, add, joined
+from exudyn_rotor.linear.model.assembly import NO_EQUATIONS, Assembly, Element, End, elements_of
+from exudyn_rotor.linear.model.body import RotorAlone, RotorBody, StandingBody
+from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.model.scene.attached import Attached
+from exudyn_rotor.linear.model.scene.equilibrium import equilibrium
+from exudyn_rotor.linear.model.scene.foreign import Foreign, acting
+from exudyn_rotor.linear.model.scene.journal_start import journal_start
+from exudyn_rotor.linear.model.scene.linear_scene import LinearScene, follows_load
+from exudyn_rotor.linear.model.scene.probe import Probe, probing
+from exudyn_rotor.linear.model.scene.seen import Seen
+from exudyn_rotor.multibody.supports.add_supports import SceneSupport
+from exudyn_rotor.multibody.supports.ends import BaseEnd
 
-_HELD = 1e-8  # share of a motion of the rotor that is none of the scene
+ABOUT = ("equilibrium", "given")
 _WAVE_FREE = 0.99  # share of a held motion that must be no lateral wave
-_DEPENDENT = 1e-3  # of singular values of the motion of interfaces
-_LEAST = 1e-9  # share of harmonics of coefficients that is rounding of differences
-_SKEW = 1e-9  # share of stiffness and damping that is
+_TOLERANCE = 1e-8  # of an equilibrium
+_ANGLES = 7  # of a revolution, for the mean of the weight
+_SAME_LOAD, _NO_LOAD = 1e-6, 1e-9  # of a load, and of the rotor's weight
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,171 +46,147 @@ class SceneModel(LinearModel):
     Attributes
     ----------
     scene : LinearScene
+    about : {'equilibrium', 'given'}
+        State about which it is linearised.
     """
 
     scene: LinearScene = field(kw_only=True)
+    about: str = field(kw_only=True)
 
     @classmethod
-    def of(cls, scene: LinearScene, axes: str) -> SceneModel:
+    def of(cls, scene: LinearScene, about: str, axes: str) -> SceneModel:
         """Return the model of a scene."""
-        source = scene.body.selection.source
-        return cls({"": source}, {"": 1.0}, {"": ()}, (), None, scene.stiffening, axes, scene=scene)
+        supports = scene.given
+        if about == "equilibrium":  # any load, until that there is known
+            share = np.array([0.0, -9.81 * scene.mass / max(len(supports), 1)])
+            unknown = [follows_load(one) and one.load is None for one in supports]
+            pairs = zip(supports, unknown, strict=True)
+            supports = [replace(one, load=share) if yes else one for one, yes in pairs]
+        return cls(
+            {"": scene.body.selection.source}, {"": 1.0}, {"": supports}, (), None,
+            scene.stiffening, axes, scene=scene, about=about,
+        )  # fmt: skip
 
     # ------------------------------------------------------------------ what it consists of
 
-    @cached_property
-    def _touching(self) -> np.ndarray:
-        """Which of the unknowns of the scene move the rotor, (k,)."""
-        return np.any(self.scene.N[: self.scene.modal.stop] != 0.0, axis=0)
-
-    @cached_property
-    def _columns(self) -> np.ndarray:
-        """Columns of the reduced rotor by the unknowns that move it, (n, r)."""
-        scene, rotor = self.scene, self.rotors[""]
-        moved = rotor.invariants.S.T @ scene.axes[:, : scene.count]
-        known = np.hstack([moved, scene.body.selection.T])
-        return known @ scene.N[: scene.modal.stop, self._touching]
-
-    def _held(self, alone: RotorAlone) -> np.ndarray:
-        """Return motions of a rotor that it does not have in the scene, orthonormal (k, f)."""
-        columns = self._columns / np.linalg.norm(self._columns, axis=0)
-        return la.null_space(columns.T @ alone.Q, rcond=_HELD)
-
     def _alone(self, name: str, whole: bool) -> RotorAlone:
-        alone = super()._alone(name, whole)
-        held = self._held(alone)
-        if not held.shape[1]:
-            return alone
-        if not whole:
-            held = la.orth(alone.turning.still @ held)
-        V = beside(held)
-        terms = alone.terms
-        terms = replace(
-            terms,
-            h=V.T @ terms.h,
-            g=V.T @ terms.g,
-            **{
-                name: None if X is None else V.T @ X @ V
-                for name, X in ((n, getattr(terms, n)) for n in ("G", "C_hat", "W", "B", "K4"))
-            },
-        )
-        spin = alone.spin
-        if spin is not None and np.linalg.norm(spin.momentum @ V) < 0.5:
-            spin = None
-        elif spin is not None:
-            spin = replace(
-                spin, momentum=spin.momentum @ V, turn=spin.turn @ V, rigid=V.T @ spin.rigid
-            )
-        return replace(
-            alone,
-            invariants=alone.invariants.in_basis(V),
-            terms=terms,
-            Q=alone.Q @ V,
-            turning=alone.turning.within(V),
-            spin=spin,
-        )
+        return self.scene.rotor(super()._alone(name, whole), whole)
 
     @cached_property
     def _own_unevenness(self) -> dict[str, float]:
         alone = super()._alone("", False)
-        held = self._held(alone)  # a motion that is held across the axis turns with the rotor
+        held = self.scene.held(alone)  # a motion held across the axis turns with the rotor
         still = np.linalg.norm(alone.turning.still @ held, axis=0)
         return {"": alone.unevenness(self.places("")) if np.all(still > _WAVE_FREE) else np.inf}
 
     def places(self, name: str) -> tuple[str, ...]:
-        """Return the interfaces at whose markers anything acts."""
+        """Return the interfaces at which anything acts."""
         mbs, used = self.scene.body.mbs, set()
-        for number in range(mbs.systemData.NumberOfObjects()):
+        for number in self.scene.foreign_objects:
             used |= {int(marker) for marker in mbs.GetObject(number).get("markerNumbers", ())}
         known = self.rotors[""].interfaces
-        return tuple(
-            n for n, marker in self.scene.body.markers.items() if int(marker) in used and n in known
-        )
+        foreign = (n for n, marker in self.scene.body.markers.items() if int(marker) in used)
+        both = (*super().places(name), *(n for n in foreign if n in known))
+        return tuple(dict.fromkeys(both))
+
+    @property
+    def _is_alike(self) -> bool:
+        return not self.scene.foreign and super()._is_alike
+
+    def _elements_for(
+        self, turns: int, kind: str = "", supports: Sequence[Given] | None = None
+    ) -> tuple[list[Element], list]:
+        kind = kind or ("undamped" if self.is_undamped else "full")
+        elements, own = [], []
+        for number, given in enumerate(supports or self.supports[""]):
+            bases = {name: end for name, (end, _) in self._bases(number).items()}
+            one = {"": [given]}
+            more, added = elements_of(one, self.ratios, (), bases, turns, kind, len(own))
+            elements, own = elements + more, own + added
+        return elements, own
+
+    def _bases(self, number: int) -> dict[str, tuple[End, BaseEnd]]:
+        """Return what carries a support and its sensors, by their interfaces."""
+        one = self.scene.body.supports[number]
+        ends = {one.support.interface: one.connector.base}
+        sensor = getattr(one.support, "sensor_interface", None)
+        if sensor is not None:
+            ends[sensor] = one.connector.sensor_base
+        return {
+            name: (("scene", f"{number}: {name}"), end)
+            for name, end in ends.items()
+            if end is not None
+        }
 
     @cached_property
-    def turns(self) -> int:
-        """Whether the axes of the rotor turn with Ω (1) or stand still (0)."""
-        if self.wanted_axes != "auto":
-            return int(self.wanted_axes == "rotor")
-        given = [one.support for one in self.scene.body.supports]
-        plain = [one for one in given if isinstance(one, Support)]
-        alike = [all(map(is_isotropic_matrix, one.matrices(0.0))) for one in plain]
-        turning = [one.frame == "rotor" for one in plain]
-        if self._own_unevenness[""] > self.largest_unevenness:
-            return 1
-        if any(turns and not same for turns, same in zip(turning, alike, strict=True)):
-            return 1
-        # a basis with halves of pairs is taken whole where that is constant, too
-        constant = 0 < len(plain) == len(given) and all(alike) and not self._standing.size
-        constant = constant and not any(one.varies for one in plain)
-        return int(constant and self._alone("", False).has_halves)
-
-    def _assembled(self, turns: int, at_rest: bool = False, kind: str = "") -> Assembly:
-        alone = self._alone("", self.turns == 1)
-        ratio, frame = (0.0, 0) if at_rest else (1.0, turns)
-        rotor = rotor_body("", alone, ratio, frame, is_apart=not at_rest)
-        voids = [] if self.is_undamped else film_bodies(self.scene, frame)
-        return Assembly((rotor, self._standing, *voids), (), frame)
-
-    @cached_property
-    def _standing(self) -> StandingBody:
-        """What is beside the rotor, its stiffness and damping left out."""
-        others = ~self._touching
-        M = self.scene.mass_matrix[np.ix_(others, others)]
+    def _standing_bodies(self) -> list[StandingBody]:
+        """What is beside the rotor, with stiffness and damping of foundations."""
+        scene = self.scene
+        if not len(scene.others):
+            return []
+        M = scene.mass_beside
         labels = tuple(f"scene, {number}" for number in range(1, len(M) + 1))
-        points = {}
-        for one in self.scene.remembering:
-            if one.base is not None:
-                motion = self.scene.base_motion(one)[:, others]
-                points[one.support.interface] = np.vstack([motion, 0.0 * motion])
-        none = np.zeros(M.shape)
-        return StandingBody("scene", 0, M, (none,), (none,), labels, points=points)
+        points = {
+            end[1]: scene.base_motion(scene.body.supports[number], base)
+            for number in range(len(scene.body.supports))
+            for end, base in self._bases(number).values()
+        }
+        moves = scene.N[:, scene.others]
+        K, D = (
+            moves.T @ X[np.ix_(scene.free, scene.free)] @ moves for X in scene.foundation_matrices
+        )
+        return [StandingBody("scene", 0, M, (D,), (K,), labels, points=points)]
+
+    @cached_property
+    def _with_own(self) -> list[SceneSupport]:
+        """Supports with coordinates of their own in linear models."""
+        pairs = zip(self.scene.body.supports, self.supports[""], strict=True)
+        return [one for one, given in pairs if linear_supports([given])[1]]
 
     # ------------------------------------------------------------------ equations
 
-    def at(self, speed: float) -> PeriodicSystem:
-        """Return the equations at a spin speed [rad/s], about the steady motion there.
+    @property
+    def _is_list(self) -> bool:
+        """Whether all is known without a look at Exudyn."""
+        alike = self.about == "given" or not self.scene.follows_loads
+        return alike and not self.scene.foreign and not self.scene.body.drives
+
+    def at(self, speed: float, frequency: float | None = None) -> PeriodicSystem:
+        """Return the equations at a spin speed, and a frequency of motions [rad/s].
+
+        About the equilibrium at this speed.
 
         Raises
         ------
-        UnconvergedError
-            Where no steady motion is found, or 192 angles do not resolve the coefficients.
+        NoCoefficientsError, UnconvergedError
+            For a speed beyond a table, at which a film carries nothing, or without an equilibrium.
         """
-        points, journals = self.scene.points(speed)
-        points = points if speed else points[:1]
+        if self._is_list:
+            return super().at(speed, frequency)
         assembly = self.assembly(speed)
-        elements = film_elements(self.scene, journals, speed, assembly, self.is_undamped)
-        system = replace(assembly, elements=elements).system(speed)
-        W = _Seen.of(self, assembly.bodies[0])
-        samples = zip(
-            *(W.acting(point.rest, speed, self.is_undamped) for point in points), strict=False
-        )
-        M, D, K = (np.array(each) for each in samples)
-        k = self._running_size
-        own = assembly.M.copy()
-        own[assembly.slices[1], assembly.slices[1]] = 0.0
-        own[:k, :k] += M.mean(axis=0)
-        scale = 1.0 / np.sqrt(np.diag(own)[:k])
-        free = _unresisted(K, scale) & _unresisted(D, scale)
-        for X in (D, K):
-            X[:, free], X[:, :, free] = 0.0, 0.0
-        # of a round rotor the mean is taken, but for what unbalance moves in each revolution
-        for terms, X in ((system.D, D), (system.K, K)):
-            found = terms_of(X, scale, _LEAST)
-            if assembly.turns == 0 and self.scene.about != "steady":
-                found = {0: found[0]}
-            add(terms, {n: np.pad(Y, (0, self.size - k)) for n, Y in found.items()})
-        return replace(system, M=own)
+        with probing(self.scene, speed) as probe:
+            z, seen = self._equilibrium(probe)
+            foreign = self._foreign(probe, seen, z)
+            elements, _ = self._elements_for(self.turns, supports=self._under_loads(probe, seen, z))
+            system = replace(assembly, elements=tuple(elements)).system(speed, frequency)
+            self._add_foreign(system, probe, foreign, assembly)
+        return system
 
     def _systems(
-        self, speeds: np.ndarray, within: str = ""
+        self, speeds: np.ndarray, within: str = "", frequencies: np.ndarray | None = None
     ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
+        if self._is_list:
+            return super()._systems(speeds, within, frequencies)
         found, refused = [], {}
-        for place, speed in enumerate(speeds.tolist()):
+        basis = getattr(self, f"{within}_basis") if within else None
+        rates = [None] * len(speeds) if frequencies is None else frequencies.tolist()
+        for place, (speed, rate) in enumerate(zip(speeds.tolist(), rates, strict=True)):
             try:
-                found.append(self.at(speed))
+                one = self.at(speed, rate)
             except NO_EQUATIONS as error:
                 refused[place] = error
+            else:
+                found.append(one if basis is None else one.projected(basis))
         return joined(found) if found else None, refused
 
     @property
@@ -217,163 +194,141 @@ class SceneModel(LinearModel):
         """The model: another scene may have any forces."""
         return (id(self),)
 
-    def coefficients(self, speed: float) -> PeriodicSystem:
-        """Return the equations at a speed [rad/s], which stand for coefficients."""
-        return self.at(speed)
+    def coefficients(self, speed: float) -> list | PeriodicSystem:
+        """Return what :meth:`at_points` needs: the equations where more than laws is in them."""
+        return super().coefficients(speed) if self._is_list else self.at(speed)
 
-    def at_points(
-        self, speeds: np.ndarray, coefficients: Sequence[PeriodicSystem]
-    ) -> PeriodicSystem:
+    def at_points(self, speeds: np.ndarray, coefficients: Sequence) -> PeriodicSystem:
         """Return equations at speeds as one stack."""
-        return joined(coefficients)
+        return super().at_points(speeds, coefficients) if self._is_list else joined(coefficients)
 
-    @property
-    def _running_size(self) -> int:
-        """Number of coordinates but those of films."""
-        return sum(body.size for body in self.bodies[:2])
+    def _seen(self, assembly: Assembly, speed: float) -> Seen:
+        return Seen.of(self.scene, assembly, self._with_own, speed)
 
-    def unknowns(self, motion: Mapping[int, np.ndarray], speed: float) -> dict[int, np.ndarray]:
-        """Return harmonics of the unknowns y of the scene, given those (…, k) of coordinates."""
-        W, found = _Seen.of(self, self.assembly(speed).bodies[0]).W, {}
-        for m, rows in W.items():
-            for n, x in motion.items():
-                found[m + n] = found.get(m + n, 0.0) + x[..., : rows.shape[1]] @ rows.T
-        return found
+    def _foreign(self, probe: Probe, seen: Seen, z: np.ndarray) -> Foreign:
+        """Return derivatives about an equilibrium: those known, where they hold there."""
+        if not self.scene.foreign and not probe.drives:
+            none = np.zeros((1, self.scene.size, self.scene.size))
+            return Foreign(none, none)
+        known = self.scene.derivatives.get("foreign")
+        if known is None or not known.holds(probe, seen, z):
+            known = self.scene.derivatives["foreign"] = Foreign.of(probe, seen, z)
+        return known
+
+    def _add_foreign(
+        self, system: PeriodicSystem, probe: Probe, foreign: Foreign, assembly: Assembly
+    ) -> None:
+        seen, undamped = self._seen(assembly, probe.speed), None
+        if self.is_undamped:
+            rotor, place = assembly.bodies[0], assembly.slices[0]
+            undamped = np.zeros((assembly.size, assembly.size))
+            undamped[place, place] = rotor.turns * rotor.alone.turning.generator
+        D, K = foreign.terms(probe, seen, probe.speed, undamped)
+        for terms, more in ((system.D, D), (system.K, K)):
+            add(terms, {0: more[0]} if assembly.turns == 0 else more)
+
+    # ------------------------------------------------------------------ equilibrium
+
+    def _equilibrium(self, probe: Probe) -> tuple[np.ndarray, Seen]:
+        """Return an equilibrium under loads that stand still, by coordinates in inertial axes.
+
+        The unevenness of the rotor is averaged, and its own unbalance is left out.
+        """
+        speed, scene = probe.speed, self.scene
+        _, controllers = self._elements_for(0, "full")
+        assembly = Assembly((*self._bodies(0, speed == 0.0), *controllers), (), 0)
+        seen = self._seen(assembly, speed)
+        T, T1, _ = probe.turn(0.0)
+        W, W1, _ = seen.at(0.0)
+        z = np.zeros(assembly.size)
+        if self.about == "given":
+            return z, seen
+        orders = np.arange(-1, 2)
+        start = journal_start(scene, speed, orders).sum(axis=0).real
+        z = np.linalg.lstsq(W, start, rcond=1e-9)[0]
+        own = la.block_diag(*(body.K[0] + speed * sum(body.K[1:2]) for body in assembly.bodies))
+        still = probe.at_rest()
+        angles = 2.0 * np.pi * np.arange(_ANGLES) / _ANGLES if speed else [0.0]
+        weight = np.mean(
+            [seen.at(a)[0].T @ still.turn(a)[0].T @ still.rotor_terms(a)[3] for a in angles], axis=0
+        )
+        moving = speed * T1 @ W + T @ W1
+
+        def at(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            x, v = T @ W @ z, moving @ z
+            force, K, D = probe.all_known(0.0, x, v)
+            force = force + probe.foreign(0.0, x, v)
+            more = probe.slopes_along(0.0, x, v)
+            K, D = T.T @ (K @ T + more[0]), T.T @ (D @ T + more[1])
+            return own + acting(probe, seen, 0.0, K, D)[1], own @ z - weight - W.T @ T.T @ force
+
+        def unbalanced(z: np.ndarray) -> np.ndarray:
+            return own @ z - weight - W.T @ T.T @ probe.force(0.0, T @ W @ z, moving @ z)
+
+        metres = np.sqrt(np.maximum(np.diag(assembly.M), 1e-300) / scene.mass)
+        for body, place in zip(assembly.bodies, assembly.slices, strict=True):
+            if not isinstance(body, RotorBody | StandingBody):
+                metres[place] = np.maximum(metres[place], 1.0)  # of light pads and voids
+        where = f"linear scene at {speed:g} rad/s"
+        return equilibrium(scene, at, unbalanced, metres, z, _TOLERANCE, where), seen
+
+    def _under_loads(self, probe: Probe, seen: Seen, z: np.ndarray) -> list[Given]:
+        """Return the supports, bearings under the loads that they have by coordinates z."""
+        if self.about == "given":
+            return self.supports[""]
+        T, T1, _ = probe.turn(0.0)
+        W, W1, _ = seen.at(0.0)
+        probe.read(0.0, T @ W @ z, (probe.speed * T1 @ W + T @ W1) @ z)
+        least = _NO_LOAD * 9.81 * self.scene.mass
+        return [
+            _under_load(given, law, probe.speed, least) if follows_load(given) else given
+            for given, law in zip(self.supports[""], probe.laws, strict=True)
+        ]
 
     # ------------------------------------------------------------------ what a scene tells
 
-    @property
-    def richer(self) -> None:
-        """None: what connectors do with shapes that the rotor lacks is not known."""
-        return None
+    @cached_property
+    def _held_at_rest(self) -> tuple[Assembly, np.ndarray]:
+        assembly, K = super()._held_at_rest
+        if self.scene.foreign:
+            with probing(self.scene, 0.0) as probe:
+                seen = self._seen(assembly, 0.0)
+                foreign = self._foreign(probe, seen, np.zeros(assembly.size))
+                K = K + foreign.terms(probe, seen, 0.0, None)[1][0]
+        return assembly, K
 
     @property
     def stiffness_varies(self) -> bool:
-        """True: a scene may have any forces."""
-        return True
-
-    @property
-    def table_speeds(self) -> np.ndarray:
-        """Speeds at the points of the tables of supports [rad/s]."""
-        return np.unique(self.scene.table_speeds)
-
-    @property
-    def interfaces(self) -> tuple[str, ...]:
-        """Names of the interfaces that have a marker."""
-        return self.scene.interfaces
+        """Whether a stiffness depends on the speed; a scene may have any forces."""
+        return bool(self.scene.foreign) or super().stiffness_varies
 
     def base_loads(self, speed: float = 1.0) -> None:
         """Return None: what the ground moves in a scene is not known."""
         return None
 
-    @property
-    def free_motions(self) -> tuple[str, ...]:
-        """None that are known: the motion about which it is linearised needs all to be held."""
-        return ()
-
-    @property
-    def _neutral(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        none = np.zeros((self.size, 0))
-        return none, none, np.zeros(0, dtype=bool)
+    def unknowns(self, motion: Mapping[int, np.ndarray], speed: float) -> dict[int, np.ndarray]:
+        """Return harmonics of the unknowns y of the scene, given those (…, k) of coordinates."""
+        found = {}
+        for m, rows in self._seen(self.assembly(speed), speed).W.items():
+            for n, x in motion.items():
+                found[m + n] = found.get(m + n, 0.0) + x @ rows.T
+        return found
 
     def __repr__(self) -> str:
-        names = ", ".join(self.interfaces) or "none"
-        return (
-            f"LinearModel of {self.size} coordinates in {self.axes} axes\n"
-            f"scene around rotor {self.scene.body.name!r}, about={self.scene.about!r}, interfaces "
-            f"{names}\nstiffening: {self.stiffening}, unevenness {self.unevenness:.2g}"
-        )
+        lines = super().__repr__().splitlines()
+        lines[1] = f"scene around {lines[1].replace('rotor', repr(self.scene.body.name), 1)}"
+        return "\n".join(lines)
 
 
-@dataclass(frozen=True, eq=False)
-class _Seen:
-    """W(θ): the unknowns of a scene by the coordinates of a model, as Fourier terms (k, l).
-
-    N (l, l): the rates over Ω, seen from outside, of coordinates that turn.
-    """
-
-    W: Terms
-    N: np.ndarray
-
-    @classmethod
-    def of(cls, model: SceneModel, body: RotorBody) -> _Seen:
-        scene, alone, touching = model.scene, body.alone, model._touching
-        columns, rotor = model._columns, model.rotors[""]
-        L = np.linalg.pinv(columns) @ alone.Q
-        waves = alone.turning.parts(np.eye(L.shape[1])) if body.mean else {0: np.eye(L.shape[1])}
-        terms = {-n: L @ part for n, part in waves.items()}
-        names = [n for n in model.interfaces if n in rotor.interfaces]
-        if names and body.ratio:
-            reach = np.repeat([1.0, model.radius], 3)[:, None]
-            A = np.vstack([reach * interface_motion(rotor, n) @ columns for n in names])
-            inverse = np.linalg.pinv(A, rcond=_DEPENDENT)
-            U = {}
-            for i, name in enumerate(names):
-                for n, X in turned(body.supported(name), -1).items():
-                    U.setdefault(n, np.zeros((len(A), L.shape[1]), dtype=complex))
-                    U[n][6 * i : 6 * i + 6] = reach * X
-            lacking = {n: X.astype(complex) for n, X in U.items()}
-            add(lacking, {n: A @ X for n, X in terms.items()}, -1.0)
-            add(terms, {n: inverse @ X for n, X in lacking.items()})
-        others, still = np.flatnonzero(~touching), {}
-        size = L.shape[1] + len(others)
-        for n, X in terms.items():
-            still[n] = np.zeros((len(touching), size), dtype=complex)
-            still[n][touching, : L.shape[1]] = X
-        still.setdefault(0, np.zeros((len(touching), size), dtype=complex))
-        still[0][others, L.shape[1] + np.arange(len(others))] = 1.0
-        if body.turns == 0 and body.ratio and len(scene.pairs):
-            cls._turn_pairs(scene, still, others, L.shape[1])
-        N = np.zeros((size, size))
-        N[: L.shape[1], : L.shape[1]] = body.turns * alone.turning.generator
-        return cls(still, N)
-
-    @staticmethod
-    def _turn_pairs(
-        scene: LinearScene, terms: dict[int, np.ndarray], others: np.ndarray, begin: int
-    ) -> None:
-        """Let pairs that stand still be those of the scene, which turn."""
-        quarter = axial_skew(3)[:2, :2]
-        for pair in scene.pairs:
-            rows = [int(np.flatnonzero(scene.N[place])[0]) for place in pair]
-            columns = begin + np.searchsorted(others, rows)
-            within = np.ix_(rows, columns)
-            terms[0][within] = 0.0
-            for n in (1, -1):  # R(−θ) = cos θ − sin θ ẽ
-                terms.setdefault(n, np.zeros_like(terms[0]))
-                terms[n][within] = 0.5 * (np.eye(2) + 1j * n * quarter)
-
-    def acting(
-        self, rest: Rest, speed: float, undamped: bool
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return M, D, K (l, l) of what is beside the rotor at one angle."""
-        W = [
-            sum((1j * n * speed) ** p * X * np.exp(1j * n * rest.theta) for n, X in self.W.items())
-            for p in range(3)
-        ]
-        W = [each.real for each in W]
-        T, T1, T2 = rest.turns
-        Z, Z1 = T @ W[0], T1 @ W[0] + T @ W[1]
-        Z2 = T2 @ W[0] + 2.0 * T1 @ W[1] + T @ W[2]
-        D, K = _without_noise(rest.D), _without_noise(rest.K)
-        K = W[0].T @ (K @ W[0] + D @ (T.T @ Z1))
-        D = W[0].T @ D @ W[0]
-        if undamped:
-            K = K - speed * D @ self.N  # by rates alone
-            D = _without_noise(D)
-            D, K = 0.5 * (D - D.T), 0.5 * (K + K.T)
-        mass = Z.T @ rest.mass
-        return mass @ Z, 2.0 * mass @ Z1 + D, mass @ Z2 + K
-
-
-def _unresisted(samples: np.ndarray, scale: np.ndarray) -> np.ndarray:
-    """Return which coordinates samples (n, k, k) act on by rounding of differences alone, (k,)."""
-    sizes = np.abs(samples * np.outer(scale, scale)).max(axis=0, initial=0.0)
-    return np.maximum(sizes.max(axis=0), sizes.max(axis=1)) <= _SKEW * sizes.max(initial=0.0)
-
-
-def _without_noise(X: np.ndarray) -> np.ndarray:
-    """Return a matrix of differences without a skew part that is their rounding."""
-    symmetric = 0.5 * (X + X.T)
-    noise = np.abs(X - symmetric).max(initial=0.0) <= _SKEW * np.abs(X).max(initial=0.0)
-    return symmetric if noise else X
+def _under_load(given: Given, law: Attached, speed: float, least: float) -> Given:
+    """Return a bearing under the static load that it has where its law has been read."""
+    place = np.array(law.connector.relative[:2])
+    if isinstance(given, SqueezeFilmDamper) and not given.carries:  # another spring does
+        return Support(given.interface, *given.coefficients_at(place, speed))
+    if isinstance(given, ClearanceStop):
+        return Support(given.interface, *given.slopes(*place, 0.0, 0.0, 0.0, speed))
+    load = -law.force(0.0).values[:2]
+    load[np.abs(load) <= least] = 0.0
+    if np.abs(load - given.load).max() <= _SAME_LOAD * np.abs(load).max():
+        return given  # it remembers its coefficients
+    return replace(given, load=load)

@@ -1,0 +1,236 @@
+"""Tables of coefficients over the spin speed, the frequency of a motion, or both."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.interpolate import PchipInterpolator
+
+from exudyn_rotor import checks
+
+_KINDS = {"stiffness": "k", "damping": "c", "mass": "m"}
+_AXES = {
+    "speed": ("speed", "speeds", "rpm", "w", "omega"),
+    "frequency": ("frequency", "frequencies", "freq", "whirl"),
+}
+_TO_RADIANS = {"rad/s": 1.0, "rpm": np.pi / 30.0, "hz": 2.0 * np.pi, "": 1.0}
+_LETTERS = "xyzabc"  # displacement along n1, n2, e, then rotation about them
+
+
+@dataclass(frozen=True, eq=False)
+class CoefficientTable:
+    """A coefficient over the spin speed, the frequency of the motion, or both.
+
+    Between its points it is a piecewise cubic polynomial that does not overshoot (PCHIP), along
+    one axis after the other; beyond its ends it keeps the value there.
+
+    Attributes
+    ----------
+    speeds, frequencies : ndarray, shape (s,), (f,), or None
+        [rad/s]; None where the coefficient does not depend on it.
+    values : ndarray, shape (s, f, …), (s, …) or (f, …)
+    """
+
+    speeds: np.ndarray | None
+    frequencies: np.ndarray | None
+    values: np.ndarray
+    _last: list = field(default_factory=list, init=False, repr=False)
+
+    def at(self, speed: float, frequency: float) -> float | np.ndarray:
+        """Return the value at a spin speed and the frequency of a motion [rad/s]."""
+        if self.frequencies is None:
+            return self._first(speed)
+        if self.speeds is None:
+            return self._first(frequency)
+        known = self._last[-1:]  # one speed is asked for at many frequencies
+        if not known or known[0][0] != speed:
+            known = [(speed, _smooth(self.frequencies, self._first(speed)))]
+            self._last[:] = known
+        return known[0][1](frequency)
+
+    @cached_property
+    def _first(self) -> Callable[[float], np.ndarray]:
+        """Interpolation along the first axis of the values."""
+        return _smooth(self.frequencies if self.speeds is None else self.speeds, self.values)
+
+    def symmetric(self) -> CoefficientTable:
+        """Return the table of the symmetric parts of its matrices."""
+        if self.values.ndim < 3:
+            return self
+        values = 0.5 * (self.values + np.swapaxes(self.values, -1, -2))
+        return replace(self, values=values)
+
+    def at_frequency(self, frequency: float) -> CoefficientTable | float | np.ndarray:
+        """Return what is left at one frequency [rad/s]: a table over the speed, or a value."""
+        if self.frequencies is None:
+            return self
+        axis = 0 if self.speeds is None else 1
+        values = _smooth(self.frequencies, np.moveaxis(self.values, axis, 0))(frequency)
+        return values if self.speeds is None else CoefficientTable(self.speeds, None, values)
+
+
+def _smooth(points: np.ndarray, values: np.ndarray) -> Callable[[float], np.ndarray]:
+    """Return the interpolation along the first axis, constant beyond the ends."""
+    if len(points) == 1:
+        return lambda _: values[0]
+    curve, low, high = PchipInterpolator(points, values, axis=0), *points[[0, -1]].tolist()
+    return lambda at: curve(min(max(at, low), high))
+
+
+def coefficient_tables(
+    where: str,
+    speeds: ArrayLike | None,
+    frequencies: ArrayLike | None,
+    coefficients: Mapping[str, ArrayLike | None],
+) -> dict[str, CoefficientTable]:
+    """Return tables of coefficients with matrices of 2, 3 or 6 rows, checked, by their names.
+
+    Raises
+    ------
+    TypeError, ValueError
+    """
+    if speeds is None and frequencies is None:
+        raise ValueError(f"{where}: needs speeds, frequencies, or both [rad/s]")
+    axes = []
+    for given, name in ((speeds, "speeds"), (frequencies, "frequencies")):
+        if given is not None:
+            given = checks.ascending(given, f"{where}: {name}", "rad/s", of_table=True)
+        axes.append(given)
+    if axes[1] is not None and axes[1][0] < 0.0:
+        raise ValueError(
+            f"{where}: frequencies: needs values ≥ 0 [rad/s], got {axes[1][0]:g}: a motion of the "
+            "frequency −ω has the coefficients of ω"
+        )
+    lengths = tuple(len(axis) for axis in axes if axis is not None)
+    made, sizes = {}, {}
+    for name, given in coefficients.items():
+        if given is None:
+            continue
+        values = checks.array(given, f"{where}: {name}")
+        k = values.shape[-1] if values.ndim else 0
+        if values.shape != (*lengths, k, k) or k not in (2, 3, 6):
+            shown = " × ".join(map(str, lengths))
+            raise ValueError(
+                f"{where}: {name}: needs {shown} matrices with 2, 3 or 6 rows, the shape "
+                f"({', '.join(map(str, lengths))}, k, k), got {values.shape}"
+            )
+        made[name], sizes[name] = CoefficientTable(*axes, values), k
+    if len(set(sizes.values())) > 1:
+        shown = ", ".join(f"{name} with {k}" for name, k in sizes.items())
+        raise ValueError(f"{where}: needs matrices of one size, got {shown}")
+    return made
+
+
+def read_columns(source: str | Path | Any) -> dict[str, np.ndarray | None]:
+    """Return axes and coefficients, named as for :meth:`Support.from_table`, of a table.
+
+    Raises
+    ------
+    ValueError
+        For columns that are missing or unknown, values that are no numbers, and rows that do not
+        make a full grid of speeds and frequencies.
+    """
+    columns = _columns(source)
+    axes: dict[str, np.ndarray] = {}
+    entries: dict[str, dict[tuple[int, int], np.ndarray]] = {kind: {} for kind in _KINDS}
+    for header, values in columns.items():
+        name, unit = _name_and_unit(header)
+        axis = next((axis for axis, names in _AXES.items() if name in names), None)
+        if axis is not None:
+            unit = unit or ("rpm" if name == "rpm" else "rad/s")
+            if unit not in _TO_RADIANS:
+                raise ValueError(f"source: {header!r}: needs rad/s, rpm or Hz, got {unit!r}")
+            axes[axis] = values * _TO_RADIANS[unit]
+            continue
+        entry = _entry(name)
+        if entry is None:
+            raise ValueError(
+                f"source: {header!r} is neither speed, frequency, nor a coefficient as kxx, cxy or "
+                "myy; rename it or leave it out"
+            )
+        entries[entry[0]][entry[1]] = values
+    if not axes:
+        raise ValueError("source: needs a column 'speed' or 'frequency'")
+    grid, places = _grid(axes)
+    size = 1 + max((max(place) for kind in entries.values() for place in kind), default=0)
+    size = 2 if size <= 2 else 3 if size == 3 else 6
+    found: dict[str, np.ndarray | None] = {"speeds": None, "frequencies": None}
+    for axis, points in grid.items():
+        found["speeds" if axis == "speed" else "frequencies"] = points
+    shape = *(len(points) for points in grid.values()), size, size
+    for kind, given in entries.items():
+        found[kind] = np.zeros(shape) if given else None
+        for place, values in given.items():
+            found[kind][(*places, *place)] = values
+    return found
+
+
+def _columns(source: str | Path | Any) -> dict[str, np.ndarray]:
+    """Return the columns of a file of text, or of a DataFrame or mapping, by their headers."""
+    if isinstance(source, str | os.PathLike):
+        lines = Path(source).read_text(encoding="utf-8-sig").splitlines()
+        lines = [line.strip() for line in lines if line.strip() and not line.startswith("#")]
+        if len(lines) < 2:
+            raise ValueError(
+                f"source: {str(source)!r} needs a line of headers, and lines of values"
+            )
+        split = next((c for c in ",;\t" if c in lines[0]), None)
+        rows = [[each.strip() for each in line.split(split)] for line in lines]
+        uneven = [i for i, row in enumerate(rows) if len(row) != len(rows[0])]
+        if uneven:
+            raise ValueError(
+                f"source: line {uneven[0] + 1} of {str(source)!r} needs {len(rows[0])} values, "
+                f"got {len(rows[uneven[0]])}"
+            )
+        source = dict(zip(rows[0], zip(*rows[1:], strict=True), strict=True))
+    elif not hasattr(source, "items"):
+        raise TypeError(
+            f"source: needs a path, a DataFrame or a mapping, got {checks.shown(source)}"
+        )
+    columns = {}
+    for name, values in source.items():
+        try:
+            columns[str(name)] = np.asarray(values, dtype=float)
+        except (TypeError, ValueError):
+            raise ValueError(f"source: {str(name)!r}: needs numbers, got other text") from None
+        if not np.all(np.isfinite(columns[str(name)])):
+            raise ValueError(f"source: {str(name)!r}: needs finite numbers in every row")
+    return columns
+
+
+def _name_and_unit(header: str) -> tuple[str, str]:
+    """Return a header without its unit in brackets, both in lower case."""
+    match = re.fullmatch(r"\s*([^\[(]*?)\s*(?:[\[(](.*)[\])])?\s*", header)
+    name, unit = match.groups() if match else (header, None)
+    return re.sub(r"[\s_]", "", name).lower(), (unit or "").strip().lower()
+
+
+def _entry(name: str) -> tuple[str, tuple[int, int]] | None:
+    """Return the kind and the place of an entry named as kxy; None for another name."""
+    letters = {letter: kind for kind, letter in _KINDS.items()} | {"d": "damping"}
+    if len(name) != 3 or name[0] not in letters or any(c not in _LETTERS for c in name[1:]):
+        return None
+    return letters[name[0]], (_LETTERS.index(name[1]), _LETTERS.index(name[2]))
+
+
+def _grid(axes: dict[str, np.ndarray]) -> tuple[dict[str, np.ndarray], tuple[np.ndarray, ...]]:
+    """Return the points of each axis, and where every row of a table stands among them."""
+    axes = {name: axes[name] for name in _AXES if name in axes}
+    found = [np.unique(values, return_inverse=True) for values in axes.values()]
+    points = dict(zip(axes, (each[0] for each in found), strict=True))
+    places = tuple(each[1] for each in found)
+    count = int(np.prod([len(each) for each in points.values()]))
+    if len(set(zip(*places, strict=True))) != count or len(places[0]) != count:
+        shown = " and ".join(f"{len(each)} of {name}" for name, each in points.items())
+        raise ValueError(
+            f"source: needs one row for each of {shown}, {count} in all, got {len(places[0])} rows"
+        )
+    return points, places

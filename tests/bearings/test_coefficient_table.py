@@ -1,0 +1,120 @@
+"""Tables of coefficients over speed and frequency, and files of them."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+
+from exudyn_rotor import SqueezeFilmDamper, Support
+
+SPEEDS, FREQUENCIES = [100.0, 200.0, 400.0], [0.0, 50.0, 60.0, 300.0]
+
+
+def test_points_are_met_and_nothing_overshoots():
+    values = np.cumsum(np.random.default_rng(1).uniform(0.0, 1e6, (3, 4)), axis=1)
+    values = np.cumsum(values, axis=0)[..., None, None] * np.eye(3)
+    made = Support.from_table(
+        "left", speeds=SPEEDS, frequencies=FREQUENCIES, stiffness=values, damping=1e-3 * values
+    )
+    for i, speed in enumerate(SPEEDS):
+        for j, frequency in enumerate(FREQUENCIES):
+            K, D = made.matrices(speed, frequency)
+            assert K[:3, :3] == pytest.approx(values[i, j], rel=1e-12)
+            assert pytest.approx(1e-3 * K) == D
+    for i, j in np.ndindex(2, 3):  # between the corners of each cell
+        corners = values[i : i + 2, j : j + 2, 2, 2]
+        for share in (0.1, 0.5, 0.9):
+            pair = (
+                np.interp(share, (0.0, 1.0), x[k : k + 2])
+                for x, k in ((SPEEDS, i), (FREQUENCIES, j))
+            )
+            assert corners.min() <= made.matrices(*pair)[0][2, 2] <= corners.max()
+    assert made.matrices(150.0, 1e4)[0] == pytest.approx(made.matrices(150.0, 300.0)[0])
+    one = made.at_frequency(55.0)
+    assert one.matrices(200.0)[0] == pytest.approx(made.matrices(200.0, 55.0)[0], rel=1e-12)
+
+
+def text(separator, header, rows):
+    return "\n".join(separator.join(map(str, row)) for row in (header, *rows))
+
+
+HEADER = ("Speed (rpm)", "Kxx", "Kxy", "Kyx", "Kyy", "Cxx", "Cxy", "Cyx", "Cyy")
+ROWS = [(3000, 1e7, 2e6, -2e6, 3e7, 1e3, 0, 0, 2e3), (6000, 2e7, 3e6, -3e6, 4e7, 2e3, 1, 1, 3e3)]
+FILES = {
+    "XLTRC": text("\t", HEADER, ROWS),
+    "commas": text(",", HEADER, ROWS[::-1]),
+    "semicolons": "# measured\n" + text(";", ("rpm", *HEADER[1:]), ROWS) + "\n\n",
+    "hertz": text(
+        ",", ("frequency [Hz]", *HEADER[1:]), [(row[0] / 60.0, *row[1:]) for row in ROWS]
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", FILES)
+def test_files_of_other_programs(kind, tmp_path):
+    path = tmp_path / "bearing.txt"
+    path.write_text(FILES[kind])
+    made = Support.from_columns("left", path)
+    for rpm, *row in ROWS:
+        speed = rpm * np.pi / 30.0
+        K, D = made.matrices(speed, speed)
+        assert K[:2, :2].ravel() == pytest.approx(row[:4], rel=1e-12)
+        assert D[:2, :2].ravel() == pytest.approx(row[4:], rel=1e-12)
+
+
+def test_a_grid_of_speeds_and_frequencies_in_any_order_of_rows():
+    s, f = (X.ravel() for X in np.meshgrid(SPEEDS, FREQUENCIES))
+    table = {"w": s, "freq": f, "mzz": s + f, "kaa": s - f}
+    made = Support.from_columns("left", table)
+    assert made.mass_matrix(200.0, 60.0)[2, 2] == pytest.approx(260.0)
+    assert made.matrices(200.0, 60.0)[0][3, 3] == pytest.approx(140.0)
+
+
+K2 = np.ones((3, 2, 2))
+GIVEN = {
+    "needs speeds, frequencies": dict(stiffness=K2),
+    "ascending": dict(speeds=[2.0, 1.0, 3.0], stiffness=K2),
+    "needs values ≥ 0": dict(frequencies=[-1.0, 0.0, 1.0], stiffness=K2),
+    r"needs 3 × 4 matrices": dict(speeds=SPEEDS, frequencies=FREQUENCIES, stiffness=K2),
+    "2, 3 or 6 rows": dict(speeds=SPEEDS, stiffness=np.ones((3, 4, 4))),
+    "of one size": dict(speeds=SPEEDS, stiffness=K2, damping=np.ones((3, 3, 3))),
+}
+COLUMNS = {
+    "neither speed": {"speed": [1.0], "stiffness": [2.0]},
+    "a column 'speed'": {"kxx": [1.0]},
+    "needs rad/s, rpm or Hz": {"speed [1/min]": [1.0], "kxx": [1.0]},
+    "needs numbers": {"speed": ["fast"], "kxx": [1.0]},
+    "one row for each": {"speed": [1.0, 1.0, 2.0], "frequency": [1.0, 2.0, 1.0], "kxx": [1.0] * 3},
+    "needs finite": {"speed": [1.0, 2.0], "kxx": [1.0, np.nan]},
+}
+
+
+@pytest.mark.parametrize("message", [*GIVEN, *COLUMNS])
+def test_bad_tables_are_refused(message):
+    is_file = message in COLUMNS
+    call = (
+        partial(Support.from_columns, source=COLUMNS[message])
+        if is_file
+        else partial(Support.from_table, **GIVEN[message])
+    )
+    with pytest.raises(ValueError, match=message):
+        call("left")
+
+
+def test_uneven_lines_of_a_file_are_refused(tmp_path):
+    path = tmp_path / "bearing.csv"
+    path.write_text("speed,kxx\n1,2\n3\n")
+    with pytest.raises(ValueError, match=r"line 3 .* needs 2 values, got 1"):
+        Support.from_columns("left", path)
+
+
+def test_a_damper_without_states_is_the_same_at_all_frequencies():
+    damper = SqueezeFilmDamper(
+        interface="left", radius=0.05, length=0.02, clearance=1e-4, viscosity=0.02, orbit=0.3
+    )
+    table = damper.table([100.0, 200.0], [10.0, 20.0, 30.0])
+    for speed in (100.0, 200.0):
+        for found, expected in zip(
+            table.matrices(speed, 15.0), damper.linearised().matrices(speed), strict=True
+        ):
+            assert found == pytest.approx(expected)

@@ -1,0 +1,204 @@
+"""Bearings in series, against the ring as a body; floating rings, against closed forms."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+
+from exudyn_rotor import (
+    FloatingRingBearing,
+    Foundation,
+    HarmonicForce,
+    SeriesSupport,
+    ShortJournalBearing,
+    SolidRotor,
+    Support,
+    add_rotor,
+    add_supports,
+    campbell,
+    critical_speed_map,
+    critical_speeds,
+    harmonic_response,
+    linear_model,
+    stability,
+    static_response,
+)
+
+NAMES = ("left", "right")
+INNER = [[2e7, 1e6], [-1e6, 3e7]], [[2e3, 0.0], [0.0, 1e3]]
+OUTER = [[6e6, 0.0], [0.0, 4e6]], 500.0
+RING = 0.8
+
+
+def rotor():
+    """Two masses of 2 kg on a rigid rod."""
+    rod = 1e12 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    made = SolidRotor.from_matrices(2.0 * np.eye(6), rod, [[0, 0, -0.1], [0, 0, 0.1]], "z")
+    return made.with_interface("left", [0]).with_interface("right", [1])
+
+
+def in_series():
+    return [
+        SeriesSupport(interface=n, inner=Support(n, *INNER), mass=RING, outer=Support(n, *OUTER))
+        for n in NAMES
+    ]
+
+
+def on_bodies():
+    """The same, its rings as two points of a foundation."""
+    points = {n: np.eye(4)[2 * i : 2 * i + 2] for i, n in enumerate(NAMES)}
+    points = {n: np.vstack([X, np.zeros((1, 4))]) for n, X in points.items()}
+    K, D = np.kron(np.eye(2), OUTER[0]), OUTER[1] * np.eye(4)
+    block = Foundation(RING * np.eye(4), D, K, points)
+    supports = [Support(n, *INNER) for n in NAMES]
+    return linear_model(rotor(), supports=supports, foundation=block)
+
+
+def test_a_ring_is_a_body_between_two_supports():
+    model = linear_model(rotor(), supports=in_series())
+    for analysis in (
+        lambda m: np.sort_complex(
+            (lambda c: c.growth + 1j * c.frequencies_inertial)(campbell(m, [300.0], accuracy=None))[
+                0
+            ]
+        ),
+        lambda m: critical_speeds(m, accuracy=None).speeds,
+        lambda m: harmonic_response(
+            m, [100.0, 900.0, 2500.0], HarmonicForce("left", (1.0, 0.0)), speed=300.0
+        ).phasor("left", "n2"),
+    ):
+        assert analysis(model) == pytest.approx(analysis(on_bodies()), rel=1e-6, abs=1e-12)
+
+
+def test_a_map_adds_springs_beside_rings():
+    given = {"supports": in_series(), "max_speed": 4e3, "accuracy": None}
+    found = critical_speed_map(rotor(), ["left"], [1e6, 1e7], **given)
+    spring = Support("left", 1e7)
+    alone = critical_speeds(rotor(), **given | {"supports": [*in_series(), spring]}).speeds
+    row = found.speeds[1]
+    assert np.sort(row[np.isfinite(row)]) == pytest.approx(np.sort(alone), rel=1e-6)
+
+
+def test_static_deflection_is_that_of_springs_in_series():
+    sag = static_response(rotor(), {"left": [3.0, 0.0, 0.0]}, supports=in_series())
+    expected = np.linalg.solve(INNER[0], [3.0, 0.0]) + np.linalg.solve(OUTER[0], [3.0, 0.0])
+    assert sag.displacement[0, :2] == pytest.approx(expected, rel=1e-9)
+
+
+def floating(load=None, name="left", **changes):
+    inner = {"radius": 0.005, "length": 0.008, "clearance": 2e-5, "viscosity": 0.01}
+    outer = {"radius": 0.008, "length": 0.008, "clearance": 4e-5, "viscosity": 0.012} | changes
+    films = (ShortJournalBearing(interface=name, **each) for each in (inner, outer))
+    inner, outer = films
+    return FloatingRingBearing(interface=name, inner=inner, outer=outer, mass=0.01, load=load)
+
+
+@pytest.mark.parametrize("speed", [1e3, -1e3])
+def test_speed_of_a_ring_in_the_middle(speed):
+    """Both films shear by μ 2π R³ L/c times what their surfaces slip."""
+    made = floating()
+    shear = [x.viscosity * x.radius**3 * x.length / x.clearance for x in (made.inner, made.outer)]
+    assert made.ring(speed).speed / speed == pytest.approx(shear[0] / sum(shear), rel=1e-9)
+
+
+def test_a_loaded_ring_is_in_balance_and_loads_are_carried():
+    made, speed = floating(load=[3.0, -20.0]), 3e3
+    ring = made.ring(speed)
+    torque = made.torque(speed, ring.speed)
+    assert abs(torque) < 1e-9 * made.torque(speed, 0.9 * ring.speed)
+    for film, whirl, ratio in (
+        (made.inner, speed + ring.speed, ring.inner_ratio),
+        (made.outer, ring.speed, ring.outer_ratio),
+    ):
+        place = film.equilibrium(whirl, made.load)
+        assert np.hypot(*place) == pytest.approx(ratio * film.clearance)
+        assert film.force(place, [0.0, 0.0], whirl) == pytest.approx(-made.load, rel=1e-9)
+    # the films' friction: what drives the journal less what the ring takes is heat, above zero
+    assert 0.0 < ring.speed < speed
+
+
+def test_films_in_the_middle_whirl_with_the_means_of_their_surfaces():
+    """Without a load, K = D·i·(mean speed): each film alone drives a whirl of its mean speed."""
+    made, speed = floating(), 2e3
+    ring = made.ring(speed).speed
+    linear = made.linearised()
+    for support, mean in ((linear.inner, 0.5 * (speed + ring)), (linear.outer, 0.5 * ring)):
+        K, D = (X[:2, :2] for X in support.matrices(speed))
+        assert np.array([[0.0, 1.0], [-1.0, 0.0]]) * D[0, 0] * mean == pytest.approx(K, rel=1e-9)
+
+
+def test_series_of_two_films_is_stable_where_the_eliminated_ring_says():
+    """A massless journal on both films and a ring of mass: roots of the quadratic in z = x + iy."""
+    made, speed = floating(), 2e3
+    ring, linear = made.ring(speed).speed, made.linearised()
+    d, e = (one.matrices(speed)[1][0, 0] for one in (linear.inner, linear.outer))
+    a, b, m, M = 0.5 * (speed + ring), 0.5 * ring, made.mass, 2.0
+    # M s² x + d (s − i a)(x − r) = 0,  m s² r + e (s − i b) r = d (s − i a)(x − r)
+    inner, outer = np.array([d, -1j * a * d]), np.array([e, -1j * b * e])
+    whole = (
+        np.polyadd(np.array([M, 0, 0]), inner),
+        np.polyadd(np.array([m, 0, 0]), np.polyadd(inner, outer)),
+    )
+    roots = np.roots(np.polysub(np.polymul(*whole), np.polymul(inner, inner)))
+    roots = roots[np.abs(roots) > 1e-6]
+    found = stability(rotor(), [speed], supports=[floating(name=n) for n in NAMES], accuracy=None)
+    assert np.nanmax(found.growth) == pytest.approx(roots.real.max(), rel=1e-6)
+
+
+BAD = {
+    "at 'right'": {"inner": Support("right", 1.0)},
+    "stands still": {"outer": Support("left", damping=1.0, frame="rotor")},
+    "across the axis alone": {"outer": Support("left", np.eye(3))},
+    "mass": {"mass": 0.0},
+}
+
+
+@pytest.mark.parametrize("message", BAD)
+def test_parts_that_do_not_fit_are_refused(message):
+    good = {"inner": Support("left", 1.0), "outer": Support("left", 1.0), "mass": 1.0}
+    with pytest.raises(ValueError, match=message):
+        SeriesSupport(interface="left", **good | BAD[message])
+
+
+def test_scenes_ask_for_the_ring_as_a_body():
+    body = add_rotor(exu.SystemContainer().AddSystem(), rotor().reduce(0), spin=50.0)
+    with pytest.raises(ValueError, match="has a ring, which is a body"):
+        add_supports(body, in_series())
+
+
+def solid_ring(mass, radius):
+    """A stiff ring of eight masses in two planes."""
+    angles = np.repeat(0.5 * np.pi * np.arange(4), 2)
+    heights = 0.004 * (-1.0) ** np.arange(8)
+    nodes = np.column_stack([radius * np.cos(angles), radius * np.sin(angles), heights])
+    K = np.zeros((24, 24))
+    for i, j in zip(*np.triu_indices(8, 1), strict=True):
+        d = np.zeros((8, 3))
+        d[i] = (nodes[i] - nodes[j]) / np.linalg.norm(nodes[i] - nodes[j])
+        d[j] = -d[i]
+        K += 1e9 * np.outer(d, d)
+    made = SolidRotor.from_matrices(mass / 8.0 * np.eye(24), K, nodes, "z")
+    return made.with_interface("left", range(8)).reduce(0)
+
+
+def test_films_take_a_ring_along_in_a_scene():
+    """As a rotor of its own between two films: its angular momentum grows by their torque."""
+    made, speed, start, mass, radius, end = floating(), 2e3, 8e2, 0.01, 0.0065, 2e-4
+    mbs = exu.SystemContainer().AddSystem()
+    shaft, ring = (
+        add_rotor(mbs, solid_ring(m, r), name=name, spin="free", initial_speed=first)
+        for name, m, r, first in (
+            ("shaft", 0.2, 0.5, speed),
+            ("ring", mass, radius, start),
+        )
+    )
+    add_supports(ring, made.outer)
+    add_supports(shaft, made.inner, base=ring.marker("left"))
+    spin = ring.add_spin_sensor()
+    mbs.Assemble()
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 10, end
+    settings.timeIntegration.verboseMode = 0
+    mbs.SolveDynamic(settings)
+    grown = mbs.GetSensorValues(spin)[-1] - start
+    rate = made.torque(speed, start) / (mass * radius**2)
+    assert grown == pytest.approx(rate * end, rel=5e-3)  # which falls by the decay in this time
