@@ -110,7 +110,7 @@ class Motion:
     >>> motion = Motion(point, Formulation("none", "free"), stiffening(point, "none"))
     >>> rest, spinning = np.zeros(4), np.array([1.0, 0, 0, 0])  # θ, then the displacements
     >>> print(motion.forces(0.0, rest, spinning), motion.energy(0.0, rest, spinning))
-    [-0.  2.  0.  0.] 2.0
+    [0. 2. 0. 0.] 2.0
     """
 
     def __init__(

@@ -1,9 +1,11 @@
 """Rotors at rest in rolling bearings with clearance: between elements nothing holds them yet."""
 
+from dataclasses import replace
+
 import exudyn as exu
 import numpy as np
 import pytest
-from point_rotors import SKEW_AXIS, free_stiffness
+from point_rotors import SKEW_AXIS, free_stiffness, ring_rotor
 
 from exudyn_rotor import (
     RollingBearing,
@@ -77,3 +79,19 @@ def test_rotor_at_rest_lies_in_its_elements(elements, direction, gravity):
         place = steady.interface_motion(name, 0.0)[:2]
         force = np.array(bearing(name, elements).law(*place, 0.0, 0.0, 0.0, 0.0))
         assert force == pytest.approx(-weight, abs=2.0 * tilting + 1e-3)
+
+
+@pytest.mark.filterwarnings("ignore:rotor .rotor.. a contact that opens")
+@pytest.mark.parametrize("heavy", [1e-4, 5e-3])
+def test_upright_rotor_in_balls_without_clearance_whirls_by_its_unbalance(heavy):
+    """Newton's steps are shortened: without load balls have no stiffness, and more with any."""
+    rotor = ring_rotor(RADIUS, ARM, MASS).add_point_mass([RADIUS, 0.0, ARM], heavy)
+    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10))
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor.reduce(0), spin=100.0, translation="none", gravity=[0, 0, -9.81])
+    balls = [replace(bearing(name, "balls"), clearance=0.0, damping=500.0) for name in COUNTS]
+    add_supports(body, [*balls, Support("left", np.diag([0.0, 0.0, 1e7]), 100.0)])
+    mbs.Assemble()
+    away = steady_state(body).interface_motion("right", 0.0)[0]
+    # e m Ω² against 6.03 k x^1.5, the sum of cos^2.5 over twelve balls, and the damping
+    assert 0.5 < away / (heavy * RADIUS * 100.0**2 / (3.0 * 7e9)) ** (2.0 / 3.0) < 1.5

@@ -3,13 +3,20 @@
 import exudyn as exu
 import numpy as np
 import pytest
-from apart import distance
+from apart import distance, exponents
 from asymmetric import LENGTH, asymmetric_shaft
 from exudyn.itemInterface import SensorNode
 from exudyn.rigidBodyUtilities import InertiaCuboid
 from point_rotors import ring_rotor
 
-from exudyn_rotor import PrescribedMotion, add_rotor, linear_model
+from exudyn_rotor import (
+    PrescribedMotion,
+    SolidRotor,
+    add_rotor,
+    add_supports,
+    campbell,
+    linear_model,
+)
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.over import motions_over
 
@@ -233,3 +240,43 @@ def test_refused_scenes():
     mbs.Assemble()
     with pytest.raises(ValueError, match="second rotor"):
         linear_model(mbs, body=body)
+
+
+# ------------------------------------------------------------------ as in lists
+
+
+def on_two_supports(rotor, **options):
+    """Return a scene and a list of a rotor on two supports."""
+    K, D = (np.diag(values) for values in BEARING)
+    supports = [Support(name, K, D) for name in ("left", "right")]
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, **options)
+    add_supports(body, supports)
+    mbs.Assemble()
+    return linear_model(mbs, body=body), linear_model(rotor, supports=supports)
+
+
+def test_what_the_basis_leaves_out_is_known_in_scenes():
+    rotor = rings(0)
+    models = [*on_two_supports(rotor, spin=SPEED)]
+    mbs, body = on_springs("rigid", modes=0, spin=SPEED)
+    models.append(linear_model(mbs, body=body))
+    errors = [campbell(model, [SPEED]).basis_errors[0] for model in models]
+    errors = [np.sort(each[np.isfinite(each)])[-4:] for each in errors]
+    assert errors[1].max() > 1e-6
+    np.testing.assert_allclose(errors[0], errors[1], rtol=1e-6, atol=1e-9)
+    # a rigid rotor does not tell which of two springs resists
+    assert 0.5 < errors[2].max() / errors[1].max() < 10.0
+
+
+def test_a_free_spin_gives_way_to_a_rotor_that_breathes():
+    """Angular momentum is kept then, which stiffens the motion; a drive keeps the speed."""
+    ring = ring_rotor(0.1, 0.15, 5.0)
+    soft = SolidRotor.from_matrices(ring.mass, 1e-4 * ring.stiffness, ring.nodes, "z")
+    rotor = soft.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(24)
+    free, in_list = on_two_supports(rotor, initial_speed=20.0)
+    driven, _ = on_two_supports(rotor, spin=20.0)
+    assert distance(free, in_list, 20.0, held=False) < 1e-9
+    expected, held = (exponents(model, 20.0, held=False) for model in (in_list, driven))
+    moving = np.abs(expected.imag) > 1.0
+    assert np.abs(np.abs(expected[moving, None]) - np.abs(held)).min(axis=1).max() > 1.0

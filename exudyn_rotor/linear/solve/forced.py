@@ -83,7 +83,9 @@ def forced_motions(
     found = {}
     for first in {n % system.step for n in acting}:  # harmonics that are coupled
         together = {n: F for n, F in acting.items() if n % system.step == first}
-        found |= _coupled(system, together, rates, driven, tolerance)
+        # a single harmonic feeds its neighbours, which are as large on bearings that are unlike
+        more = 1 if len(together) > 1 else 2
+        found |= _coupled(system, together, rates, driven, tolerance, more)
     return found
 
 
@@ -222,7 +224,7 @@ def _coupled(
     rates: np.ndarray,
     driven: np.ndarray | None,
     tolerance: float,
-    more: int = 2,
+    more: int,
 ) -> dict[int, np.ndarray]:
     """Return the harmonics of periodic equations, as many as the tolerance needs.
 

@@ -324,8 +324,9 @@ def stability(
     axes : {'auto', 'inertial', 'rotor'}
         Of the equations, see :func:`linear_model`.
     method : {'auto', 'hill', 'floquet'}
-        For periodic equations, as of uneven rotors on uneven supports: sums of harmonics ('hill',
-        by default), or integration over a period, which finds motions up to some 20 Ω only.
+        For periodic equations, as of uneven rotors on uneven supports: sums of harmonics ('hill'),
+        or integration over a period, which finds motions up to some 20 Ω only. 'auto' takes
+        harmonics, but where affordable ones miss a slow motion that grows.
     tolerance : float
         Largest relative error of λ by harmonics of periodic equations that are left out.
     accuracy : float, optional

@@ -6,6 +6,7 @@ derivatives at every speed, which one direction tells: then they are not taken a
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -107,6 +108,16 @@ class Foreign:
             K = K - seen.speed * D @ undamped  # by rates alone
             D, K = 0.5 * (D - D.T), 0.5 * (K + K.T)
         return D, K
+
+
+def between(known: Sequence[tuple[float, Foreign]], speed: float) -> Foreign:
+    """Return derivatives on the straight line through those at up to two speeds [rad/s]."""
+    (first, one), (second, other) = known[0], known[-1]
+    if first == second or one.K.shape != other.K.shape:
+        return other
+    share = (speed - first) / (second - first)
+    K, D = (X + share * (Y - X) for X, Y in ((one.K, other.K), (one.D, other.D)))
+    return Foreign(K, D, other.steps)
 
 
 def acting(

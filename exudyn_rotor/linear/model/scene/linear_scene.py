@@ -48,11 +48,11 @@ class LinearScene(SceneCoordinates):
     ----------
     body, free, N, rest
         See :class:`SceneCoordinates`.
-    derivatives : dict
-        Of what is foreign, as far as they are known.
+    derivatives : list of (float, Foreign)
+        Of what is foreign, at the last speeds at which they were taken [rad/s].
     """
 
-    derivatives: dict = field(default_factory=dict, init=False, repr=False)
+    derivatives: list = field(default_factory=list, init=False, repr=False)
 
     @classmethod
     def of(cls, mbs: exudyn.MainSystem, body: RotorBody) -> LinearScene:

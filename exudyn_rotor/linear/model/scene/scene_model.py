@@ -24,7 +24,7 @@ from exudyn_rotor.linear.model.body import RotorAlone, RotorBody, StandingBody
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.scene.attached import Attached
 from exudyn_rotor.linear.model.scene.equilibrium import equilibrium
-from exudyn_rotor.linear.model.scene.foreign import Foreign, acting
+from exudyn_rotor.linear.model.scene.foreign import Foreign, acting, between
 from exudyn_rotor.linear.model.scene.journal_start import journal_start
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene, follows_load
 from exudyn_rotor.linear.model.scene.probe import Probe, probing
@@ -210,10 +210,15 @@ class SceneModel(LinearModel):
         if not self.scene.foreign and not probe.drives:
             none = np.zeros((1, self.scene.size, self.scene.size))
             return Foreign(none, none)
-        known = self.scene.derivatives.get("foreign")
-        if known is None or not known.holds(probe, seen, z):
-            known = self.scene.derivatives["foreign"] = Foreign.of(probe, seen, z)
-        return known
+        known = self.scene.derivatives  # at two speeds: by dampers the places' go with the speed
+        if known:
+            found = between(known, probe.speed)
+            if found.holds(probe, seen, z):
+                return found
+        found = Foreign.of(probe, seen, z)
+        known.append((probe.speed, found))
+        del known[:-2]
+        return found
 
     def _add_foreign(
         self, system: PeriodicSystem, probe: Probe, foreign: Foreign, assembly: Assembly
@@ -228,6 +233,11 @@ class SceneModel(LinearModel):
             add(terms, {0: more[0]} if assembly.turns == 0 else more)
 
     # ------------------------------------------------------------------ equilibrium
+
+    @cached_property
+    def _weights(self) -> dict[bool, np.ndarray]:
+        """Loads of the rotor's weight running and at rest, once known."""
+        return {}
 
     def _equilibrium(self, probe: Probe) -> tuple[np.ndarray, Seen]:
         """Return an equilibrium under loads that stand still, by coordinates in inertial axes.
@@ -247,11 +257,9 @@ class SceneModel(LinearModel):
         start = journal_start(scene, speed, orders).sum(axis=0).real
         z = np.linalg.lstsq(W, start, rcond=1e-9)[0]
         own = la.block_diag(*(body.K[0] + speed * sum(body.K[1:2]) for body in assembly.bodies))
-        still = probe.at_rest()
-        angles = 2.0 * np.pi * np.arange(_ANGLES) / _ANGLES if speed else [0.0]
-        weight = np.mean(
-            [seen.at(a)[0].T @ still.turn(a)[0].T @ still.rotor_terms(a)[3] for a in angles], axis=0
-        )
+        if bool(speed) not in self._weights:
+            self._weights[bool(speed)] = _mean_weight(probe.at_rest(), seen)
+        weight = self._weights[bool(speed)]
         moving = speed * T1 @ W + T @ W1
 
         def at(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -318,6 +326,13 @@ class SceneModel(LinearModel):
         lines = super().__repr__().splitlines()
         lines[1] = f"scene around {lines[1].replace('rotor', repr(self.scene.body.name), 1)}"
         return "\n".join(lines)
+
+
+def _mean_weight(still: Probe, seen: Seen) -> np.ndarray:
+    """Return the load of the rotor's weight by coordinates in inertial axes (k,)."""
+    angles = 2.0 * np.pi * np.arange(_ANGLES) / _ANGLES if seen.speed else [0.0]
+    loads = [seen.at(a)[0].T @ still.turn(a)[0].T @ still.rotor_terms(a)[3] for a in angles]
+    return np.mean(loads, axis=0)
 
 
 def _under_load(given: Given, law: Attached, speed: float, least: float) -> Given:
