@@ -218,18 +218,28 @@ class ShortFilmBearing(Bearing):
         self, motion: np.ndarray, angles: np.ndarray, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:
         relative = motion / self.clearance
-        inside = np.hypot(*relative[:, :2].T) <= THINNEST
-        force, slopes = np.empty((len(motion), 2)), np.empty((len(motion), 2, 4))
-        whirl = speed if self._film_turns else 0.0
-        rest = _REST * abs(speed)
-        if len(motion) == 1 and inside[0]:
+        e = np.hypot(*relative[:, :2].T)
+        out = np.flatnonzero(e > THINNEST)
+        whirl, rest = speed if self._film_turns else 0.0, _REST * abs(speed)
+        if len(motion) == 1 and not out.size:
             state = relative[0].tolist()
-            found = film_force(*state, whirl), film_tangent(*state, whirl, rest)
-        else:
-            found = film_along(relative[inside], whirl, rest)
-        force[inside] = self._size * np.asarray(found[0])
-        slopes[inside] = self._size / self.clearance * found[1]
-        if not np.all(inside):
-            out = ~inside
-            force[out], slopes[out] = super()._along(motion[out], angles[out], speed)
-        return force, slopes
+            force = self._size * np.array([film_force(*state, whirl)])
+            return force, self._size / self.clearance * film_tangent(*state, whirl, rest)[None]
+        normal = relative[out, :2] / e[out, None]
+        relative[out, :2] = THINNEST * normal
+        force, slopes = film_along(relative, whirl, rest)
+        if out.size:  # by the tangent of the last step inside, as :func:`by_tangent`
+            inner = np.hstack([(THINNEST - _STEP) * normal, relative[out, 2:]])
+            ends = film_along(inner, whirl, rest)
+            rise, steeper = force[out] - ends[0], slopes[out] - ends[1]
+            steps = ((e[out] - THINNEST) / _STEP)[:, None]
+            force[out] += steps * rise
+            n, t = normal[:, :, None], (normal[:, ::-1] * [-1.0, 1.0])[:, :, None]
+            edge = THINNEST * slopes[out, :, :2]
+            around = edge + steps[..., None] * (
+                THINNEST * steeper[..., :2] + _STEP * ends[1][..., :2]
+            )
+            across = around @ t @ (t / e[out, None, None]).swapaxes(1, 2)
+            slopes[out, :, :2] = across - rise[:, :, None] / _STEP @ n.swapaxes(1, 2)
+            slopes[out, :, 2:] += steps[..., None] * steeper[..., 2:]
+        return self._size * force, self._size / self.clearance * slopes

@@ -125,11 +125,8 @@ class SqueezeFilmDamper(ShortFilmBearing):
         self, motion: np.ndarray, angles: np.ndarray, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:
         force, slopes = super()._along(motion, angles, speed)
-        inside = np.hypot(*motion[:, :2].T) <= THINNEST * self.clearance
-        k = self.centring_stiffness * inside  # the law outside has it
-        force = force - k[:, None] * motion[:, :2]
-        slopes[:, :, :2] += k[:, None, None] * np.eye(2)
-        return force, slopes
+        slopes[:, :, :2] += self.centring_stiffness * np.eye(2)
+        return force - self.centring_stiffness * motion[:, :2], slopes
 
     def law_of_small_motions(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float

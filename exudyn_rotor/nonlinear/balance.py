@@ -33,6 +33,7 @@ _PER_WAVE = 8  # points of the grid in the shortest wave
 _FEWEST = 32  # points over a phase
 _MOST_ITERATIONS = 30
 _LEAST_SHARE = 1.0 / 64.0  # of a step of Newton's method
+_MOST_STUCK = 4  # steps whose smallest share is no gain
 _FREE = 1e-9  # share of the springs k₀ that counts as no stiffness
 _STILL = 1e-12  # of the size of a motion: none
 
@@ -211,6 +212,7 @@ class Balance:
         ------
         UnconvergedError
         """
+        stuck = 0
         for _ in range(_MOST_ITERATIONS):
             left, J = self.linearised(c)
             step = real_part_of(_divided(J, left.ravel()).reshape(c.shape))
@@ -218,7 +220,10 @@ class Balance:
             while np.linalg.norm(self.residual(c - share * step)) > size:
                 share *= 0.5
                 if share < _LEAST_SHARE:
+                    stuck += 1
                     break
+            if stuck > _MOST_STUCK:
+                break
             c = c - share * step
             if np.abs(step).max() <= tolerance * np.abs(c).max() + 1e-300:
                 return c

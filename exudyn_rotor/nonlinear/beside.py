@@ -27,7 +27,7 @@ from exudyn_rotor.nonlinear.rest import Unloaded
 _A = np.array([[0.25, 0.25 - np.sqrt(3.0) / 6.0], [0.25 + np.sqrt(3.0) / 6.0, 0.25]])  # Gauss
 _PER_CYCLE = 6  # steps in a cycle of the fastest motion on the laws
 _PER_WAVE = 8  # and in the shortest wave of the steady motion
-_FEWEST, _MOST = 64, 20_000  # steps
+_FEWEST, _MOST = 64, 2_000  # steps
 _FELT = 1e-6  # of the motion that laws act on most: one that they do not act on
 _DEPENDENT = 1e-10  # of singular values of motions of unit length
 _NEAR = 2e-3  # relative difference of frequencies that are taken for the same

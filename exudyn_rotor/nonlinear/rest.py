@@ -15,7 +15,7 @@ rotor has.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -78,6 +78,7 @@ class Unloaded:
     names: Sequence[str]
     speed: float
     standing: LinearModel | None = None
+    known: dict = field(default_factory=dict, repr=False)  # receptances
 
     @cached_property
     def for_stability(self) -> Unloaded:
@@ -174,6 +175,12 @@ class Rest:
 
     def receptances(self, reach: tuple[int, int]) -> dict[int, Coupling]:
         """Return H^p of (1) by p, for all harmonics up to K and N, in their order."""
+        key = reach, self.rates, self.revolutions
+        if key not in self.unloaded.known:
+            self.unloaded.known[key] = self._receptances(reach)
+        return self.unloaded.known[key]
+
+    def _receptances(self, reach: tuple[int, int]) -> dict[int, Coupling]:
         K, N = reach
         waves = sorted(self.journals)
         C = np.concatenate([self.journals[m] for m in waves])
