@@ -56,15 +56,12 @@ def from_ross(rotor: Any, *, element_size: float | None = None) -> tuple[SolidRo
 
     Examples
     --------
-    .. code-block:: python
-
-        import ross
-        from exudyn_rotor import campbell, craig_bampton_modes, from_ross
-
-        rotor, supports = from_ross(ross.rotor_example())
-        names = [support.interface for support in supports]
-        reduced = rotor.reduce(craig_bampton_modes(rotor, 14, names, coupling="RBE3"))
-        print(campbell(reduced, [0.0, 300.0], supports=supports).table())
+    >>> import ross  # doctest: +SKIP
+    >>> from exudyn_rotor import campbell, craig_bampton_modes, from_ross
+    >>> rotor, supports = from_ross(ross.rotor_example())  # doctest: +SKIP
+    >>> names = [support.interface for support in supports]  # doctest: +SKIP
+    >>> modes = craig_bampton_modes(rotor, 14, names, coupling="RBE3")  # doctest: +SKIP
+    >>> campbell(rotor.reduce(modes), [0.0, 300.0], supports=supports).plot()  # doctest: +SKIP
     """
     for name in ("shaft_elements", "disk_elements", "bearing_elements", "nodes_pos"):
         if not hasattr(rotor, name):

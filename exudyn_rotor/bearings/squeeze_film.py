@@ -184,6 +184,7 @@ class SqueezeFilmDamper(ShortFilmBearing):
 
     def coefficients_at(self, place: np.ndarray, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Return :meth:`coefficients` where the journal rests at a place (2,) [m]."""
+        place = checks.vector(place, "place", "m", 2)
         if hypot(*place) >= self.clearance:
             raise ValueError(
                 f"place: damper at {self.interface!r}: the journal is {hypot(*place):g} m off its "

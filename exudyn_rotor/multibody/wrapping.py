@@ -11,7 +11,7 @@ from functools import wraps
 import exudyn
 from exudyn.misc.extensionRegistry import extends, install
 
-from exudyn_rotor.multibody.rotor.rotor_items import ENTRY
+from exudyn_rotor.multibody import ENTRY
 
 _OWN = "_knows_fixed_axis_rotors"  # attribute of the wrapped method
 

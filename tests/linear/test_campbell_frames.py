@@ -163,7 +163,8 @@ def test_wrong_input_is_refused():
     with pytest.raises(ValueError, match="no such interface; the rotor has: all"):
         campbell(rotor.reduce(0), 0.0, supports=[Support("left", 1.0)])
     with pytest.raises(
-        TypeError, match=r"supports\[0\]: needs Support or Bearing or MagneticBearing, got 'all'"
+        TypeError,
+        match=r"supports\[0\]: needs Support or Bearing or MagneticBearing or .*, got 'all'",
     ):
         campbell(rotor, 0.0, supports=["all"])
     with pytest.raises(TypeError, match="target: needs a ReducedRotor, a SolidRotor, a linear"):

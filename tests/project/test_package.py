@@ -68,7 +68,6 @@ print(*sorted(others))
         "exudyn.utilities",
         "exudyn_rotor",
         "exudyn_rotor.multibody",
-        "exudyn_rotor.multibody.rotor.rotor_items",
         "exudyn_rotor.multibody.twins",
         "exudyn_rotor.multibody.twins.exudyn_call",
         "exudyn_rotor.multibody.wrapping",

@@ -35,7 +35,6 @@ from exudyn_rotor.linear.over import (
     NOT_KNOWN,
     basis_column,
     motions_in,
-    motions_over,
     table_lines,
     warn_of_refused,
 )
@@ -501,7 +500,8 @@ def _limits(
         width = ends[place + 1 if onset else place - 1] - value
         beside = value + np.sign(width) * min(_ASIDE * span, 0.5 * abs(width))
         model, speed = growth.model_at(beside)
-        motions = motions_over(model, [speed], held=True, **growth.given)
+        how = {"held": True, "least_stable": True, "warns": False}
+        motions = motions_in(model, model.at_all([speed]), **growth.given, **how)
         if id(model) not in contents:
             contents[id(model)] = Content.of(model)
         named = contents[id(model)].named(motions)

@@ -15,6 +15,7 @@ import exudyn
 import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.multibody import ENTRY
 from exudyn_rotor.multibody.evaluation import STATES
 from exudyn_rotor.multibody.rotor.equations import Layout
 from exudyn_rotor.multibody.rotor.frame import BodyFrame, Locks
@@ -30,7 +31,6 @@ _SIGN = -2.0  # no opacity of a colour
 _numbers = count(1)
 
 Mark = tuple[float, float]
-ENTRY = "exudyn_rotor"  # the package's one entry of mbs.sys
 
 
 def entry(mbs: exudyn.MainSystem) -> dict:
