@@ -144,8 +144,9 @@ def add_rotor(
         How coordinates of the marker body's node that the formulation does not have are held.
         ``'constraints'``, which ``'auto'`` is, serves all solvers, and Exudyn's analyses of the
         scene. Where the spin or a translation is prescribed, explicit solvers (RK44, DOPRI5, …) end
-        with an error, "contains constraints that cannot be solved", and need ``'mass'``, which
-        static solvers do not take; see :mod:`exudyn_rotor.multibody.rotor.frame`.
+        with an error, "contains constraints that cannot be solved", about an object whose name says
+        what to do. They need ``'mass'``, which static solvers do not take; see
+        :mod:`exudyn_rotor.multibody.rotor.frame`.
     frame_node : {'centre_of_mass', 'mesh_origin'}
         Where the node of the frame is, ``body.nodes["rigid"]``: markers and sensors that a script
         adds there move with the mean rigid motion of the rotor at this place, tilts included. The
