@@ -155,7 +155,7 @@ MODES = 6  # the first coordinate after those of the rigid-body node
 LOCKS = "locks"  # name of the constraint of all that stand still or turn at constant speed
 
 # Exudyn's error of explicit solvers tells the number of the object, and mbs.GetObject its name
-CONSTRAINT = "constraint of the rotor's frame; explicit solvers need locking='mass'"
+CONSTRAINT = "constraint {} of a rotor's frame; explicit solvers need locking='mass'"
 
 LOCK_RATIO = 1e18  # of the rotor's own inertia
 # beside a constraint that explicit solvers eliminate: of what moves within one of their steps
@@ -332,7 +332,7 @@ def add_constraints(
     rows, rates = locks.rows
     # at velocity level: drift is round-off, and a constant speed needs no function of time
     held = ObjectConnectorCoordinateVector(
-        name=CONSTRAINT,
+        name=CONSTRAINT.format(mbs.systemData.NumberOfObjects()),
         markerNumbers=ends,
         scalingMarker0=np.zeros((len(rates), 0)),
         scalingMarker1=rows,

@@ -452,18 +452,22 @@ class MarkerEnd:
         """Take the motion from coordinates and their rates."""
         q, q_t, k, P = np.array(q), np.array(q_t), self._count, self._axes
         own, zeta = self._start + q[:k], q[k:]
-        A, G = self._matrix(own[3:]), self._G(own[3:])
-        arm, axis = A @ (self._point + self._modes[:3] @ zeta), A @ self._axis
-        axis = axis + np.cross(A @ (self._modes[3:] @ zeta), axis)
+        A, PG = self._matrix(own[3:]), P.T @ self._G(own[3:])
+        arm, axis = A @ self._point, A @ self._axis
         self._J = J = np.zeros((6, self.size))
-        J[:3, :3], J[:3, 3:k], J[3:, 3:k] = P.T, -P.T @ skew(arm) @ G, P.T @ G
-        J[:3, k:], J[3:, k:] = P.T @ A @ self._modes[:3], P.T @ A @ self._modes[3:]
-        self.place, self.rate = P.T @ (own[:3] + arm - self._zero), J[:3] @ q_t
-        omega, axis = J[3:] @ q_t, P.T @ axis
-        moved = np.cross(omega, axis)
-        self.tilt = np.array([-axis[1], axis[0], 0.0])
-        self.tilt_rate = np.array([-moved[1], moved[0], 0.0])
-        self.turn, self.speed = 0.0, float(omega[2])
+        if len(zeta):
+            PA, modes = P.T @ A, self._modes
+            arm += A @ (modes[:3] @ zeta)
+            axis += skew(A @ (modes[3:] @ zeta)) @ axis
+            J[:3, k:], J[3:, k:] = PA @ modes[:3], PA @ modes[3:]
+        lever = P.T @ arm
+        # (Pᵀ arm)~ Pᵀ is Pᵀ arm~, for P turns and does not mirror
+        J[:3, :3], J[:3, 3:k], J[3:, 3:k] = P.T, -skew(lever) @ PG, PG
+        self.place, self.rate = P.T @ (own[:3] - self._zero) + lever, J[:3] @ q_t
+        (a, b, c), (x, y, z) = (J[3:] @ q_t).tolist(), (P.T @ axis).tolist()
+        self.tilt = np.array([-y, x, 0.0])
+        self.tilt_rate = np.array([a * z - c * x, b * z - c * y, 0.0])  # of (−y, x), by ω × axis
+        self.turn, self.speed = 0.0, c
         if self._spin is not None:
             place, sign = self._spin
             self.turn, self.speed = sign * float(q[place]), sign * float(q_t[place])
