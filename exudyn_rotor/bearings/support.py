@@ -298,6 +298,7 @@ class Support:
         given = (getattr(self, name) for name in _GIVEN)
         return [each for each in given if isinstance(each, CoefficientTable)]
 
+    @property
     def pattern(self) -> tuple | None:
         """What supports have in common that differ in their numbers alone; None of others.
 

@@ -64,3 +64,12 @@ def test_old_results_without_names_have_a_table():
     found = StabilityMap([1.0], [2.0], [[np.nan]], [[False]])
     assert "nan" in found.table()
     assert found.families.tolist() == [["other"]]
+
+
+def test_models_that_differ_in_numbers_are_solved_together(point):
+    patterns = {
+        linear_model(point, supports=[Support("disc", stiffness, damping)]).pattern
+        for stiffness in (1e4, 2e4)
+        for damping in (1.0, 2.0)
+    }
+    assert len(patterns) == 1

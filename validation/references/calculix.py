@@ -80,8 +80,11 @@ def on_rings(path: Path) -> tuple[SolidRotor, list[Support]]:
 def main() -> None:
     """Print both tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=Path)
+    parser.add_argument("folder", type=Path, nargs="?", help="with the decks and their results")
     folder = parser.parse_args().folder
+    if folder is None:
+        print("calculix: needs the folder of CalculiX's decks; nothing was compared")
+        return
     warnings.simplefilter("ignore", UserWarning)
 
     rotor = clamped(folder / "rotor.inp")
