@@ -315,15 +315,16 @@ def _orthonormal(columns: np.ndarray, M: np.ndarray) -> np.ndarray:
     ).T
 
 
-def others(free: np.ndarray, M: np.ndarray) -> np.ndarray:
-    """Return all motions that are mass-orthogonal to free ones, as columns (k, k − f)."""
-    if not free.shape[1]:
-        return np.eye(len(M))
-    momenta = M @ free
-    touched = np.flatnonzero(np.abs(momenta).max(axis=1) > 1e-12 * np.abs(momenta).max())
-    rest = la.null_space(momenta[touched].T)
-    untouched = np.setdiff1d(np.arange(len(M)), touched)
-    basis = np.zeros((len(M), len(untouched) + rest.shape[1]))
+def others(columns: np.ndarray) -> np.ndarray:
+    """Return what is orthogonal to columns (k, f), orthonormal, as columns (k, k − f).
+
+    Coordinates that the columns do not touch stay as they are.
+    """
+    size = np.abs(columns).max(axis=1, initial=0.0)
+    touched = np.flatnonzero(size > 1e-12 * size.max(initial=0.0))
+    rest = la.null_space(columns[touched].T)
+    untouched = np.setdiff1d(np.arange(len(columns)), touched)
+    basis = np.zeros((len(columns), len(untouched) + rest.shape[1]))
     basis[untouched, np.arange(len(untouched))] = 1.0
     basis[touched, len(untouched) :] = rest
     return basis

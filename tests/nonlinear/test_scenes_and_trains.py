@@ -28,13 +28,14 @@ TURN = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # mesh z â
 DOWN, AT = np.array([0.0, 0.0, -9.81]), [0.1, 0.2, 0.3]
 MESH_DOWN = TURN.T @ DOWN
 UNBALANCE = Unbalance("left", 1e-4)
-DAMPERS = [
-    SqueezeFilmDamper(
-        interface=end, radius=0.06, length=0.02, clearance=1.5e-4, viscosity=0.003,
-        centring_stiffness=1e6,
-    )
-    for end in ENDS
-]  # fmt: skip
+
+
+def dampers(viscosity, stiffness):
+    sizes = {"radius": 0.06, "length": 0.02, "clearance": 1.5e-4, "viscosity": viscosity}
+    return [SqueezeFilmDamper(interface=end, centring_stiffness=stiffness, **sizes) for end in ENDS]
+
+
+DAMPERS = dampers(0.003, 1e6)
 THRUST = Support("left", np.diag([0.0, 0.0, 1e6]), np.diag([0.0, 0.0, 100.0]))
 
 
@@ -141,13 +142,7 @@ def test_rotors_of_a_train_see_their_own_speed():
 
 def test_runs_come_back_to_stable_orbits_and_leave_an_unstable_one():
     """Of three orbits of a squeeze film, 1 % beside each."""
-    supports = [
-        SqueezeFilmDamper(
-            interface=end, radius=0.06, length=0.02, clearance=1.5e-4, viscosity=0.0015,
-            centring_stiffness=5e5,
-        )
-        for end in ENDS
-    ]  # fmt: skip
+    supports = dampers(0.0015, 5e5)
     solid = ring_rotor(0.1, 0.15, 20.0).with_interface("left", range(5))
     solid = solid.with_interface("right", range(5, 10))
     for z in (-0.15, 0.15):

@@ -25,7 +25,7 @@ import scipy.linalg as la
 from exudyn_rotor import checks
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear.equations import PeriodicSystem, Terms, spread, turned
+from exudyn_rotor.linear.equations import PeriodicSystem, Terms, others, spread, turned
 from exudyn_rotor.linear.model.assembly import (
     Assembly,
     Element,
@@ -740,15 +740,7 @@ def _warn_of_refused(speeds: np.ndarray, refused: Mapping[int, Exception]) -> No
 
 def beside(momenta: np.ndarray) -> np.ndarray | None:
     """Return motions orthogonal to others, coordinates kept where they can be; None for all."""
-    if not momenta.shape[1]:
-        return None
-    touched = np.flatnonzero(np.abs(momenta).max(axis=1) > 1e-12)
-    others = la.null_space(momenta[touched].T)
-    untouched = np.setdiff1d(np.arange(len(momenta)), touched)
-    basis = np.zeros((len(momenta), len(untouched) + others.shape[1]))
-    basis[untouched, np.arange(len(untouched))] = 1.0
-    basis[touched, len(untouched) :] = others
-    return basis
+    return others(momenta) if momenta.shape[1] else None
 
 
 def _named_free(names: Sequence[str], columns: np.ndarray, K: np.ndarray) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor.linear.equations import PeriodicSystem, States
-from exudyn_rotor.linear.solve.hill import Exponents, one_of_each_family
+from exudyn_rotor.linear.solve.hill import Exponents, one_of_each_family, shares
 
 GAUSS_POINTS = 0.5 + np.array([-1.0, 1.0]) * np.sqrt(3.0) / 6.0
 _STEPS = (64, 128, 256, 512, 1024)  # of a period
@@ -90,8 +90,7 @@ def _with_steps(
     spectrum = np.fft.fft(periodic, axis=0) / steps
     spectrum = np.concatenate([spectrum[-top:], spectrum[: top + 1]])
     numbers = np.arange(-top, top + 1)
-    energy = np.sum(np.abs(spectrum) ** 2, axis=1)
-    shift = np.round(numbers @ (energy / energy.sum(axis=0))).astype(int)
+    shift = np.round(numbers @ shares(spectrum)).astype(int)
     shift[upper + 1] = -shift[upper]
     states = np.zeros_like(spectrum)
     for column, by in enumerate(shift):

@@ -148,7 +148,7 @@ def _one_by_one(A: np.ndarray, b: np.ndarray) -> np.ndarray:
 def _static(A: np.ndarray, F: np.ndarray, driven: np.ndarray | None) -> np.ndarray:
     """Return the motions (s, k, c) under constant loads (s, k, c)."""
     if driven is not None:
-        basis = others(driven, np.eye(A.shape[1]))  # mixes no soft coordinates with stiff ones
+        basis = others(driven)  # mixes no soft coordinates with stiff ones
         return basis @ _static(basis.T @ A @ basis, basis.T @ F, None)
     size = np.abs(A).max(axis=2)
     alone = size <= _FREE * size.max(axis=1, initial=0.0, keepdims=True)

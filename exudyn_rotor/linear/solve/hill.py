@@ -65,8 +65,7 @@ def hill_motions(
         hidden, reach = _unsettled(values, states, orders, system)
         chosen = one_of_each_family(values, states, orders, system, made)
         values, states = values[chosen], states[:, :, chosen]
-        energy = np.sum(np.abs(states) ** 2, axis=1)
-        energy = energy / energy.sum(axis=0)
+        energy = shares(states)
         edges = energy[0] + energy[-1]
         growth, least = values.real, -np.inf
         fast = -growth > _FAST * abs(system.speed)
@@ -86,6 +85,12 @@ def hill_motions(
     return kept, max(place - fewer, 0), bool(np.any(missed))
 
 
+def shares(states: np.ndarray) -> np.ndarray:
+    """Return the share of each harmonic in the energy of motions with states (h, 2k, n), (h, n)."""
+    energy = np.sum(np.abs(states) ** 2, axis=1)
+    return energy / energy.sum(axis=0)
+
+
 def _unsettled(
     values: np.ndarray, states: np.ndarray, orders: np.ndarray, system: PeriodicSystem
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -93,8 +98,7 @@ def _unsettled(
 
     And the share of their energy there.
     """
-    energy = np.sum(np.abs(states) ** 2, axis=1)
-    energy = energy / energy.sum(axis=0)
+    energy = shares(states)
     mean = np.abs(orders @ energy) / system.step
     slow = np.abs(values) <= _SLOW * abs(system.speed)
     edges = energy[0] + energy[-1]
@@ -115,8 +119,7 @@ def one_of_each_family(
     that are their own conjugates the less damped half.
     """
     step, base = system.step, system.step * system.speed
-    energy = np.sum(np.abs(states) ** 2, axis=1)
-    energy = energy / energy.sum(axis=0)
+    energy = shares(states)
     shapes = made.shape @ states
     shapes = shapes / np.linalg.norm(shapes, axis=(0, 1))
     mean, edges = orders @ energy / step, energy[0] + energy[-1]

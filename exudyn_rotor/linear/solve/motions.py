@@ -135,7 +135,7 @@ def _resisted(
     free = free_directions(stack)
     if not free.shape[1]:
         return stack, free, None
-    basis = others(free, stack.M if stack.M.ndim == 2 else stack.M[0])
+    basis = others((stack.M if stack.M.ndim == 2 else stack.M[0]) @ free)
     return stack.projected(basis), free, basis
 
 

@@ -78,7 +78,7 @@ def equilibrium(
     UnconvergedError
         Where there is no equilibrium.
     """
-    basis = others(driven, np.eye(len(K)))
+    basis = others(driven)
     K, load = basis.T @ K @ basis, basis.T @ load
     rows = [(one.U @ basis, one.U_s @ basis) for one in journals]
 
