@@ -207,7 +207,7 @@ def with_own_spin(heavy, torsion=0.0, torque=0.0, damping=0.0):
     return body
 
 
-@pytest.mark.parametrize("torsion", [1e-3, 1.0, 1e3, 1e8])
+@pytest.mark.parametrize("torsion", [1.0, 1e3, 1e8])
 def test_own_spin_on_a_torsional_spring_twists_by_the_torque_over_its_stiffness(torsion):
     torque = 1e-4 * min(torsion, 1e3)
     found = steady_state(with_own_spin(0.0, torsion, torque)).interface_motion("left")[5]
