@@ -96,7 +96,7 @@ def ring():
 
 
 def proposal_beyond_the_formulation(_):
-    propose(ring().reduce(0), speeds=100.0, tilt=0.3)
+    propose(disc_rotor().reduce(2), speeds=1.0)
 
 
 def run_beyond_its_assumptions(beam):
@@ -304,7 +304,7 @@ PLACES = {
     "advice/energy_balance.py:_warn_of_coarse_record": (
         energy_of_a_coarse_record, UserWarning, "recorded instants are too far apart for works"),
     "advice/proposal.py:propose": (
-        proposal_beyond_the_formulation, AssumptionWarning, "tilt of 0.3 rad"),
+        proposal_beyond_the_formulation, AssumptionWarning, "flexible modes given miss"),
     "linear/model/build.py:warn_of_structural_damping": (
         campbell_of_a_lossy_rotor, UserWarning, "campbell finds modes without it"),
     "evaluation/level_one.py:_warn_of_others": (
