@@ -3,9 +3,6 @@
 Newton's method on the motion's harmonics y_n of ``y(θ) = Re Σ y_n exp(inθ)``: the scene is
 linearised at several angles of a revolution, and Hill's matrix of these equations turns what the
 forces leave unbalanced into a change of all harmonics, as much of it as leaves less unbalanced.
-
-With an elastic drive the rotor's own spin is an unknown. Where next to nothing holds it, its mean
-is zero, and what would turn it is refused.
 """
 
 from __future__ import annotations
@@ -132,9 +129,10 @@ class _Search:
         metres = 1.0 / self.scene.metre(self.probe.masses)
         for iteration in range(_MOST_ITERATIONS):
             points = [linearised(self.probe, *at) for at in self._motion(Y)]
+            if iteration == 0:
+                self._check_own_spin(np.mean([point.K for point in points], axis=0))
             residual = self._residual([point.residual for point in points])
             K = hill_stiffness(points, self.orders, self.probe.speed)
-            torque = self._held_by_drive(points, K, residual)
             change, left = (X.reshape(Y.shape) for X in solved(K, -residual.ravel()))
             if np.abs(left / metres).max() > UNHELD * self.scene.mass:
                 raise self._lost(UnconvergedError if iteration else _UnheldError)
@@ -149,8 +147,6 @@ class _Search:
             balanced = np.abs(residual / metres).max() <= BALANCED * self.scene.mass
             is_last = np.abs(change * metres).max() < goal
             if is_last or (balanced and iteration > _FEW_ITERATIONS):
-                if abs(torque) > UNHELD * np.sqrt(self.scene.mass):
-                    raise self._turning()
                 return Y, float(tail / counts)
         raise self._lost(UnconvergedError)
 
@@ -186,37 +182,20 @@ class _Search:
         motion = ((self.waves @ (Y * rates**n)).real for n in range(3))
         return zip(self.angles, *motion, strict=True)
 
-    # ------------------------------------------------------------------ own spin
-
-    def _held_by_drive(
-        self, points: Sequence[LinearPoint], K: np.ndarray, residual: np.ndarray
-    ) -> float:
-        """Let the drive hold the mean of an own spin that nothing else holds; return its torque.
-
-        Bearings at a small arm off the axis hold it next to nothing (:mod:`..spin`).
-        """
+    def _check_own_spin(self, K: np.ndarray) -> None:
+        """Refuse an own spin, of an elastic drive, that bearings alone hold by their small arms."""
         kinds, scene = self.scene.body.selection.kinds, self.scene
         if ModeKind.SPIN not in kinds:
-            return 0.0
+            return
         rigid = [scene.count + i for i, kind in enumerate(kinds) if kind in RIGID_KINDS]
         spin = scene.N[scene.count + kinds.index(ModeKind.SPIN)]
-        mean = np.mean([point.K for point in points], axis=0)
-        held = np.abs(np.einsum("ri,ij,rj->r", scene.N[rigid], mean, scene.N[rigid])).max()
-        if abs(spin @ mean @ spin) > ARM * held:
-            return 0.0
-        middle, size = len(self.orders) // 2, len(spin)
-        torque = float((residual[middle] @ spin).real)
-        residual[middle] -= torque * spin
-        within = slice(middle * size, (middle + 1) * size)
-        K[within, within] += held * np.outer(spin, spin)
-        return torque
-
-    def _turning(self) -> UnconvergedError:
-        return UnconvergedError(
-            f"linear scene at {self.probe.speed:g} rad/s: drive='elastic' leaves the rotor's own "
-            "spin to the scene, where nothing holds it against the torque of bearings and loads; "
-            "add a torsional spring, or take drive='rigid'"
-        )
+        held = np.abs(np.einsum("ri,ij,rj->r", scene.N[rigid], K, scene.N[rigid])).max()
+        if abs(spin @ K @ spin) <= ARM * held:
+            raise _UnheldError(
+                f"linear scene at {self.probe.speed:g} rad/s: drive='elastic' leaves the rotor's "
+                "own spin to the scene, where nothing holds it; add a torsional spring, or take "
+                "drive='rigid'"
+            )
 
 
 def hill_stiffness(points: Sequence[LinearPoint], orders: np.ndarray, speed: float) -> np.ndarray:
