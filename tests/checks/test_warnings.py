@@ -305,7 +305,7 @@ PLACES = {
         deflection_with_one_mode, UserWarning, "errs by about"),
     "linear/response/steady_response.py:_with_warning": (
         response_with_one_mode, UserWarning, "errs by about"),
-    "linear/model/linear_model.py:_warn_of_refused": (
+    "linear/model/linear_model.py:warn_of_refused": (
         campbell_below_a_table, UserWarning, "no values at .* which are NaN"),
     "linear/modal/resonance.py:warn": (
         critical_speeds_below_a_table, UserWarning, "none are looked for"),
@@ -343,7 +343,6 @@ ELSEWHERE = {
     "linear/own_frequency.py:own_motions": "do not settle at their own frequency",
     "linear/model/linear_model.py:warn_beyond": "keeps its ends for motions of",
     "linear/over.py:_warn_of_lost": "do not converge for all motions",
-    "linear/over.py:warn_of_refused": "no values at .* which are NaN",
 }
 TEXTS = {place: text for place, (_, _, text) in PLACES.items()} | ELSEWHERE
 # places that several kinds of bodies reach
