@@ -1,24 +1,16 @@
 """The report is one file, holds what was given, and nothing in it is taken for HTML."""
 
-import re
 from html.parser import HTMLParser
 
-import exudyn
 import numpy as np
 import pytest
 from matplotlib import pyplot
 from point_rotors import ring_rotor
 from small_results import STORED
-from test_controlled_trains import MAGNETIC, PADS
 
 from exudyn_rotor import (
     Foundation,
-    GearMesh,
-    Link,
-    RotorTrain,
-    ShortJournalBearing,
     Support,
-    add_rotor,
     linear_model,
     report,
 )
@@ -96,47 +88,6 @@ def test_rotor_supports_and_model_are_described(written, ring):
     assert "centrifugal stiffening: tilt\nfree motions: translation along axis" in text
     assert "Foundation(1 coordinates, 47.75 to 47.75 Hz, points: mid)" in text
     assert Page(text).headings[1:] == ["Rotor", "Rotor", "Supports", *["Linear model"] * 2]
-
-
-def test_every_model_of_a_campbell_diagram_is_described(written):
-    """Rotors on bearings with coordinates of their own, trains, scenes."""
-    (rotor, magnets), (journal, pads) = MAGNETIC, PADS
-    gears = GearMesh(radii=[0.1, 0.2], stiffness=3e6)
-    train = RotorTrain(
-        {"A": rotor, "B": journal}, {"A": 1.0, "B": -0.5}, {"A": magnets, "B": pads},
-        [Link("A:left", "B:right", gears)],
-    )  # fmt: skip
-    film = ShortJournalBearing(
-        interface="left",
-        radius=0.02,
-        length=0.02,
-        clearance=5e-5,
-        viscosity=0.01,
-        load=[0.0, -98.0],
-    )
-    mbs = exudyn.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor, spin=100.0)
-    mbs.Assemble()
-    block = Foundation.from_modes([300.0], 0.01, {"left": [[1.0], [0.0], [0.0]]})
-    models = [
-        linear_model(rotor, supports=magnets[:1], foundation=block),
-        linear_model(rotor, supports=[film]),
-        linear_model(train),
-        linear_model(mbs, body=body),
-    ]
-    text = written([train, [*magnets, *pads, film], block, *models])
-    assert Page(text).headings[1:] == ["Rotors", "Supports", "Foundation", *["Linear model"] * 4]
-    for found in (
-        "rotor B: -0.5 times the speed, 100 kg, 6 coordinates",
-        "A:left – B:right             gear mesh",
-        "PID controller: proportional 20000",
-        "left                     magnetic bearing",
-        "left                     short journal bearing",
-        "scene of 5 coordinates in inertial axes, about its equilibrium state",
-    ):
-        assert found in re.sub(r"\n +", " ", text)
-    with pytest.raises(TypeError, match=r"give a scene as linear_model\(mbs, body=…\)"):
-        written([mbs])
 
 
 def test_wrong_input_leaves_the_old_file(written, tmp_path):
