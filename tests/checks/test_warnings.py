@@ -95,7 +95,7 @@ def ring():
 
 
 def proposal_beyond_the_formulation(_):
-    propose(disc_rotor().reduce(2), speeds=1.0)
+    propose(disc_rotor().reduce(2), speeds=300.0)
 
 
 def run_beyond_its_assumptions(beam):
