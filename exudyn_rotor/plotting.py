@@ -106,28 +106,6 @@ def plot_orbits(ax: Axes, orbits: Mapping[str, np.ndarray]) -> Axes:
     return ax
 
 
-def plot_histories(ax: Axes, time: np.ndarray, histories: Mapping[str, np.ndarray]) -> Axes:
-    """Draw displacements [m] over time [s], in micrometres."""
-    for (label, values), color, line in zip(histories.items(), COLORS, LINES, strict=False):
-        ax.plot(time, 1e6 * values, line, color=color, lw=1.0, label=label)
-    ax.set_ylabel("displacement [µm]")
-    ax.grid(alpha=0.3)
-    legend_above(ax)
-    return ax
-
-
-def plot_deviation(ax: Axes, time: np.ndarray, deviations: Mapping[str, np.ndarray]) -> Axes:
-    """Draw absolute deviations [m] over time [s] on a logarithmic scale, in micrometres."""
-    styles = zip(deviations.items(), COLORS[1:], LINES[1:], strict=False)
-    for (label, values), color, line in styles:
-        ax.semilogy(time, 1e6 * np.maximum(values, 1e-15), line, color=color, lw=1.0, label=label)
-    ax.set_ylabel("deviation [µm]")
-    ax.set_xlabel("time [s]")
-    ax.grid(alpha=0.3, which="both")
-    legend_above(ax)
-    return ax
-
-
 def draw_surface(
     positions: ArrayLike,
     triangles: ArrayLike,
