@@ -15,11 +15,11 @@ import exudyn.utilities  # noqa: F401 (scripts find it in exudyn, as they always
 import exudyn_rotor.multibody.twins.exudyn_call  # noqa: F401 (methods of Exudyn's MainSystem)
 
 if TYPE_CHECKING:
-    from exudyn_rotor.advice.check_result import RunCheck as RunCheck
     from exudyn_rotor.advice.energy_balance import EnergyBalance as EnergyBalance
     from exudyn_rotor.advice.energy_balance import energy_balance as energy_balance
     from exudyn_rotor.advice.proposal import Proposal as Proposal
     from exudyn_rotor.advice.proposal import propose as propose
+    from exudyn_rotor.advice.run_check import RunCheck as RunCheck
     from exudyn_rotor.advice.run_check import check_run as check_run
     from exudyn_rotor.advice.warning import AssumptionWarning as AssumptionWarning
     from exudyn_rotor.bearings.actuator import LinearActuator as LinearActuator
@@ -159,10 +159,9 @@ __version__ = "0.2.0"
 
 # public names by their module, which is imported where one of them is first used
 _NAMES = {
-    "advice.check_result": "RunCheck",
     "advice.energy_balance": "EnergyBalance energy_balance",
     "advice.proposal": "Proposal propose",
-    "advice.run_check": "check_run",
+    "advice.run_check": "RunCheck check_run",
     "advice.warning": "AssumptionWarning",
     "bearings.actuator": "LinearActuator SaturatingActuator",
     "bearings.annular_seal": "AnnularSeal",

@@ -170,6 +170,10 @@ class Result:
         """
         raise TypeError(f"columns: a {type(self).__name__} has none; give its class this method")
 
+    def table(self, *, units: str = "rpm") -> str:
+        """Return the table as text; `units` are those of :meth:`columns`."""
+        return "\n".join(text_table(self.columns(units)))
+
     def to_dataframe(self, units: str = "SI") -> Any:
         """Return the table as a ``pandas.DataFrame``; see :meth:`columns`.
 
