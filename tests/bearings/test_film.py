@@ -69,9 +69,6 @@ def test_short_cut_film_is_ocvirks(ratio):
     assert np.all(np.abs(found - exact) < 0.1 * change + 1e-3 * np.abs(exact))
 
 
-# ------------------------------------------------------------------ balances
-
-
 # ------------------------------------------------------------------ derivatives, symmetries
 
 

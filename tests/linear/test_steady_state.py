@@ -160,12 +160,6 @@ def test_load_that_nothing_holds_is_refused(reduced, held, monkeypatch):
     assert len(angles) <= 3 * 12 + 2 * 48
 
 
-# ------------------------------------------------------------------ static solutions
-
-
-# -------------------------------------------------- the own spin of a rotor with an elastic drive
-
-
 # ------------------------------------------------------------------ where the search begins
 
 

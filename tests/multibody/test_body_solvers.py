@@ -148,6 +148,3 @@ def test_static_solution_is_the_steady_state_in_the_rotating_frame(reduced, spee
     assert abs(after - modes).max() < 1e-6 * abs(modes).max() + 1e-12
     # the unbalance of 0.1 kg at 0.15 m bends the shaft outwards
     assert (np.hypot(*sag[:2]) > 1e-5) == (speed > 0.0)
-
-
-# ------------------------------------------------------------------ power of the drive

@@ -106,6 +106,3 @@ def test_full_model_is_the_identity_basis(seed):
     for name in ("M", "K", "G", "C"):
         assert_close(getattr(full, name).toarray(), getattr(dense, name))
     assert full.D.nnz == 0
-
-
-# ------------------------------------------------------------------ read-only

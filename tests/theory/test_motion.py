@@ -226,6 +226,3 @@ def test_equations_with_stiffening_follow_from_their_energy(translation):
     expected = lagrange_residual(lagrangian, 0.0, q, v, a) - damping @ v
     actual = motion.mass_matrix(0.0, q) @ a - motion.forces(0.0, q, v)
     assert_relative(actual, expected, 1e-8)
-
-
-# ------------------------------------------------------------------ power

@@ -27,9 +27,6 @@ def rigid_rotor(shape: tuple[float, float]):
     return ring_rotor(*shape, MASS).reduce(0)
 
 
-# ------------------------------------------------------------------ rigid axisymmetric body
-
-
 # ------------------------------------------------------------------ work on exact displacements
 
 
