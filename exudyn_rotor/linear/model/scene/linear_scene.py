@@ -74,18 +74,6 @@ class LinearScene(SceneCoordinates):
     # ------------------------------------------------------------------ the rotor
 
     @cached_property
-    def touching(self) -> np.ndarray:
-        """Which of the unknowns move the rotor, (k,)."""
-        return np.any(self.N[: self.modal.stop] != 0.0, axis=0)
-
-    @cached_property
-    def columns(self) -> np.ndarray:
-        """Columns of the reduced rotor by the unknowns that move it, (n, r)."""
-        selection = self.body.selection
-        moved = selection.source.invariants.S.T @ self.axes[:, : self.count]
-        return np.hstack([moved, selection.T]) @ self.N[: self.modal.stop, self.touching]
-
-    @cached_property
     def spin_column(self) -> np.ndarray:
         """Columns of the reduced rotor by a free spin, (n, 1); (n, 0) where it is prescribed."""
         source = self.body.selection.source
