@@ -25,7 +25,6 @@ from exudyn_rotor.multibody.rotor.record import Record
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.energy import energy_of
 from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:
@@ -209,7 +208,7 @@ def _instant(body: RotorBody, record: Record, index: int) -> tuple[float, ...]:
     gravity = body.plan.setup.gravity
     if body.gravity_load is not None:  # a script may change it
         gravity = np.asarray(body.mbs.GetLoadParameter(body.gravity_load, "loadVector"))
-    energy = energy_of(motion, t, q, q_t, gravity)
+    energy = motion.energy(t, q, q_t, gravity)
     power, drive = external_load(body, record, index) @ q_t, 0.0
     if not body.formulation.has_spin:
         moment = _moment_on_spin(body, record, index)

@@ -48,7 +48,7 @@ def test_energy_is_conserved(translation):
     motion = frozen_motion(translation)
     assert np.abs(motion.spin_terms.B).max() > 1e-3
     q, v = integrated(motion, [0.02, -0.01], 8 * 2 * np.pi / SPEED)
-    energy = np.array([motion.energy(0.0, *state) for state in zip(q, v, strict=True)])
+    energy = np.array([sum(motion.energy(0.0, *state)) for state in zip(q, v, strict=True)])
     assert energy == pytest.approx(energy[0], rel=1e-9)
     assert np.ptp(v[:, motion.formulation.translation_count]) > 1e-3  # the spin takes part
 
