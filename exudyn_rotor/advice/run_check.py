@@ -181,7 +181,6 @@ def check_run(
     ``tilt``             √a       largest rigid tilt [rad]; terms of its second order are left out
     ``deflection``       √a       root mean square flexible displacement over the size, likewise
     ``adrift``           1        the centre of mass off its place in the frame, over the size
-    ``locked``           1e-5     locked coordinates off their place [rad], [size]
     ``connections``      0        connectors, joints and loads that the rotor cannot carry:
                                   ``body.check_connections()`` names them
     ``step``             a        error by the step, 0.0844 h² times the accelerations of the

@@ -100,25 +100,6 @@ def _adrift(run: RecordedRun) -> float:
 
 
 @_row(
-    "locked",
-    1e-5,
-    "locked coordinates off their place [rad], [size]",
-    "use locking='constraints', or a smaller step",
-)
-def _locked(run: RecordedRun) -> float:
-    if "marker_body" not in run.body.objects:
-        return 0.0
-    locks, record = run.body.locks, run.record
-    unit, off = np.repeat([run.size, 1.0], 3), [0.0]
-    for index in locks.fixed:
-        off.append(np.abs(record.q[:, index]).max() / unit[index])
-    for index, motion in locks.prescribed.items():
-        wanted = np.array([float(motion.value(t)) for t in record.time])
-        off.append(np.abs(record.q[:, index] - wanted).max() / unit[index])
-    return max(off)
-
-
-@_row(
     "connections",
     0.0,
     "connections, joints and loads that the rotor cannot carry",

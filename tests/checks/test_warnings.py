@@ -209,7 +209,6 @@ ELSEWHERE = {
     "solid/meshes/mesh_data.py:warn": "taken as",
     "theory/stiffening.py:warn_of_left_out": "beyond 'tilt' is left out",
     "ross.py:_check_held": "of shaft elements are left out",
-    "advice/energy_balance.py:_warn_of_coarse_record": "instants are too far apart for works",
     "bearings/tilting_pad.py:_of_pads": "carry nothing at",
     "bearings/own_table.py:table_of": "speeds are left out",
     "linear/own_frequency.py:own_motions": "do not settle at their own frequency",
