@@ -79,7 +79,7 @@ def ring():
 
 
 def proposal_beyond_the_formulation(_):
-    propose(disc_rotor().reduce(2), speeds=300.0)
+    propose(disc_rotor().reduce(2), speeds=1e4)
 
 
 def run_beyond_its_assumptions(beam):
@@ -173,7 +173,7 @@ PLACES = {
     "strength/field.py:warn_without_static": (
         stress_at_speed_without_prestress, UserWarning, "without the static centrifugal stress"),
     "advice/proposal.py:propose": (
-        proposal_beyond_the_formulation, AssumptionWarning, "flexible modes given miss"),
+        proposal_beyond_the_formulation, AssumptionWarning, "flexible modes given lie in the band"),
     "solid/units.py:check_model_units": (
         small_rotor_in_millimetres, UserWarning, "few rotors are that heavy; lengths in mm"),
     "solid/ngsolve_model.py:_prepare_mesh": (
