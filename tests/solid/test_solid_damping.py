@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from models import ALUMINIUM, STEEL, two_material_cylinder
+from point_rotors import random_rotor
 
 from exudyn_rotor import SolidRotor, Support, stability, stability_threshold
 
@@ -38,6 +39,18 @@ def test_internal_damping_makes_a_jeffcott_rotor_unstable(ratio):
     found = stability_threshold(rotor, 0.5 * threshold, 2.0 * threshold, supports=supports)
     # the growth counts from 1e-9 of the speed on: at 2e-7 of the threshold or less
     assert found.values == pytest.approx([threshold], rel=1e-6)
+
+
+def test_the_order_of_damping_and_reduction_does_not_matter():
+    rotor = random_rotor(6)
+    first, last = (
+        rotor.with_damping(**FACTORS).reduce(4),
+        rotor.reduce(4).with_damping(**FACTORS),
+    )
+    for one, other in ((first, last), (first.with_attachments, last.with_attachments)):
+        D = other.invariants.D
+        # sums of 18 products of order 1
+        np.testing.assert_allclose(one.invariants.D, D, rtol=0.0, atol=1e-13 * np.abs(D).max())
 
 
 def test_damping_of_one_material(cylinder):
