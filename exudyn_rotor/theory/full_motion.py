@@ -287,11 +287,10 @@ class FullMotion(Motion):
             force[self.modes] = self.spin_terms.load(self.formulation.spin.speed)
         return force
 
-    def varying_inertia(self, c: np.ndarray, omega: float) -> tuple[float, np.ndarray]:
-        """Return what adds to Θ (85), at the spin speed ω by K4, and ``Wc`` of (84)."""
+    def varying_inertia(self, c: np.ndarray) -> tuple[float, np.ndarray]:
+        """Return what adds to Θ (85), and ``Wc`` of (84)."""
         terms = self.spin_terms
-        inertia = (2.0 * terms.h + terms.C_hat @ c) @ c - 6.0 * omega**2 * self._fourth(c)
-        return float(inertia), terms.W @ c
+        return float((2.0 * terms.h + terms.C_hat @ c) @ c), terms.W @ c
 
     def varying_forces(self, t: float, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
         """Return (86), (87), the accelerations of (108) and App. A without weight, shape (size,).
@@ -320,8 +319,6 @@ class FullMotion(Motion):
         torque = -(1.0 if frozen else 2.0) * omega * (self._centrifugal(c) @ rate)
         if not frozen:
             torque -= rate @ (terms.B @ rate)
-        if terms.K4 is not None:
-            torque += (1.0 if frozen else 4.0) * omega**3 * (c @ (terms.K4 @ rate))
         return float(torque)
 
     def varying_jacobian(

@@ -18,9 +18,7 @@ share c/2Θ, where conserved momentum, ``(Θ + c)ω``, has c/Θ: spin fluctuatio
 speeds and angles err by c/2Θ, below 1e-4 for rotors in balance.
 
 A static displacement adds ``−½ω⁴ζᵀK4ζ`` to the Lagrangian function: the force ``−ω⁴K4ζ`` on the
-modes, and in the equation of the spin ``−6ω²ζᵀK4ζ`` of its inertia and the torque ``4ω³ζᵀK4ζ̇``.
-Conserved are the momentum with ``−2ω³ζᵀK4ζ`` and the energy with ``−(3/2)ω⁴ζᵀK4ζ``. A frozen spin
-gets the torque ``ω³ζᵀK4ζ̇`` alone, which takes the power of the force from it.
+modes. A free spin does not take it.
 
 Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
 """
@@ -131,6 +129,11 @@ class Motion:
         self.invariants = checks.instance(invariants, "invariants", Invariants)
         self.formulation = checks.instance(formulation, "formulation", Formulation)
         self.spin_terms = SpinTerms.of(invariants, second_order)
+        if second_order.K4 is not None and formulation.has_spin:
+            raise ValueError(
+                "spin: a free spin does not take the stiffness per ω⁴ of a static displacement; "
+                "prescribe the spin, or compute the prestress with initial_displacement=False"
+            )
         self.orientation = np.eye(3)
         if orientation is not None:
             self.orientation = checks.rotation(orientation, "orientation")
@@ -209,13 +212,10 @@ class Motion:
     def mass_matrix(self, t: float, q: ArrayLike, q_t: ArrayLike | None = None) -> np.ndarray:
         """Return the mass matrix (65, 41–43, 84, 85), shape (size, size).
 
-        That of a free spin depends on its speed in `q_t`, zero by default, where there is a
-        stiffness per ω⁴.
+        It does not depend on the rates `q_t`.
         """
-        q = self._coordinates(q, "q")
-        q_t = np.zeros(self.size) if q_t is None else self._coordinates(q_t, "q_t")
         kernel, mass = self._kernel, self._constant_mass.copy()
-        values = kernel.mass_entries(_time(t), q.tolist(), q_t.tolist())
+        values = kernel.mass_entries(_time(t), self._coordinates(q, "q").tolist())
         mass[kernel.rows, kernel.columns] = mass[kernel.columns, kernel.rows] = values
         return mass
 

@@ -239,10 +239,6 @@ def _spin_and_modes(motion: Equations, now: Instant) -> list[Term]:
         inertia, coupling, torque = inv.Theta, inv.g, 0.5 * torque
     else:
         torque -= rate @ (spin.B @ rate)
-    if spin.K4 is not None:
-        frozen = motion.formulation.has_frozen_spin
-        torque += (1.0 if frozen else 4.0) * omega**3 * zeta @ (spin.K4 @ rate)
-        inertia -= 0.0 if frozen else 6.0 * omega**2 * zeta @ (spin.K4 @ zeta)
     force = spin.load(omega) - spin.stiffness(omega) @ zeta - spin.damping(omega) @ rate
     return [
         Term("M_ζζ", _number(motion, "42"), inv.M, "mass matrix"),
