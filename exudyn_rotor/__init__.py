@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper as SqueezeFilmDamper
     from exudyn_rotor.bearings.support import Support as Support
     from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing as TiltingPadBearing
-    from exudyn_rotor.drives.cardan import CardanJoint as CardanJoint
     from exudyn_rotor.drives.coupling import FlexibleCoupling as FlexibleCoupling
     from exudyn_rotor.drives.drive import Drag as Drag
     from exudyn_rotor.drives.drive import TorqueCurve as TorqueCurve
@@ -179,7 +178,6 @@ _NAMES = {
     "bearings.squeeze_film": "SqueezeFilmDamper",
     "bearings.support": "Support",
     "bearings.tilting_pad": "TiltingPadBearing",
-    "drives.cardan": "CardanJoint",
     "drives.coupling": "FlexibleCoupling",
     "drives.drive": "Drag TorqueCurve",
     "drives.gear_mesh": "GearMesh",

@@ -17,7 +17,6 @@ import scipy.linalg as la
 from exudyn_rotor.bearings.controlled_support import (
     Controlled,
     ControlledSupport,
-    FilmSupport,
     PadSupport,
 )
 from exudyn_rotor.bearings.given import linear_supports
@@ -49,7 +48,6 @@ End = tuple[str, str]  # names of a body and of its interface
 Seen = Callable[[End], Terms]  # what a support acts on, seen from outside
 WORDS = {
     ControlledSupport: "controller",
-    FilmSupport: "voids",
     PadSupport: "pads",
     SeriesSupport: "ring",
 }
@@ -170,7 +168,7 @@ def is_isotropic_matrix(X: np.ndarray) -> bool:
 
 
 class OwnBody(Body):
-    """Coordinates that a support brings with it, in pairs, as a body: of a controller, of voids."""
+    """Coordinates that a support brings with it, in pairs, as a body, as of a controller."""
 
     def rows(self) -> dict[int, np.ndarray]:
         """Return the displacements of its pairs of coordinates, seen from outside, (3p, k)."""
@@ -265,27 +263,17 @@ def with_own(
         return _series_elements(one, end, bases.get(one.interface), rate, own)
     if isinstance(one, PadSupport):
         return [_pad_element(one, place, at, end, rate, own) for place in range(one.size)]
-    ports = [at]
-    if isinstance(one, ControlledSupport):
-        sensed = _relative((end[0], one.sensor), bases.get(one.sensor))
-        ports.append(_part(sensed, slice(0, 3)))
-    lifted = np.kron(np.eye(len(ports) + own.size // 2), ACROSS)
+    sensed = _part(_relative((end[0], one.sensor), bases.get(one.sensor)), slice(0, 3))
+    lifted = np.kron(np.eye(2 + own.size // 2), ACROSS)
 
     def matrices(*_: float) -> tuple[np.ndarray, np.ndarray]:
         K, D = one.stiffness, one.damping
         return lifted @ K @ lifted.T, lifted @ D @ lifted.T
 
-    def of_film(speed: float, *_: float) -> tuple[np.ndarray, np.ndarray]:
-        D, K = one.matrices(rate * speed)
-        return lifted @ K @ lifted.T, lifted @ D @ lifted.T
-
     def motion(seen: Seen) -> Terms:
-        return stacked([*(port(seen) for port in ports), seen((own.name, ""))])
+        return stacked([at(seen), sensed(seen), seen((own.name, ""))])
 
-    ends = (end, (end[0], one.sensor))
-    if isinstance(one, ControlledSupport):
-        return [Element(ends, matrices, motion, law=one)]
-    return [Element((end,), of_film, motion, varies=True, stiffness_varies=True)]
+    return [Element((end, (end[0], one.sensor)), matrices, motion, law=one)]
 
 
 def _series_elements(

@@ -143,7 +143,7 @@ class SceneCoordinates:
         mbs, body = self.body.mbs, self.body
         own = {*map(int, body.objects.values()), *map(int, body.constraints.values())}
         own |= {int(n) for one in body.supports for n in one.objects}
-        own |= {int(one.object) for one in body.drives}
+        own |= {int(number) for one in body.drives for number in one.objects}
         own |= {int(n) for one in self.foundations for n in one.objects.values()}
         items = [mbs.GetObject(n) for n in range(mbs.systemData.NumberOfObjects())]
         return [n for n, item in enumerate(items) if n not in own and _has_force(item)]

@@ -276,7 +276,7 @@ class SceneModel(LinearModel):
         metres = np.sqrt(np.maximum(np.diag(assembly.M), 1e-300) / scene.mass)
         for body, place in zip(assembly.bodies, assembly.slices, strict=True):
             if not isinstance(body, RotorBody | StandingBody):
-                metres[place] = np.maximum(metres[place], 1.0)  # of light pads and voids
+                metres[place] = np.maximum(metres[place], 1.0)  # of light pads
         where = f"linear scene at {speed:g} rad/s"
         return equilibrium(scene, at, unbalanced, metres, z, _TOLERANCE, where), seen
 

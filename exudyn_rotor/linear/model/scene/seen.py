@@ -97,10 +97,8 @@ def _of_rotor(scene: LinearScene, body: RotorBody) -> dict[int, np.ndarray]:
 def _of_own(
     scene: LinearScene, body: OwnBody, one: SceneSupport, turns: int, speed: float
 ) -> tuple[np.ndarray, dict[int, np.ndarray]]:
-    """Return the unknowns that a support brings with it, and their rows; voids have none."""
+    """Return the unknowns that a support brings with it, and their rows."""
     rows = scene.own_unknowns(one)
-    if not len(rows):
-        return rows, {0: np.zeros((0, body.size))}
     if isinstance(body, PadBody):
         return rows, {0: -np.eye(body.size) / one.support.film.radius}
     if turns or not speed:
