@@ -215,8 +215,7 @@ class Support:
         Rows: displacement along n1, n2, e, then rotation about them. A table keeps its last value
         beyond its end. The frequency is the size of the spin speed by default.
         """
-        checks.number(speed, "speed", "rad/s")
-        pair = speed, abs(speed) if frequency is None else frequency
+        pair = _pair(speed, frequency)
         # the last pair with its matrices as one object, as threads share supports
         at, found = self.__dict__.get("_found", (None, None))
         if found is None or (at != pair and self.varies):
@@ -232,7 +231,7 @@ class Support:
 
     def mass_matrix(self, speed: float, frequency: float | None = None) -> np.ndarray:
         """Return the mass that goes with the interface, (6, 6), as :meth:`matrices` does."""
-        return self._matrix("mass", speed, abs(speed) if frequency is None else frequency)
+        return self._matrix("mass", *_pair(speed, frequency))
 
     def undamped(self) -> Support:
         """Return the support without damping and without the skew part of its stiffness."""
@@ -332,6 +331,14 @@ class Support:
         elif isinstance(value, CoefficientTable):
             value = value.at(speed, frequency)
         return _in_six_axes(value)
+
+
+def _pair(speed: float, frequency: float | None) -> tuple[float, float]:
+    """Return a spin speed and a frequency, by default that of unbalance, checked."""
+    checks.number(speed, "speed", "rad/s")
+    if frequency is None:
+        return speed, abs(speed)
+    return speed, checks.number(frequency, "frequency", "rad/s")
 
 
 def _symmetric(value: Coefficient) -> Coefficient:
