@@ -13,8 +13,7 @@ from exudyn_rotor.prestress.static_state import check_static_state
 from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.rotor import Rotor, check_unstressed
-from exudyn_rotor.solvers.choice import way_of
-from exudyn_rotor.solvers.inertia_relief import free_rigid_motions, inertia_relief
+from exudyn_rotor.solvers.inertia_relief import Way, free_rigid_motions, inertia_relief
 
 
 def with_prestress(rotor: Rotor, prestress: Prestress) -> Rotor:
@@ -27,7 +26,7 @@ def with_prestress(rotor: Rotor, prestress: Prestress) -> Rotor:
     if prestress.constant is not None:
         stiffness = matrices.frozen(sp.csr_array(stiffness + prestress.constant))
         free = free_rigid_motions(rotor.nodes, rotor.mass, rotor.stiffness, rotor.rigid_motions)
-        relief_under_stress(stiffness, rotor.mass, free, way_of(rotor))
+        relief_under_stress(stiffness, rotor.mass, free, Way.of(rotor))
     return replace(rotor, stiffness=stiffness, carried_prestress=replace(prestress, constant=None))
 
 

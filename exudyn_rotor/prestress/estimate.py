@@ -20,9 +20,8 @@ import scipy.sparse as sp
 
 from exudyn_rotor.prestress.static_solution import centrifugal_load
 from exudyn_rotor.solid.rotor import FiniteElementRotor
-from exudyn_rotor.solvers.choice import Way
-from exudyn_rotor.solvers.inertia_relief import InertiaRelief, inertia_relief
-from exudyn_rotor.solvers.memory import TooLittleMemoryError
+from exudyn_rotor.solvers.factor import TooLittleMemoryError
+from exudyn_rotor.solvers.inertia_relief import InertiaRelief, Way, inertia_relief
 from exudyn_rotor.theory.nodal import translations
 
 # force on the ground by a translation, of the largest on a node, that is more than rounding
@@ -61,7 +60,7 @@ def estimated_stiffness(rotor: FiniteElementRotor) -> sp.csr_array | None:
     try:
         rigid = inertia_relief(rotor).rigid
         truss = _truss(rotor, i, j, bars, stiffness)
-        relief = InertiaRelief(truss, rotor.mass, rigid, Way("direct", rotor.nodes))
+        relief = InertiaRelief(truss, rotor.mass, rigid, Way())
     except (ValueError, TooLittleMemoryError):
         return None
     moved = relief.solve(centrifugal_load(rotor)).reshape(-1, 3)

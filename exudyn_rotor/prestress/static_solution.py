@@ -48,8 +48,12 @@ from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.rotor import FiniteElementRotor, check_unstressed
 from exudyn_rotor.solid.tensor import von_mises
-from exudyn_rotor.solvers.choice import Way, way_of
-from exudyn_rotor.solvers.inertia_relief import InertiaRelief, free_motions_of, inertia_relief
+from exudyn_rotor.solvers.inertia_relief import (
+    InertiaRelief,
+    Way,
+    free_motions_of,
+    inertia_relief,
+)
 from exudyn_rotor.theory.nodal import rotations, skew
 
 # a stress field in equilibrium loses a few per cent where it was averaged at nodes
@@ -225,7 +229,7 @@ class _StaticState:
         """Return the state with the stiffness of a stress at rest, which acts on every load."""
         free = matrices.without_nodes(constant, self.supported.elements.held)
         held = sp.csr_array(self.supported.stiffness + free)
-        relief = relief_under_stress(held, self.rotor.mass, self.relief.rigid, way_of(self.rotor))
+        relief = relief_under_stress(held, self.rotor.mass, self.relief.rigid, Way.of(self.rotor))
         return replace(self, stiffness=self.stiffness + constant, relief=relief)
 
     def solve(self, load: np.ndarray) -> np.ndarray:

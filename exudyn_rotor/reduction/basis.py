@@ -18,8 +18,6 @@ from exudyn_rotor.reduction.fields import ModeKind, rigid_names
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import rotations, translations
 
-# share of a column that is new, below which squares of lengths have too few digits left
-_EVEN = 1e-5
 # length of a column, of the largest, that is rounding
 _NOTHING = 1e-12
 
@@ -159,76 +157,25 @@ def gram_schmidt(
     tolerance : float
         Of a column that is used more than this share of it is new.
     """
-    found = _all_at_once(first, columns, mass, tolerance)
-    return _one_by_one(first, columns, mass, tolerance) if found is None else found
-
-
-def _all_at_once(
-    first: tuple[np.ndarray, np.ndarray],
-    columns: np.ndarray,
-    mass: sp.csr_array,
-    tolerance: float,
-) -> Orthonormal | None:
-    """Return what :func:`gram_schmidt` does; None where a column is nearly one of the others.
-
-    Source: Yamamoto, Nakatsukasa, Yanagisawa, Fukaya, "Roundoff error analysis of the CholeskyQR2
-    algorithm", ETNA 44 (2015).
-    """
-    count = columns.shape[1]
-    triangle, shares = np.eye(count), np.zeros((first[0].shape[1], count))
-    for step in range(2):  # the second keeps full precision
-        share = first[1].T @ columns
-        columns = columns - first[0] @ share
-        momenta = mass @ columns
-        squares = columns.T @ momenta
-        try:
-            factor = scipy.linalg.cholesky(squares)
-        except scipy.linalg.LinAlgError:
-            return None
-        if step == 0:
-            lengths = np.sqrt(np.diag(squares) + np.einsum("ik,ik->k", share, share))
-            least = max(tolerance, _EVEN) * lengths
-            if np.any(np.diag(factor) <= least) or lengths.min(
-                initial=np.inf
-            ) <= _NOTHING * lengths.max(initial=0.0):
-                return None
-        shares, triangle = shares + share @ triangle, factor @ triangle
-        columns, momenta = (
-            scipy.linalg.solve_triangular(factor, each.T, trans=1).T for each in (columns, momenta)
-        )
-    return Orthonormal(columns, momenta, list(range(count)), triangle, shares)
-
-
-def _one_by_one(
-    first: tuple[np.ndarray, np.ndarray],
-    columns: np.ndarray,
-    mass: sp.csr_array,
-    tolerance: float,
-) -> Orthonormal:
-    """Return what :func:`gram_schmidt` does."""
     size, start = first[0].shape
-    basis, weighted = (np.empty((size, start + columns.shape[1])) for _ in range(2))
-    basis[:, :start], weighted[:, :start] = first
-    count, used, shares = start, [], []
+    basis, momenta = (np.empty((size, start + columns.shape[1]), order="F") for _ in range(2))
+    basis[:, :start], momenta[:, :start] = first
+    shares = np.zeros((start + columns.shape[1], columns.shape[1]))
     lengths = np.sqrt(np.maximum(np.einsum("ik,ik->k", columns, mass @ columns), 0.0))
-    largest = lengths.max(initial=0.0)
+    count, used = start, []
     for index, length in enumerate(lengths):
         column = np.array(columns[:, index], dtype=float)
-        share = np.zeros(count)
         for _ in range(2):  # one pass loses orthogonality
-            projection = weighted[:, :count].T @ column
-            column -= basis[:, :count] @ projection
-            share += projection
-        weight = mass @ column
-        norm = np.sqrt(max(column @ weight, 0.0))
-        if norm <= tolerance * length or length <= _NOTHING * largest:
+            share = momenta[:, :count].T @ column
+            column -= basis[:, :count] @ share
+            shares[:count, index] += share
+        momentum = mass @ column
+        norm = np.sqrt(max(column @ momentum, 0.0))
+        if norm <= tolerance * length or length <= _NOTHING * lengths.max():
             continue
-        basis[:, count], weighted[:, count] = column / norm, weight / norm
+        basis[:, count], momenta[:, count] = column / norm, momentum / norm
+        shares[count, index] = norm
         used.append(index)
-        shares.append(np.append(share, norm))
         count += 1
-    triangle = np.zeros((count, len(used)))
-    for j, share in enumerate(shares):
-        triangle[: len(share), j] = share
-    new = slice(start, count)
-    return Orthonormal(basis[:, new], weighted[:, new], used, triangle[start:], triangle[:start])
+    new, shares = slice(start, count), shares[:count, used]
+    return Orthonormal(basis[:, new], momenta[:, new], used, shares[start:], shares[:start])

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 import scipy.linalg
@@ -15,11 +16,9 @@ from exudyn_rotor.calls import one_thread
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.prestress.estimate import estimated_stiffness
 from exudyn_rotor.prestress.static_solution import relief_rotations
-from exudyn_rotor.reduction.attached import Attached
-from exudyn_rotor.reduction.attachment import attachment_modes
+from exudyn_rotor.reduction.attachment import attachment_modes, inertial_modes
 from exudyn_rotor.reduction.basis import OrthonormalBasis, rigid_columns
-from exudyn_rotor.reduction.component import ModeBasis, free_modes
-from exudyn_rotor.reduction.fem_interface_modes import fem_interface_modes
+from exudyn_rotor.reduction.component import ModeBasis, component_modes
 from exudyn_rotor.reduction.fields import (
     RIGID_KINDS,
     Centrifugal,
@@ -27,9 +26,7 @@ from exudyn_rotor.reduction.fields import (
     ModeShapes,
     ReducedInterface,
 )
-from exudyn_rotor.reduction.inertial_modes import inertial_modes
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.theory.invariants import Invariants
@@ -59,7 +56,7 @@ def reduce_rotor(
         rotor = with_chosen_prestress(rotor, prestress)
         unknown = prestress is None and rotor.carried_prestress is None
         network = estimated_stiffness(rotor) if unknown else None
-    component = _component_modes(rotor, modes)
+    component = component_modes(rotor, modes)
     with one_thread():
         component = _with_turned_displacement(rotor, component)
         basis = OrthonormalBasis.of_rigid(
@@ -67,7 +64,7 @@ def reduce_rotor(
         ).extended(component, rotor.mass, rotor.stiffness, rank_tolerance)
         if basis.matrix.shape[1] == 0:
             raise ValueError("the reduced basis is empty: ask for at least one component mode")
-        attached = Attached(partial(_with_attachments, rotor, component, basis, rank_tolerance))
+        attached = cache(partial(_with_attachments, rotor, component, basis, rank_tolerance))
         return _reduced(rotor, component, basis, stress, keep_shapes, attached, network)
 
 
@@ -77,7 +74,7 @@ def _reduced(
     basis: OrthonormalBasis,
     stress: bool,
     keep_shapes: bool,
-    attached: Attached | None = None,
+    attached: Callable | None = None,
     network: sp.csr_array | None = None,
 ) -> ReducedRotor:
     center = rotor.center_of_mass
@@ -122,7 +119,7 @@ def _with_attachments(
     component: ModeBasis,
     basis: OrthonormalBasis,
     rank_tolerance: float,
-) -> tuple[ReducedRotor | None, np.ndarray | None]:
+) -> tuple[ReducedRotor, np.ndarray] | None:
     """Return the rotor with static responses beside its modes, and where its own columns are there.
 
     None if its static response is unknown.
@@ -135,7 +132,7 @@ def _with_attachments(
                 inertial_modes(rotor, component.matrix, basis.matrix, stiffness),
             )
         except ValueError:  # loose parts; the given modes may do without them
-            return None, None
+            return None
         finer = basis.extended(added, rotor.mass, rotor.stiffness, rank_tolerance)
         reduced = _reduced(rotor, _joined(component, added), finer, False, False)
         return reduced, finer.matrix.T @ basis.momenta
@@ -144,29 +141,6 @@ def _with_attachments(
 def _joined(first: ModeBasis, second: ModeBasis) -> ModeBasis:
     columns = np.hstack([first.matrix, second.matrix])
     return ModeBasis(columns, first.labels + second.labels, first.nodes)
-
-
-def _component_modes(rotor: FiniteElementRotor, modes: ModeSource) -> ModeBasis:
-    if isinstance(modes, ModeBasis):
-        matrices.check_same_mesh(rotor.nodes, modes.nodes)
-        return modes
-    if isinstance(modes, FEMinterface):
-        return fem_interface_modes(rotor, modes)
-    if isinstance(modes, np.ndarray) and modes.ndim == 0 and modes.dtype.kind in "iu":
-        modes = int(modes)
-    if isinstance(modes, np.ndarray):
-        columns = checks.array(modes, "modes", shape=(rotor.nodes.size, None))
-        labels = tuple(f"column {i + 1}" for i in range(columns.shape[1]))
-        return ModeBasis(columns, labels, nodes=rotor.nodes)
-    if isinstance(modes, (int, np.integer)) and not isinstance(modes, bool):
-        count = checks.count(modes, "modes")
-        if count == 0:  # a rigid rotor
-            return ModeBasis(np.zeros((rotor.nodes.size, 0)), (), nodes=rotor.nodes)
-        return free_modes(rotor, count)
-    raise TypeError(
-        f"modes: expected a number of free eigenmodes, a ModeBasis, a FEMinterface with modes, or "
-        f"an array of displacement columns, got {checks.shown(modes)}"
-    )
 
 
 def _rigid_motions(

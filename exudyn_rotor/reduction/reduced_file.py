@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
+from functools import partial
 from os import PathLike
 from typing import Any, TypeVar
 
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.reduction.attached import Attached
 from exudyn_rotor.reduction.fields import Centrifugal, ModeKind, ModeShapes, ReducedInterface
 from exudyn_rotor.storage import Entries, read_arrays, write_arrays
 from exudyn_rotor.theory.axis import SpinAxis
@@ -25,7 +25,6 @@ _SHAPES = ("nodes", "matrix")
 _CENTRIFUGAL = ("displacement", "stress", "constant_stress")
 _ATTACHED = "attached."
 _IN_ATTACHED = "in_attached"
-_ROUNDING = 1e-8  # of the largest eigenvalue: above the rounding of sums, far below a wrong matrix
 
 
 def save_reduced(rotor: Rotor, path: str | PathLike) -> None:
@@ -51,7 +50,7 @@ def _entries(rotor: Rotor) -> dict[str, object]:
     if rotor.with_attachments is not None:
         added = _entries(rotor.with_attachments)
         data |= {_ATTACHED + key: value for key, value in added.items()}
-        data |= {} if rotor.in_attached is None else {_IN_ATTACHED: rotor.in_attached}
+        data[_IN_ATTACHED] = rotor.in_attached
     return data
 
 
@@ -64,14 +63,7 @@ def _given(group: str, owner: object, names: tuple[str, ...]) -> dict[str, objec
 def load_reduced(path: str | PathLike, make: Callable[..., Rotor]) -> Rotor:
     """Read a rotor from `path`; `make` is the class :class:`ReducedRotor`.
 
-    Raises
-    ------
-    OSError
-        When there is no such file.
-    ValueError
-        When the file is not a reduced rotor of this package, is damaged, or does not describe a
-        rotor: wrong names, types, shapes, values that are not finite, matrices that are not
-        symmetric or not definite.
+    OSError when there is no such file; ValueError when it is damaged or describes no reduced rotor.
     """
     entries = Entries(read_arrays(path, _KIND))
     try:
@@ -99,29 +91,21 @@ def _fields(entries: Entries, make: Callable[..., Rotor]) -> dict[str, Any]:
             name: _interface(entries.group(f"interface{index}."))
             for index, name in enumerate(entries.words("interface_names"))
         },
-        "mode_mass": _definite(entries.array("mode_mass"), "mode_mass"),
+        "mode_mass": entries.array("mode_mass"),
         "dropped": entries.words("dropped", unique=False),
         "grounded": entries.flag("grounded"),
         "shapes": _shapes(entries.group("shapes.")),
         "centrifugal": _centrifugal(entries.group("centrifugal.")),
     }
     if attached:
-        columns = entries.arrays(_IN_ATTACHED, optional=True).get(_IN_ATTACHED)
-        fields["attached"] = _attached(make(**_fields(attached, make)), columns, fields)
+        finer = make(**_fields(attached, make))
+        shape = finer.size, fields["invariants"].size
+        columns = checks.array(entries.array(_IN_ATTACHED), _IN_ATTACHED, shape=shape)
+        if finer.interfaces.keys() != fields["interfaces"].keys():
+            raise ValueError("with_attachments: needs the interfaces of the rotor")
+        fields["attached"] = partial(tuple, (finer, columns))
     attached.close()
     return fields
-
-
-def _attached(rotor: Rotor, columns: np.ndarray | None, fields: Mapping[str, Any]) -> Attached:
-    """Return the finer rotor, if it fits what the file says of the rotor itself."""
-    if rotor.interfaces.keys() != fields["interfaces"].keys():
-        raise ValueError("with_attachments: needs the interfaces of the rotor")
-    size = fields["invariants"].size
-    if columns is not None and columns.shape != (rotor.size, size):
-        raise ValueError(
-            f"in_attached: needs the shape ({rotor.size}, {size}), got {columns.shape}"
-        )
-    return Attached.known(rotor, columns)
 
 
 def _kinds(names: tuple[str, ...]) -> tuple[ModeKind, ...]:
@@ -135,9 +119,6 @@ def _invariants(entries: Entries) -> Invariants:
         **entries.arrays(*_INVARIANTS),
         **entries.arrays(*_OPTIONAL_INVARIANTS, optional=True),
     )
-    for name in ("K", "C", "J", "K4", "H"):
-        if getattr(invariants, name) is not None:
-            _definite(getattr(invariants, name), f"invariants.{name}")
     entries.close()
     return invariants
 
@@ -170,11 +151,3 @@ def _centrifugal(entries: Entries) -> Centrifugal | None:
     )
     entries.close()
     return fields
-
-
-def _definite(matrix: np.ndarray, name: str) -> np.ndarray:
-    """Return a symmetric matrix without negative eigenvalues, but for rounding."""
-    values = np.linalg.eigvalsh(matrix)
-    if values.size and values[0] < -_ROUNDING * np.abs(values).max():
-        raise ValueError(f"{name}: has the negative eigenvalue {values[0]:.4g}")
-    return matrix

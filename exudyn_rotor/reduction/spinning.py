@@ -10,10 +10,8 @@ import scipy.sparse as sp
 from exudyn_rotor import checks
 from exudyn_rotor.reduction.component import ModeBasis, check_count, check_rotor, free_modes
 from exudyn_rotor.solid.rotor import FiniteElementRotor
-from exudyn_rotor.solvers import lanczos
-from exudyn_rotor.solvers.choice import way_of
-from exudyn_rotor.solvers.inertia_relief import InertiaRelief
-from exudyn_rotor.solvers.modes import lowest_modes
+from exudyn_rotor.solvers import modes as eigen
+from exudyn_rotor.solvers.inertia_relief import InertiaRelief, Way
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.nodal import block_diagonal
 from exudyn_rotor.theory.spin_terms import SpinTerms
@@ -121,17 +119,17 @@ def _modes_at(
     shifted = sp.csr_array(stiffness + 2.0 * speed**2 * rotor.mass)
     try:
         held = np.zeros((shifted.shape[0], 0))
-        inverse = InertiaRelief(shifted, rotor.mass, held, way_of(rotor))
+        inverse = InertiaRelief(shifted, rotor.mass, held, Way.of(rotor))
     except ValueError as error:
         raise ValueError(
             f"at {speed:.6g} rad/s the compression by the static stress makes the rotor buckle "
             f"({error}); leave this speed out"
         ) from error
-    if lanczos.is_small(shifted.shape[0], wanted):
-        _, modes = lanczos.dense_modes(shifted.toarray(), rotor.mass.toarray(), wanted)
+    if eigen.is_small(shifted.shape[0], wanted):
+        _, modes = eigen.dense_modes(shifted.toarray(), rotor.mass.toarray(), wanted)
     else:
-        _, modes = lowest_modes(shifted, rotor.mass, inverse, wanted, tolerance)
-    modes = lanczos.with_fixed_sign(modes)
+        _, modes = eigen.lowest_modes(shifted, rotor.mass, inverse, wanted, tolerance)
+    modes = eigen.with_fixed_sign(modes)
     forces = terms.G @ modes
     # (ẽφ)ᵀMẽφ, the share of a mode's energy that moves across e
     turned = block_diagonal(rotor.axis.skew, rotor.node_count) @ modes

@@ -22,8 +22,7 @@ from exudyn_rotor.solid.point_mass import PointMass, add_nodal_mass
 from exudyn_rotor.solid.rigid import count_rigid_motions, rigid_basis
 from exudyn_rotor.solid.rigid_disc import RigidDisc, disc_on
 from exudyn_rotor.solid.section import outer_section
-from exudyn_rotor.solvers.choice import SOLVERS
-from exudyn_rotor.solvers.inertia_relief import free_rigid_motions
+from exudyn_rotor.solvers.inertia_relief import SOLVERS, free_rigid_motions
 from exudyn_rotor.theory.axis import SpinAxis
 
 AxisLike = SpinAxis | str | ArrayLike

@@ -45,7 +45,7 @@ from exudyn_rotor import (
     stress_history,
     unbalance_response,
 )
-from exudyn_rotor.solvers import pardiso
+from exudyn_rotor.solvers import factor
 
 LAMINAR = {
     "radius": 0.1, "length": 0.05, "clearance": 3e-4, "pressure_drop": 1.2e6, "density": 1000.0,
@@ -280,8 +280,8 @@ def curved_elements(_):
 
 # place of every ``warnings.warn`` (file:function): what makes it fire, kind, part of its text
 PLACES = {
-    "solvers/pardiso.py:tell_of_mkl": (
-        lambda _: pardiso.tell_of_mkl.__wrapped__(), UserWarning, r"exudyn-rotor\[mkl\]"),
+    "solvers/factor.py:_tell_of_mkl": (
+        lambda _: factor._tell_of_mkl.__wrapped__(), UserWarning, r"exudyn-rotor\[mkl\]"),
     "bearings/annular_seal.py:__post_init__": (
         lambda _: AnnularSeal(interface="a", **LAMINAR),
         UserWarning, "may be laminar"),
@@ -291,7 +291,7 @@ PLACES = {
         stress_beyond_yield, UserWarning, "above yield_stress"),
     "multibody/rotor/sensors.py:_warn_of_static_stress": (
         native_stress_of_a_prestressed_rotor, UserWarning, "stress of the modes alone"),
-    "reduction/mode_pairs.py:lowest_with_pairs": (
+    "reduction/component.py:lowest_with_pairs": (
         lambda _: disc_rotor().reduce(1), UserWarning, "one of a pair in two planes"),
     "strength/field.py:warn_without_static": (
         stress_at_speed_without_prestress, UserWarning, "without the static centrifugal stress"),

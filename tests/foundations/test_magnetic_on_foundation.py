@@ -27,7 +27,7 @@ from exudyn_rotor import (
     sensitivity,
     stability,
 )
-from exudyn_rotor.reduction.driven import without_spin
+from exudyn_rotor.reduction.selection import without_spin
 
 AXIAL = Support("right", np.diag([0.0, 0.0, 5e5]), 0.0, np.diag([0.0, 0.0, 4e3]))
 OWN = (1.5e6, 4e6)

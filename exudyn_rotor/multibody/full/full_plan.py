@@ -18,8 +18,7 @@ from exudyn_rotor.prestress.static_solution import relief_rotations
 from exudyn_rotor.solid.clamp import clamped_coordinates
 from exudyn_rotor.solid.damping import sparse_damping
 from exudyn_rotor.solid_rotor import SolidRotor
-from exudyn_rotor.solvers.choice import estimated_fill
-from exudyn_rotor.solvers.memory import TooLittleMemoryError, available_memory
+from exudyn_rotor.solvers.factor import TooLittleMemoryError, available_memory, factor_entries
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.full_motion import (
     Conditions,
@@ -40,8 +39,9 @@ _PER_ENTRY, _PER_FACTOR_ENTRY = 300.0, 22.0
 
 def needed_bytes(rotor: SolidRotor) -> float:
     """Return about what a full body takes in an implicit run, beside the rotor itself [bytes]."""
-    fill = estimated_fill(3 * rotor.node_count)
-    return _PER_ENTRY * rotor.stiffness.nnz + _PER_FACTOR_ENTRY * fill.entries
+    return _PER_ENTRY * rotor.stiffness.nnz + _PER_FACTOR_ENTRY * factor_entries(
+        3 * rotor.node_count
+    )
 
 
 def check_memory(rotor: SolidRotor) -> None:
