@@ -197,7 +197,7 @@ class Measures:
         """Return the share of the stiffening that is left out, as a relative change of frequency.
 
         Half of its energy over that of the motion; without a prestress by the estimate of
-        :mod:`exudyn_rotor.prestress.estimate` or, where there is none, ω² per unit of modal mass.
+        :mod:`exudyn_rotor.prestress.carrying` or, where there is none, ω² per unit of modal mass.
         """
         inv, level = self.invariants, self.body.stiffening
         if level == "full":

@@ -43,7 +43,6 @@ from exudyn_rotor.prestress.given_loads import (
     nodal_loads,
     support_forces,
 )
-from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.rotor import FiniteElementRotor, check_unstressed
@@ -105,7 +104,7 @@ def static_prestress(
         rest_stress = _in_equilibrium(rotor, rest_stress, springback)
         state = state.stressed(constant)
 
-    load = centrifugal_load(rotor)
+    load = rotor.centrifugal_load
     displacement, matrix = state.stiffening(load)
     initial = None
     if initial_displacement:
@@ -131,7 +130,7 @@ def static_prestress(
     return Prestress(
         matrix=matrix,
         nodes=rotor.nodes,
-        euler=state.stiffening(euler_load(rotor))[1] if euler else None,
+        euler=state.stiffening(rotor.euler_load)[1] if euler else None,
         displacement=displacement,
         stress=by_spin,
         constant=constant,
@@ -154,16 +153,6 @@ def _check_alone(clamped: Sequence[str], initial_displacement: bool, given: bool
         )
 
 
-def centrifugal_load(rotor: FiniteElementRotor) -> np.ndarray:
-    """Return ``f_c = M x_⊥``, the centrifugal nodal load per ω², shape (3n,)."""
-    return rotor.mass @ rotor.axis.radial(rotor.nodes).ravel()
-
-
-def euler_load(rotor: FiniteElementRotor) -> np.ndarray:
-    """Return ``−M ẽx``, the Euler nodal load per ω̇, shape (3n,)."""
-    return -rotor.mass @ np.cross(rotor.axis.direction, rotor.nodes - rotor.axis.point).ravel()
-
-
 def relief_rotations(rotor: FiniteElementRotor) -> np.ndarray:
     """Return the angular accelerations of inertia relief per ω² and per ω̇, shape (2, 3).
 
@@ -174,10 +163,10 @@ def relief_rotations(rotor: FiniteElementRotor) -> np.ndarray:
     if not carried.balanced:
         return np.zeros((2, 3))
     free = free_motions_of(rotor)
-    by_spin = centrifugal_load(rotor)
+    by_spin = rotor.centrifugal_load
     if carried.reactions is not None:
         by_spin = by_spin + carried.reactions
-    loads = np.stack([by_spin, euler_load(rotor)])
+    loads = np.stack([by_spin, rotor.euler_load])
     turns = rotations(rotor.nodes, rotor.center_of_mass)
     inertia = turns.T @ (rotor.mass @ turns)
     momentum = turns.T @ (rotor.mass @ (free @ (free.T @ loads.T)))
@@ -189,10 +178,7 @@ def relief_under_stress(
 ) -> InertiaRelief:
     """Return the elastic inverse of a stiffness with a stress at rest in it.
 
-    Raises
-    ------
-    ValueError
-        If it is not positive definite but for the `free` rigid motions: the rotor buckles.
+    ValueError if it is not positive definite but for the `free` rigid motions: the rotor buckles.
     """
     try:
         return InertiaRelief(stiffness, mass, free, way)
@@ -207,18 +193,14 @@ def relief_under_stress(
 class _StaticState:
     """What takes up static loads: the rotor, with a hub, and with a stress at rest or none.
 
-    `supported` is the rotor with the hub's nodes held, `stiffness` that of the rotor itself.
+    `supported` is the rotor with the nodes `hub` held, `stiffness` that of the rotor itself.
     """
 
     rotor: FiniteElementRotor
     supported: FiniteElementRotor
+    hub: np.ndarray
     stiffness: sp.csr_array
     relief: InertiaRelief
-
-    @property
-    def hub(self) -> np.ndarray:
-        """Nodes that the hub holds."""
-        return np.setdiff1d(self.supported.elements.held, self.rotor.elements.held)
 
     @property
     def rigid(self) -> np.ndarray:
@@ -227,17 +209,17 @@ class _StaticState:
 
     def stressed(self, constant: sp.csr_array) -> _StaticState:
         """Return the state with the stiffness of a stress at rest, which acts on every load."""
-        free = matrices.without_nodes(constant, self.supported.elements.held)
-        held = sp.csr_array(self.supported.stiffness + free)
+        free = self.supported.elements.free
+        added = constant if free is None else free @ constant @ free
+        held = sp.csr_array(self.supported.stiffness + added)
         relief = relief_under_stress(held, self.rotor.mass, self.relief.rigid, Way.of(self.rotor))
         return replace(self, stiffness=self.stiffness + constant, relief=relief)
 
     def solve(self, load: np.ndarray) -> np.ndarray:
         """Return the static displacement (3n,)."""
-        displacement = self.relief.solve(load)
+        displacement, free = self.relief.solve(load), self.supported.elements.free
         # the stiff springs of `clamped` give way a little
-        displacement.reshape(-1, 3)[self.supported.elements.held] = 0.0
-        return displacement
+        return displacement if free is None else free @ displacement
 
     def stiffening(self, load: np.ndarray) -> tuple[np.ndarray, sp.csr_array]:
         """Return the displacement (3n,) of a load, and K_G with what the hub's forces add."""
@@ -253,7 +235,9 @@ class _StaticState:
 
 def _support(rotor: FiniteElementRotor, clamped: Sequence[str]) -> _StaticState:
     supported = rotor.clamped(clamped) if clamped else rotor
-    return _StaticState(rotor, supported, rotor.stiffness, inertia_relief(supported))
+    hub = [rotor.interfaces[name].nodes for name in clamped]
+    nodes = np.unique(np.concatenate([np.zeros(0, dtype=int), *hub]))
+    return _StaticState(rotor, supported, nodes, rotor.stiffness, inertia_relief(supported))
 
 
 def _hub_stiffness(rotor: FiniteElementRotor, hub: np.ndarray, forces: np.ndarray) -> sp.csr_array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache, partial
 
@@ -13,12 +13,17 @@ from exudyn.FEM import FEMinterface
 
 from exudyn_rotor import checks
 from exudyn_rotor.calls import one_thread
-from exudyn_rotor.prestress.carrying import with_chosen_prestress
-from exudyn_rotor.prestress.estimate import estimated_stiffness
+from exudyn_rotor.prestress.carrying import estimated_stiffness, with_chosen_prestress
 from exudyn_rotor.prestress.static_solution import relief_rotations
 from exudyn_rotor.reduction.attachment import attachment_modes, inertial_modes
 from exudyn_rotor.reduction.basis import OrthonormalBasis, rigid_columns
-from exudyn_rotor.reduction.component import ModeBasis, component_modes
+from exudyn_rotor.reduction.component import (
+    ModeBasis,
+    component_modes,
+    free_modes,
+    numbered,
+    unit_columns,
+)
 from exudyn_rotor.reduction.fields import (
     RIGID_KINDS,
     Centrifugal,
@@ -29,11 +34,13 @@ from exudyn_rotor.reduction.fields import (
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.rotor import FiniteElementRotor
+from exudyn_rotor.solvers.inertia_relief import free_motions_of, inertia_relief
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.nodal import rotations, translations
 from exudyn_rotor.theory.stiffening import with_prestress
 
 _UNRESISTED = (ModeKind.TRANSLATION_1, ModeKind.TRANSLATION_2, ModeKind.AXIAL)
+_FREE_MODES = 12  # beside static ones, for what a spin adds
 _NO_TURN = 1e-9  # of the largest: what rounding leaves of the rotation of a translation
 
 ModeSource = int | ModeBasis | FEMinterface | np.ndarray
@@ -66,6 +73,31 @@ def reduce_rotor(
             raise ValueError("the reduced basis is empty: ask for at least one component mode")
         attached = cache(partial(_with_attachments, rotor, component, basis, rank_tolerance))
         return _reduced(rotor, component, basis, stress, keep_shapes, attached, network)
+
+
+def reduced_for_loads(
+    rotor: FiniteElementRotor, nodes: Sequence[int], *, spins: bool, stress: bool
+) -> ReducedRotor:
+    """Return the rotor with its static responses to loads at interfaces and `nodes`.
+
+    Its deflection under these loads is that of the solid model. One that `spins` has free modes,
+    too, and the static centrifugal displacement. ValueError if it has loose parts.
+    """
+    columns = [attachment_modes(rotor, np.zeros((rotor.nodes.size, 0))).matrix]
+    loads = [np.eye(1, rotor.nodes.size, 3 * n + i)[0] for n in nodes for i in range(3)]
+    if rotor.grounded:
+        loads += list((rotor.mass @ translations(rotor.node_count)).T)
+    if spins:
+        loads.append(rotor.centrifugal_load)
+    if loads:
+        columns.append(inertia_relief(rotor).solve(np.column_stack(loads)))
+    if spins:
+        most = rotor.nodes.size - free_motions_of(rotor).shape[1]
+        columns.append(free_modes(rotor, min(_FREE_MODES, most)).matrix)
+    matrix = unit_columns(rotor, np.hstack(columns))
+    known = None if spins or rotor.carried_prestress is not None else False
+    basis = ModeBasis(matrix, numbered("static mode", matrix.shape[1]), rotor.nodes)
+    return reduce_rotor(rotor, basis, stress=stress, prestress=known)
 
 
 def _reduced(

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
 
+from exudyn_rotor import checks
 from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.shapes import KINDS, ElementKind, Rule
 
@@ -60,10 +61,8 @@ class SolidElements:
         Lamé parameters λ, μ of every region [Pa].
     densities : ndarray, shape (regions,)
         [kg/m³].
-    held : ndarray of int, optional
-        Nodes that are clamped: their rows and columns are zero in every matrix.
     free : scipy.sparse.csr_array, optional
-        Takes held directions of nodes out of displacements, shape (3n, 3n).
+        Takes held directions of clamped nodes out of displacements, shape (3n, 3n).
     """
 
     nodes: np.ndarray
@@ -71,7 +70,6 @@ class SolidElements:
     materials: Sequence[str]
     lame: np.ndarray
     densities: np.ndarray
-    held: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     free: sp.csr_array | None = None
 
     def mass_matrix(self, factors: np.ndarray | None = None) -> sp.csr_array:
@@ -94,23 +92,17 @@ class SolidElements:
         return self._without_held(self._of_strains(None, None, scale * self.lame))
 
     def geometric_stiffness(self, displacement: np.ndarray) -> sp.csr_array:
-        """Return ``vᵀ K_G u = ∫ σ⁰ : (∇uᵀ∇v) dV`` with σ⁰ of a displacement, shape (3n, 3n).
+        """Return ``vᵀ K_G u = ∫ σ⁰ : (∇uᵀ∇v) dV`` with σ⁰ of a displacement (3n,).
 
-        Parameters
-        ----------
-        displacement : ndarray, shape (3n,)
-            Static displacement u⁰, mesh axes; σ⁰ is Hooke's stress of its linear strain.
+        σ⁰ is Hooke's stress of its linear strain.
         """
-        static = self._nodal("displacement", displacement, (self.nodes.size,)).reshape(-1, 3)
+        static = self._static(displacement)
         return self._without_held(self._of_stress(lambda part: part.stress(static, self.lame)))
 
     def geometric_stiffness_of_stress(self, stress: np.ndarray) -> sp.csr_array:
-        """Return the same of a nodal stress field, interpolated by the shape functions.
+        """Return the same of a nodal stress (n, 6), interpolated by the shape functions.
 
-        Parameters
-        ----------
-        stress : ndarray, shape (n, 6)
-            Components xx, yy, zz, yz, xz, xy in mesh axes [Pa].
+        Components xx, yy, zz, yz, xz, xy in mesh axes [Pa].
         """
         return self._without_held(self._of_nodal_stress(stress))
 
@@ -145,27 +137,9 @@ class SolidElements:
         Each element's stress is that at its integration points, linear between them; a node gets
         the mean of its elements. In a curved tetrahedron that has two faces on a smooth surface,
         which is flat where they meet, the stress grows without bound there. At a node shared by
-        two materials this is the mean over both.
-
-        Parameters
-        ----------
-        displacements : ndarray, shape (3n, k)
-
-        Returns
-        -------
-        ndarray, shape (n, 6, k)
-            Components xx, yy, zz, yz, xz, xy in mesh axes [Pa].
-
-        Raises
-        ------
-        ValueError
-            If the columns do not have three entries for every node.
+        two materials this is the mean over both. Components xx, yy, zz, yz, xz, xy in mesh axes.
         """
-        columns = np.asarray(displacements, dtype=float)
-        if columns.ndim != 2 or len(columns) != self.nodes.size:
-            raise ValueError(
-                f"stress: needs columns of shape ({self.nodes.size}, k), got {columns.shape}"
-            )
+        columns = checks.array(displacements, "stress: columns", shape=(self.nodes.size, None))
         result = np.zeros((len(self.nodes), 6, columns.shape[1]))
         counts = np.zeros(len(self.nodes))
         for block in self.blocks:
@@ -217,11 +191,7 @@ class SolidElements:
             for i, name in enumerate(self.materials)
         ]
 
-    def holding(self, nodes: np.ndarray) -> SolidElements:
-        """Return the elements with more nodes clamped."""
-        return replace(self, held=np.union1d(self.held, nodes))
-
-    def holding_directions(self, free: sp.csr_array) -> SolidElements:
+    def holding(self, free: sp.csr_array) -> SolidElements:
         """Return the elements with more directions held, which the projection `free` takes out."""
         return replace(self, free=free if self.free is None else sp.csr_array(self.free @ free))
 
@@ -267,7 +237,7 @@ class SolidElements:
         return self._assembled(entries, 3)
 
     def _of_nodal_stress(self, stress: np.ndarray) -> sp.csr_array:
-        values = self._nodal("stress", stress, (len(self.nodes), 6))
+        values = checks.array(stress, "stress", "Pa", shape=(len(self.nodes), 6))
         return self._of_stress(lambda part: part.interpolated(values)[..., _TENSOR])
 
     def _of_stress(self, stress: Callable[[_Part], np.ndarray]) -> sp.csr_array:
@@ -315,24 +285,10 @@ class SolidElements:
             yield _Part(nodes, regions, np.abs(sizes) * weights, values, across)
 
     def _static(self, displacement: np.ndarray) -> np.ndarray:
-        return self._nodal("displacement", displacement, (self.nodes.size,)).reshape(-1, 3)
-
-    def _nodal(self, label: str, values: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
-        """Check a nodal field."""
-        values = np.asarray(values, dtype=float)
-        if values.shape != shape:
-            raise ValueError(
-                f"{label}: the shape must be {shape} for the rotor's {len(self.nodes)} nodes, got "
-                f"{values.shape}; it may belong to another mesh"
-            )
-        if not np.all(np.isfinite(values)):
-            raise ValueError(f"{label}: has entries that are not finite")
-        return values
+        return checks.array(displacement, "displacement", shape=(self.nodes.size,)).reshape(-1, 3)
 
     def _without_held(self, matrix: sp.csr_array) -> sp.csr_array:
-        if self.free is not None:
-            matrix = sp.csr_array(self.free.T @ matrix @ self.free)
-        return matrix if self.held.size == 0 else matrices.without_nodes(matrix, self.held)
+        return matrix if self.free is None else sp.csr_array(self.free.T @ matrix @ self.free)
 
 
 @dataclass(frozen=True, eq=False)

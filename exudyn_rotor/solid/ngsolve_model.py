@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -13,18 +12,12 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.solid import units
 from exudyn_rotor.solid.elements import Block, SolidElements
+from exudyn_rotor.solid.fem_interface import is_named
 from exudyn_rotor.solid.model import FiniteElementModel, NodeSet
 from exudyn_rotor.solid.surface import area_weights
 
-# Face names that Netgen invents for faces without a name.
-_INVENTED_NAME = re.compile(r"(default|bc_\d+)?")
 _TETRAHEDRA = {20: 4, 21: 10}  # Netgen's types of elements, and their nodes
 _MESHIO_ORDER = [0, 1, 2, 3, 4, 7, 5, 6, 8, 9]  # of Netgen's nodes
-
-
-def is_named(face: str) -> bool:
-    """Tell whether a user gave this face name, rather than Netgen."""
-    return _INVENTED_NAME.fullmatch(face) is None
 
 
 def assemble_model(

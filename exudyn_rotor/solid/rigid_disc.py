@@ -114,9 +114,6 @@ class RigidDisc:
         fields = np.column_stack([np.ones(len(arms)), arms])
         return np.linalg.pinv(fields, rcond=_ROUNDING)
 
-    def _checked_count(self, node_count: int) -> int:
-        return checks.count(node_count, "node_count", least=int(self.nodes.max()) + 1)
-
     def _check_arms(self) -> None:
         arms = (self.positions - self.center)[self._some]
         if np.linalg.matrix_rank(self._rigid(self._some), tol=_ROUNDING) < 6:
@@ -142,7 +139,7 @@ class RigidDisc:
 
     def mass_matrix(self, node_count: int) -> sp.csr_array:
         """Return what the disc adds to the mass matrix, shape (3n, 3n) [kg]."""
-        node_count = self._checked_count(node_count)
+        checks.count(node_count, "node_count", least=int(self.nodes.max()) + 1)
         a, b = self._affine[0], self._affine[1:]
         scalar = self.mass * np.outer(a, a) + b.T @ self.second_moments @ b
         some = self.nodes[self._some]
@@ -153,7 +150,7 @@ class RigidDisc:
 
     def stiffness_matrix(self, node_count: int) -> sp.csr_array:
         """Return the springs that hold the section rigid, shape (3n, 3n) [N/m]."""
-        node_count = self._checked_count(node_count)
+        checks.count(node_count, "node_count", least=int(self.nodes.max()) + 1)
         every = np.arange(self.nodes.size)
         follow = self._rigid(every) @ np.linalg.pinv(self._rigid(self._some))
         identity = sp.eye_array(3 * self.nodes.size, format="csr")

@@ -17,9 +17,8 @@ from exudyn_rotor.solid.clamp import checked_directions, held_directions, holdin
 from exudyn_rotor.solid.elements import SolidElements
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.model import FiniteElementModel, StressRecovery
-from exudyn_rotor.solid.parts import check_connected
 from exudyn_rotor.solid.point_mass import PointMass, add_nodal_mass
-from exudyn_rotor.solid.rigid import count_rigid_motions, rigid_basis
+from exudyn_rotor.solid.rigid import check_connected, count_rigid_motions, rigid_basis
 from exudyn_rotor.solid.rigid_disc import RigidDisc, disc_on
 from exudyn_rotor.solid.section import outer_section
 from exudyn_rotor.solvers.inertia_relief import SOLVERS, free_rigid_motions
@@ -135,6 +134,16 @@ class FiniteElementRotor:
         return self.rigid_motions < 6
 
     @property
+    def centrifugal_load(self) -> np.ndarray:
+        """Centrifugal nodal load ``f_c = M x_⊥`` per ω², shape (3n,) [N s²]."""
+        return self.mass @ self.axis.radial(self.nodes).ravel()
+
+    @property
+    def euler_load(self) -> np.ndarray:
+        """Euler nodal load ``−M ẽx`` per ω̇, shape (3n,) [N s²]."""
+        return -self.mass @ np.cross(self.axis.direction, self.nodes - self.axis.point).ravel()
+
+    @property
     def mass_kind(self) -> str:
         """'lumped' if the mass matrix is diagonal, else 'consistent'."""
         return "lumped" if self.mass.nnz == np.count_nonzero(self.mass.diagonal()) else "consistent"
@@ -185,9 +194,7 @@ class FiniteElementRotor:
         ValueError
             If the name is taken, or nodes or weights are not valid.
         """
-        if checks.label(name, "name") in self.interfaces:
-            raise ValueError(f"interface {name!r} exists already; choose another name")
-        added = _interface(name, self.nodes, nodes, weights)
+        added = _interface(self._new_name(name), self.nodes, nodes, weights)
         return replace(self, interfaces={**self.interfaces, name: added})
 
     def interface_at(self: Rotor, name: str, position: float, width: float) -> Rotor:
@@ -214,9 +221,13 @@ class FiniteElementRotor:
         added = self._section(name, position, width)
         return replace(self, interfaces={**self.interfaces, name: added})
 
-    def _section(self, name: str, position: float, width: float) -> Interface:
+    def _new_name(self, name: str) -> str:
         if checks.label(name, "name") in self.interfaces:
             raise ValueError(f"interface {name!r} exists already; choose another name")
+        return name
+
+    def _section(self, name: str, position: float, width: float) -> Interface:
+        name = self._new_name(name)
         position = checks.number(position, "position", "m")
         width = checks.number(width, "width", "m", above=0.0)
         numbers, weights = outer_section(self.nodes, self.triangles, self.axis, position, width)
@@ -334,8 +345,7 @@ class FiniteElementRotor:
                 f"names: needs one interface or more of {list(self.interfaces)}, got none"
             )
         held = np.unique(np.concatenate([self.interfaces[name].nodes for name in names]))
-        holds_all = len(chosen) == 3
-        if holds_all and rigid_basis(self.nodes[held]).shape[1] < 6:
+        if len(chosen) == 3 and rigid_basis(self.nodes[held]).shape[1] < 6:
             raise ValueError(
                 f"clamped: the {held.size} nodes of {list(names)} lie on one line and cannot hold "
                 "rotations about it; clamp three nodes or more that do not"
@@ -346,21 +356,15 @@ class FiniteElementRotor:
         stiffness = matrices.frozen(
             sp.csr_array(free @ self.stiffness @ free + spring * (columns @ columns.T))
         )
-        elements = self.elements
-        if elements is not None:
-            elements = elements.holding(held) if holds_all else elements.holding_directions(free)
+        rigid = free_rigid_motions(self.nodes, self.mass, self.stiffness, self.rigid_motions)
+        sizes, most = (np.linalg.svd(X, compute_uv=False) for X in (columns.T @ rigid, rigid))
+        resisted = int(np.count_nonzero(sizes > 1e-9 * most.max(initial=0.0)))
         return replace(
             self,
             stiffness=stiffness,
-            rigid_motions=self._left_free(columns),
-            elements=elements,
+            rigid_motions=self.rigid_motions - resisted,
+            elements=None if self.elements is None else self.elements.holding(free),
         )
-
-    def _left_free(self, held: sp.csr_array) -> int:
-        """Return how many rigid motions stay free where the directions `held` (3n, d) are."""
-        free = free_rigid_motions(self.nodes, self.mass, self.stiffness, self.rigid_motions)
-        sizes, most = (np.linalg.svd(X, compute_uv=False) for X in (held.T @ free, free))
-        return self.rigid_motions - int(np.count_nonzero(sizes > 1e-9 * most.max(initial=0.0)))
 
     def __repr__(self) -> str:
         return (

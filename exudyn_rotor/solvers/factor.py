@@ -1,4 +1,4 @@
-"""One factorisation of a symmetric positive definite matrix for many solves, and its memory."""
+"""One factorisation of a symmetric positive definite matrix: its memory, solves and rounding."""
 
 from __future__ import annotations
 
@@ -43,8 +43,22 @@ _PER_ENTRY = 30.0
 _PARAMETERS = {1: 1, 2: 3, 10: 0}
 _POSITIVE_DEFINITE, _FACTORISE, _SOLVE = 2, 12, 33
 _NO_MEMORY = (-2, -9)
+# multiple of eps ‖K‖∞ ‖u‖, which was 1 to 5 times that for 15 000 to 200 000 coordinates
+_ROUNDING = 100.0
+_EPS = np.finfo(float).eps
 # limit and use of the control group of a container (Linux)
 _GROUP = "/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"
+
+
+def row_norm(matrix: sp.csr_array) -> float:
+    """Return the largest row sum of absolute values, ``‖A‖∞``."""
+    sizes = sp.csr_array((np.abs(matrix.data), matrix.indices, matrix.indptr), shape=matrix.shape)
+    return float((sizes @ np.ones(matrix.shape[1])).max(initial=0.0))
+
+
+def rounding_unit(stiffness: sp.csr_array, precision: float = _EPS) -> float:
+    """Return the rounding error to allow in ``K u`` for a displacement of norm 1 [N]."""
+    return _ROUNDING * precision * row_norm(stiffness)
 
 
 class NotPositiveDefiniteError(ValueError):

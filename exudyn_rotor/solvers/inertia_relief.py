@@ -18,8 +18,9 @@ from exudyn_rotor.solvers.factor import (
     available_memory,
     factor_bytes,
     has_pardiso,
+    rounding_unit,
+    row_norm,
 )
-from exudyn_rotor.solvers.modes import rounding_unit, row_norm
 from exudyn_rotor.solvers.two_level import TwoLevel, conjugate_gradients
 from exudyn_rotor.theory.nodal import rotations, translations
 

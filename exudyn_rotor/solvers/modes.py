@@ -11,26 +11,13 @@ import scipy.sparse.linalg as sla
 
 from exudyn_rotor.calls import one_thread
 from exudyn_rotor.solvers.davidson import Inverse, davidson_modes
-from exudyn_rotor.solvers.factor import DENSE_SIZE
+from exudyn_rotor.solvers.factor import DENSE_SIZE, rounding_unit
 
 Modes = tuple[np.ndarray, np.ndarray]
 _SEED = 4830498
 # share of ω² M φ that Lanczos iteration is asked to leave, and that any may leave
 _RESIDUAL, _RESIDUAL_LIMIT = 1e-7, 1e-6
 _EPS = np.finfo(float).eps
-# multiple of eps ‖K‖∞ ‖u‖, which was 1 to 5 times that for 15 000 to 200 000 coordinates
-_ROUNDING = 100.0
-
-
-def row_norm(matrix: sp.csr_array) -> float:
-    """Return the largest row sum of absolute values, ``‖A‖∞``."""
-    sizes = sp.csr_array((np.abs(matrix.data), matrix.indices, matrix.indptr), shape=matrix.shape)
-    return float((sizes @ np.ones(matrix.shape[1])).max(initial=0.0))
-
-
-def rounding_unit(stiffness: sp.csr_array, precision: float = _EPS) -> float:
-    """Return the rounding error to allow in ``K u`` for a displacement of norm 1 [N]."""
-    return _ROUNDING * precision * row_norm(stiffness)
 
 
 def lowest_modes(
