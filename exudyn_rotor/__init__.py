@@ -135,7 +135,6 @@ if TYPE_CHECKING:
     from exudyn_rotor.reduction.reduced_rotor import ReducedRotor as ReducedRotor
     from exudyn_rotor.reduction.selection import keep_modes as keep_modes
     from exudyn_rotor.reduction.selection import select_modes as select_modes
-    from exudyn_rotor.reduction.spinning import spinning_modes as spinning_modes
     from exudyn_rotor.results import Result as Result
     from exudyn_rotor.results import load_result as load_result
     from exudyn_rotor.ross import from_ross as from_ross
@@ -233,7 +232,6 @@ _NAMES = {
     "reduction.mean_axis": "use_mean_axis_modes",
     "reduction.reduced_rotor": "ReducedRotor",
     "reduction.selection": "keep_modes select_modes",
-    "reduction.spinning": "spinning_modes",
     "results": "Result load_result",
     "solid.carried_prestress": "Prestress",
     "solid.interface": "Interface",

@@ -65,7 +65,7 @@ class SolidRotor(FiniteElementRotor):
         Damping in proportion to the mass [N s/m], of the motion beside the free rigid ones; set
         by :meth:`with_damping`.
     structural_damping : scipy.sparse.csr_array or None
-        H = Σ η K [N/m] over the materials, of loss factors η; set by :meth:`with_damping`.
+        H = η K [N/m], of a loss factor η; set by :meth:`with_damping`.
     discs : tuple of RigidDisc
         What :meth:`add_disc` placed.
 
@@ -413,7 +413,6 @@ class SolidRotor(FiniteElementRotor):
         mass: float = 0.0,
         stiffness: float = 0.0,
         loss: float = 0.0,
-        materials: Mapping[str, Mapping[str, float]] | None = None,
     ) -> SolidRotor:
         """Return the rotor with damping of its own material added to what it has.
 
@@ -438,14 +437,11 @@ class SolidRotor(FiniteElementRotor):
             inside the stiffness matrix as well.
         loss : float, optional
             Loss factor η of structural damping, of the whole stiffness as well.
-        materials : mapping, optional
-            Region name of the mesh → ``{'mass': 1/s, 'stiffness': s, 'loss': η}``, one of them or
-            more: added to the above in this region. Only of a rotor from :meth:`from_ngsolve`.
 
         Raises
         ------
         TypeError, ValueError
-            If a factor is no number, or negative, or a region is unknown.
+            If a factor is no number, or negative.
 
         Examples
         --------
@@ -458,7 +454,7 @@ class SolidRotor(FiniteElementRotor):
         >>> float(damped.damping[0, 0])
         10.0
         """
-        return with_damping(self, mass, stiffness, loss, materials)
+        return with_damping(self, mass, stiffness, loss)
 
     def reduce(
         self,

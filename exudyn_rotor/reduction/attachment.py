@@ -27,8 +27,8 @@ import numpy as np
 
 from exudyn_rotor.reduction.basis import rigid_columns
 from exudyn_rotor.reduction.component import ModeBasis, numbered, unit_columns
-from exudyn_rotor.solid.clamp import clamped_coordinates
 from exudyn_rotor.solid.interface import Interface
+from exudyn_rotor.solid.rigid import clamped_coordinates
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers.inertia_relief import coordinates, held_inverse, inertia_relief
 from exudyn_rotor.theory.nodal import rotations, translations, turned

@@ -44,7 +44,7 @@ class Block:
 
 @dataclass(frozen=True, eq=False)
 class SolidElements:
-    """Elements of a model, for its matrices, those of a static field and of single materials.
+    """Elements of a model, for its matrices and those of a static field.
 
     All integrals of a static field use the integration points of the stiffness matrix. A stress
     field in discrete equilibrium then stays so: for a rotation ``a × x`` its geometric stiffness
@@ -72,24 +72,22 @@ class SolidElements:
     densities: np.ndarray
     free: sp.csr_array | None = None
 
-    def mass_matrix(self, factors: np.ndarray | None = None) -> sp.csr_array:
-        """Return the mass matrix (3n, 3n), with a factor for every region, shape (regions,)."""
-        densities = self.densities if factors is None else factors * self.densities
+    def mass_matrix(self) -> sp.csr_array:
+        """Return the mass matrix (3n, 3n)."""
 
         def entries(block: Block) -> Iterator[np.ndarray]:
             points = block.shape.mass_rule[0]
             values = block.shape.values(points)
             products = np.einsum("qi,qj->qij", values, values).reshape(len(points), -1)
             for part in self._parts(block, block.shape.mass_rule):
-                yield (densities[part.regions][:, None] * part.weights) @ products
+                yield (self.densities[part.regions][:, None] * part.weights) @ products
 
         matrix = self._assembled(entries, 1)
         return self._without_held(matrices.in_all_directions(matrix))
 
-    def stiffness_matrix(self, factors: np.ndarray | None = None) -> sp.csr_array:
-        """Return the stiffness matrix (3n, 3n), with a factor for every region."""
-        scale = 1.0 if factors is None else factors[:, None]
-        return self._without_held(self._of_strains(None, None, scale * self.lame))
+    def stiffness_matrix(self) -> sp.csr_array:
+        """Return the stiffness matrix (3n, 3n)."""
+        return self._without_held(self._of_strains(None, None))
 
     def geometric_stiffness(self, displacement: np.ndarray) -> sp.csr_array:
         """Return ``vᵀ K_G u = ∫ σ⁰ : (∇uᵀ∇v) dV`` with σ⁰ of a displacement (3n,).
@@ -120,7 +118,7 @@ class SolidElements:
         St. Venant–Kirchhoff elasticity in the direction u⁰, from ``W = ½ E : C : E`` with
         ``E = sym ∇u + ½ ∇uᵀ∇u``. Parameters as there.
         """
-        half = self._of_strains(self._static(displacement), None, self.lame)
+        half = self._of_strains(self._static(displacement), None)
         return self._without_held(sp.csr_array(half + half.T))
 
     def squared_displacement_stiffness(self, displacement: np.ndarray) -> sp.csr_array:
@@ -129,7 +127,7 @@ class SolidElements:
         Symbols and parameters of :meth:`initial_displacement_stiffness`.
         """
         static = self._static(displacement)
-        return self._without_held(self._of_strains(static, static, self.lame))
+        return self._without_held(self._of_strains(static, static))
 
     def nodal_stress(self, displacements: np.ndarray) -> np.ndarray:
         """Return the stress (n, 6, k) of displacement columns (3n, k).
@@ -216,9 +214,7 @@ class SolidElements:
         linear = sp.csr_array(sp.kron(means, sp.eye_array(3), format="csr"))
         return linear if self.free is None else sp.csr_array(self.free @ linear)
 
-    def _of_strains(
-        self, first: np.ndarray | None, second: np.ndarray | None, lame: np.ndarray
-    ) -> sp.csr_array:
+    def _of_strains(self, first: np.ndarray | None, second: np.ndarray | None) -> sp.csr_array:
         """Return ``∫ E(v) : C : E(u) dV``, of E = ε for None, else E₁ of nodal displacements."""
 
         def entries(block: Block) -> Iterator[np.ndarray]:
@@ -226,7 +222,7 @@ class SolidElements:
                 left = right = part.strains(first)
                 if second is not first:
                     right = part.strains(second)
-                right = _hooke(lame)[part.regions][:, None] @ right
+                right = _hooke(self.lame)[part.regions][:, None] @ right
                 right *= part.weights[..., None, None]
                 size = left.shape[3]
                 shape = (len(left), -1, size)

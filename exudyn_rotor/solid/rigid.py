@@ -7,7 +7,7 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import breadth_first_order, connected_components
 
 from exudyn_rotor.solid.elements import SolidElements
-from exudyn_rotor.theory.nodal import rotations, translations
+from exudyn_rotor.theory.nodal import coupled, rotations, translations
 
 # Limits of the relative residual ‖K r‖ / ‖ |K| |r| ‖ of a rigid motion r. Measured on meshes from
 # 15 000 to 108 000 coordinates, the same in SI and in mm and tonnes: a free motion leaves 1e-16;
@@ -20,6 +20,10 @@ HELD_ABOVE = 1e-5
 LOCALLY_HELD_ABOVE = 1e-12
 LOCAL_RATIO = 1e-3
 _LISTED = 6  # parts that a message describes
+# springs of clamped nodes over the largest diagonal entry of the stiffness: they move by less than
+# 1e-10 of the others, and dense eigenvalues, whose error is relative to the stiffest spring, keep
+# four digits; above a share of it no spring to the ground means anything else
+_SPRING, _STIFFER = 1e6, 1e4
 
 
 def rigid_basis(nodes: np.ndarray) -> np.ndarray:
@@ -164,3 +168,14 @@ def check_connected(
         f"{told}{', …' if len(parts) > _LISTED else ''}. Parts that touch are not connected by "
         f"that; {how}, or pass allow_parts=True if they are to move by themselves"
     )
+
+
+def holding_spring(stiffness: sp.csr_array) -> float:
+    """Return the spring [N/m] that holds clamped coordinates."""
+    return float(_SPRING * stiffness.diagonal()[~clamped_coordinates(stiffness)].max())
+
+
+def clamped_coordinates(stiffness: sp.csr_array) -> np.ndarray:
+    """Return which coordinates are clamped (3n,): those on nothing but a stiff spring."""
+    joined, diagonal = coupled(stiffness), stiffness.diagonal()
+    return ~joined & joined.any() & (diagonal > _STIFFER * diagonal[joined].max(initial=0.0))

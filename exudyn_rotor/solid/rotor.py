@@ -13,15 +13,19 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.solid import matrices, units
 from exudyn_rotor.solid.carried_prestress import Prestress
-from exudyn_rotor.solid.clamp import checked_directions, held_directions, holding_spring
 from exudyn_rotor.solid.elements import SolidElements
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.model import FiniteElementModel, StressRecovery
 from exudyn_rotor.solid.point_mass import PointMass, add_nodal_mass
-from exudyn_rotor.solid.rigid import check_connected, count_rigid_motions, rigid_basis
+from exudyn_rotor.solid.rigid import (
+    check_connected,
+    count_rigid_motions,
+    holding_spring,
+    rigid_basis,
+)
 from exudyn_rotor.solid.rigid_disc import RigidDisc, disc_on
 from exudyn_rotor.solid.section import outer_section
-from exudyn_rotor.solvers.inertia_relief import SOLVERS, free_rigid_motions
+from exudyn_rotor.solvers.inertia_relief import SOLVERS
 from exudyn_rotor.theory.axis import SpinAxis
 
 AxisLike = SpinAxis | str | ArrayLike
@@ -316,9 +320,7 @@ class FiniteElementRotor:
             moved[name] = interface.centered_on(self.axis.project(interface.center))
         return replace(self, interfaces={**self.interfaces, **moved})
 
-    def clamped(
-        self: Rotor, names: str | Sequence[str], directions: str | Sequence[str] | None = None
-    ) -> Rotor:
+    def clamped(self: Rotor, names: str | Sequence[str]) -> Rotor:
         """Return the rotor with all nodes of interfaces held fixed, e.g. a blade at its root.
 
         The rotor is then grounded in its own frame: it needs a frame whose motion is prescribed.
@@ -327,42 +329,33 @@ class FiniteElementRotor:
         Parameters
         ----------
         names : str or sequence of str
-        directions : str or sequence of str, optional
-            Hold these directions only: of {'x', 'y', 'z'}, mesh axes, or of {'radial',
-            'tangential', 'axial'} about the spin axis. All by default.
 
         Raises
         ------
         ValueError
-            If an interface or direction is unknown, none is given, all its nodes are on one line
-            and held in all directions, or the rotor carries a prestress.
+            If an interface is unknown, none is given, all its nodes are on one line, or the rotor
+            carries a prestress.
         """
         check_unstressed(self)
         names = checks.labels(names, "names", self.interfaces)
-        chosen = checked_directions(directions)
         if not names:
             raise ValueError(
                 f"names: needs one interface or more of {list(self.interfaces)}, got none"
             )
         held = np.unique(np.concatenate([self.interfaces[name].nodes for name in names]))
-        if len(chosen) == 3 and rigid_basis(self.nodes[held]).shape[1] < 6:
+        if rigid_basis(self.nodes[held]).shape[1] < 6:
             raise ValueError(
                 f"clamped: the {held.size} nodes of {list(names)} lie on one line and cannot hold "
                 "rotations about it; clamp three nodes or more that do not"
             )
-        columns = held_directions(self.nodes, self.axis, held, chosen)
-        free = sp.csr_array(sp.eye_array(self.nodes.size) - columns @ columns.T)
-        spring = holding_spring(columns, self.stiffness)
-        stiffness = matrices.frozen(
-            sp.csr_array(free @ self.stiffness @ free + spring * (columns @ columns.T))
-        )
-        rigid = free_rigid_motions(self.nodes, self.mass, self.stiffness, self.rigid_motions)
-        sizes, most = (np.linalg.svd(X, compute_uv=False) for X in (columns.T @ rigid, rigid))
-        resisted = int(np.count_nonzero(sizes > 1e-9 * most.max(initial=0.0)))
+        moves = np.ones(self.nodes.shape)
+        moves[held] = 0.0
+        free = sp.diags_array(moves.ravel(), format="csr")
+        springs = sp.diags_array((1.0 - moves.ravel()) * holding_spring(self.stiffness))
         return replace(
             self,
-            stiffness=stiffness,
-            rigid_motions=self.rigid_motions - resisted,
+            stiffness=matrices.frozen(sp.csr_array(free @ self.stiffness @ free + springs)),
+            rigid_motions=0,
             elements=None if self.elements is None else self.elements.holding(free),
         )
 

@@ -8,9 +8,8 @@ from tempfile import TemporaryDirectory
 import exudyn as exu
 import numpy as np
 import pytest
-from exudyn.FEM import FEMinterface
 from exudyn.itemInterface import LoadCoordinate, MarkerNodeCoordinate
-from models import STEEL, block_beam, disc_fem, disc_rotor
+from models import STEEL, block_beam, disc_rotor
 from point_rotors import ring_rotor
 from ross_models import example
 
@@ -181,20 +180,6 @@ def steady_motion_on_a_stop_that_opens(_):
     steady_state(body)
 
 
-def frame_held_by_modes(_):
-    fem = disc_fem()
-    held = FEMinterface()
-    for name in ("nodes", "massMatrix", "stiffnessMatrix"):
-        setattr(held, name, getattr(fem, name))
-    matrix = fem.modeBasis["matrix"].copy()
-    held.modeBasis = {"matrix": matrix - np.tile(np.eye(3), (len(matrix) // 3, 1)) @ matrix[:3]}
-    mbs = exu.SystemContainer().AddSystem()
-    mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", held, axis="z")
-    tilted = np.cross([1.0, 0.0, 0.0], fem.GetNodePositionsAsArray()).reshape(-1, 1)
-    held.modeBasis = {"matrix": matrix + tilted}
-    mbs.CreateFixedAxisFFRFReducedOrderObject("tilted", held, axis="z")
-
-
 def torque_on_a_tilt_of_the_node(beam, source=None):
     mbs = exu.SystemContainer().AddSystem()
     body = add_rotor(mbs, source or ring_rotor(0.1, 0.1, 2.0).reduce(0))
@@ -331,8 +316,6 @@ PLACES = {
         unstable_motion_on_rolling_bearings, UserWarning, "values .* the motion is unstable"),
     "evaluation/separation.py:_warn_of_speeds_left_out": (
         response_below_the_operating_range, UserWarning, "count, and the response is known from"),
-    "reduction/mean_axis.py:warn_of_held_frame": (
-        frame_held_by_modes, UserWarning, "use_mean_axis_modes"),
     "multibody/add_rotor.py:_add_reduced": (
         scene_of_a_lossy_rotor, UserWarning, "A scene runs without it"),
     "multibody/add_rotor.py:_add_solid": (

@@ -31,9 +31,9 @@ def both(rotor):
     return rotor.with_solver("direct"), rotor.with_solver("iterative")
 
 
-@pytest.mark.parametrize("held", [None, ("x", "y", "z"), ("axial",), ("radial", "tangential")])
+@pytest.mark.parametrize("held", [False, True])
 def test_modes_are_those_of_the_factor(cylinder, held):
-    rotor = cylinder if held is None else cylinder.clamped("left", held)
+    rotor = cylinder.clamped("left") if held else cylinder
     expected, found = (free_modes(one, 7) for one in both(rotor))
     np.testing.assert_allclose(found.frequencies, expected.frequencies, rtol=SAME_FREQUENCY)
 

@@ -48,7 +48,7 @@ def import_model(
     if isinstance(leave_out, str):
         raise TypeError(f"leave_out: needs a list of names, got the text {leave_out!r}")
     names = checks.items(leave_out, "leave_out", "names")
-    refusals = Refusals("mesh", [checks.label(name, "leave_out") for name in names])
+    refusals = Refusals([checks.label(name, "leave_out") for name in names])
     data = _read(mesh, refusals)
     if not data.groups:
         raise ValueError("mesh: needs tetrahedra, wedges or hexahedra, got no solid element")
