@@ -160,7 +160,7 @@ def lowest_with_pairs(
     With one mode of a pair it is an asymmetric shaft. `solve` returns squared frequencies and
     modes by their number, of which `available` are there.
     """
-    values, modes = solve(min(count + 1, available))
+    values, modes = solve(min(count + 1, available) if count else 0)
     frequencies = np.sqrt(np.maximum(values, 0.0))
     near = np.diff(frequencies) <= _APART * frequencies[1:]
     if 0 < count < len(values) and near[count - 1] and not (count > 1 and near[count - 2]):

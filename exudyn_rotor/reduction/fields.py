@@ -162,21 +162,10 @@ class Centrifugal:
             if getattr(self, name) is not None:
                 values = checks.array(getattr(self, name), f"centrifugal: {name}", shape=(None, 6))
                 fields[name] = values
-        counts = {name: f.size // (3 if f.ndim == 1 else 6) for name, f in fields.items()}
-        if len(set(counts.values())) > 1:
-            raise ValueError(f"centrifugal: all fields need the same nodes, got {counts}")
         if self.yield_stress is not None:
             name = "centrifugal: yield_stress"
             fields["yield_stress"] = checks.number(self.yield_stress, name, "Pa", above=0.0)
         set_checked(self, **fields)
-
-    @property
-    def node_count(self) -> int | None:
-        """Number of nodes n; None where all fields are None."""
-        for field, width in ((self.displacement, 3), (self.stress, 6), (self.constant_stress, 6)):
-            if field is not None:
-                return field.size // width
-        return None
 
     def stress_at(self, speed: float) -> np.ndarray | None:
         """Return the static stress at a spin speed [rad/s], with that at rest, (n, 6) [Pa].

@@ -124,15 +124,17 @@ class ReducedRotor:
         self._check_fields()
 
     def _check_fields(self) -> None:
-        """Check what may be None."""
+        """Check fields that may be None."""
         if self.shapes is not None:
             checks.instance(self.shapes, "shapes", ModeShapes)
             _check_columns(self.shapes.matrix, "shapes: matrix", self.size)
         if self.centrifugal is not None:
             checks.instance(self.centrifugal, "centrifugal", Centrifugal)
-            nodes = self.centrifugal.node_count
-            if self.shapes is None or nodes != len(self.shapes.nodes):
-                raise ValueError(f"centrifugal: needs shapes of its {nodes} nodes")
+            nodes = 0 if self.shapes is None else len(self.shapes.nodes)
+            for name, width in (("displacement", 3), ("stress", 6), ("constant_stress", 6)):
+                field = getattr(self.centrifugal, name)
+                if field is not None and field.size != width * nodes:
+                    raise ValueError(f"centrifugal: {name}: needs the {nodes} nodes of the shapes")
         if self.attached is not None:
             checks.function(self.attached, "attached")
 

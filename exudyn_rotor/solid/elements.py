@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -71,6 +71,20 @@ class SolidElements:
     lame: np.ndarray
     densities: np.ndarray
     free: sp.csr_array | None = None
+
+    @classmethod
+    def of_materials(
+        cls,
+        nodes: np.ndarray,
+        blocks: Sequence[Block],
+        regions: Sequence[str],
+        materials: Mapping[str, Mapping[str, float]],
+    ) -> SolidElements:
+        """Return the elements with a material by the name of each region."""
+        young, ratio, densities = np.array([list(materials[name].values()) for name in regions]).T
+        shear = young / (2.0 * (1.0 + ratio))
+        lame = np.column_stack([2.0 * shear * ratio / (1.0 - 2.0 * ratio), shear])
+        return cls(nodes, blocks, regions, lame, densities)
 
     def mass_matrix(self) -> sp.csr_array:
         """Return the mass matrix (3n, 3n)."""

@@ -32,21 +32,13 @@ def assemble_model(
     checks.flag(check_units, "check_units")
     _prepare_mesh(mesh, order)
     regions = mesh.GetMaterials()
-    by_region = units.materials_by_region(regions, materials)
-    if check_units:
-        for name, material in by_region.items():
-            units.check_material_units(name, material)
+    by_region = units.materials_by_region(regions, materials, check_units)
     tetrahedra, region_numbers = _tetrahedra(mesh)
     nodes = np.array(mesh.ngmesh.Coordinates(), dtype=float)
     nodes = nodes if order == 2 else nodes[: mesh.nv]
     _check_used(tetrahedra, len(nodes))
-    elements = SolidElements(
-        nodes,
-        [Block("tetra10" if order == 2 else "tetra", tetrahedra, region_numbers)],
-        regions,
-        np.array([units.lame_parameters(by_region[name]) for name in regions]),
-        np.array([by_region[name]["density"] for name in regions]),
-    )
+    blocks = [Block("tetra10" if order == 2 else "tetra", tetrahedra, region_numbers)]
+    elements = SolidElements.of_materials(nodes, blocks, regions, by_region)
     triangles, faces = _triangles(mesh, order)
     return FiniteElementModel.of_elements(
         elements, _node_sets(nodes, triangles, faces, interfaces), triangles
