@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
@@ -14,9 +15,8 @@ from exudyn_rotor.prestress.given_loads import Loads, Spring
 from exudyn_rotor.prestress.static_solution import static_prestress
 from exudyn_rotor.reduction.reduce import ModeSource, reduce_rotor
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.solid import fem_interface, ngsolve_model
+from exudyn_rotor.solid import fem_interface, matrices, ngsolve_model
 from exudyn_rotor.solid.carried_prestress import Prestress
-from exudyn_rotor.solid.damping import with_damping
 from exudyn_rotor.solid.meshes import mesh_model
 from exudyn_rotor.solid.model import FiniteElementModel, node_set
 from exudyn_rotor.solid.rotor import AxisLike, FiniteElementRotor
@@ -61,11 +61,9 @@ class SolidRotor(FiniteElementRotor):
         What :meth:`prestress` assembles on; only of :meth:`from_ngsolve`.
     carried_prestress : Prestress or None
         Set by :meth:`with_prestress`.
-    mass_damping : scipy.sparse.csr_array or None
-        Damping in proportion to the mass [N s/m], of the motion beside the free rigid ones; set
-        by :meth:`with_damping`.
-    structural_damping : scipy.sparse.csr_array or None
-        H = η K [N/m], of a loss factor η; set by :meth:`with_damping`.
+    mass_damping, structural_damping : float
+        Damping per mass [1/s] of the motion beside the free rigid ones, and loss factor η; set by
+        :meth:`with_damping`.
     discs : tuple of RigidDisc
         What :meth:`add_disc` placed.
 
@@ -454,7 +452,20 @@ class SolidRotor(FiniteElementRotor):
         >>> float(damped.damping[0, 0])
         10.0
         """
-        return with_damping(self, mass, stiffness, loss)
+        mass = checks.number(mass, "mass", "1/s", least=0.0)
+        damping = checks.number(stiffness, "stiffness", "s", least=0.0) * self.stiffness
+        loss = checks.number(loss, "loss", least=0.0)
+        if self.damping is not None:
+            damping = self.damping + damping
+        if not self.rigid_motions:
+            damping, mass = damping + mass * self.mass, 0.0
+        damping = matrices.frozen(sp.csr_array(damping))
+        return replace(
+            self,
+            damping=damping if damping.nnz else None,
+            mass_damping=self.mass_damping + mass,
+            structural_damping=self.structural_damping + loss,
+        )
 
     def reduce(
         self,

@@ -165,8 +165,6 @@ def _loads(
         loads.append(speed * (carried.per_square @ basis))
     if rotor.damping is not None:
         loads.append(rotor.damping @ columns)
-    if rotor.structural_damping is not None:
-        loads.append((rotor.structural_damping @ columns) / frequencies)
     return np.hstack(loads)
 
 

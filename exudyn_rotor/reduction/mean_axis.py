@@ -84,10 +84,9 @@ def use_mean_axis_modes(fem: FEMinterface, *, rank_tolerance: float = 1e-7) -> t
     rigid = rigid_columns(nodes, SpinAxis.of("z"), nodes.mean(axis=0))
     weighted = mass @ rigid
     flexible = modes - rigid @ (scipy.linalg.pinvh(rigid.T @ weighted) @ (weighted.T @ modes))
-    none = np.zeros((nodes.size, 0))
     elastic = [
         index
-        for index in gram_schmidt((none, none), flexible, mass, rank_tolerance).used
+        for index in gram_schmidt(flexible, mass, rank_tolerance)[2]
         if _norm(flexible[:, index], mass) > rank_tolerance * _norm(modes[:, index], mass)
     ]
     if not elastic:

@@ -66,9 +66,7 @@ def reduce_rotor(
     component = component_modes(rotor, modes)
     with one_thread():
         component = _with_turned_displacement(rotor, component)
-        basis = OrthonormalBasis.of_rigid(
-            *_rigid_motions(rotor, rotor.center_of_mass), rotor.mass, rank_tolerance
-        ).extended(component, rotor.mass, rotor.stiffness, rank_tolerance)
+        basis = _basis(rotor, component, rank_tolerance)
         if basis.matrix.shape[1] == 0:
             raise ValueError("the reduced basis is empty: ask for at least one component mode")
         attached = cache(partial(_with_attachments, rotor, component, basis, rank_tolerance))
@@ -119,25 +117,23 @@ def _reduced(
         rotor.axis.direction,
         basis.momenta,
     )
-    rigid_count = len(basis.rigid_kinds)
-    _check_stable(basis.stiffness[rigid_count:])
-    if rotor.mass_damping is not None:
-        own_share = component.matrix @ basis.from_modes  # first, or nearly equal modes cost digits
-        damping = invariants.D + own_share.T @ (rotor.mass_damping @ own_share)
-        invariants = replace(invariants, D=damping)
-    if rotor.structural_damping is not None:
-        structural = basis.matrix.T @ (rotor.structural_damping @ basis.matrix)
-        invariants = replace(invariants, H=0.5 * (structural + structural.T))
+    _check_stable(basis.stiffness)
+    invariants = _cleaned(invariants, basis)
+    mode_mass = _mode_mass(component, basis)
+    if rotor.mass_damping:
+        invariants = replace(invariants, D=invariants.D + rotor.mass_damping * mode_mass)
+    if rotor.structural_damping:
+        invariants = replace(invariants, H=rotor.structural_damping * invariants.K)
     if network is not None:
         estimate = basis.matrix.T @ (network @ basis.matrix)
         invariants = replace(invariants, K2_estimated=0.5 * (estimate + estimate.T))
     return ReducedRotor(
         axis=rotor.axis,
         center_of_mass=center,
-        invariants=_stiffened(rotor, _cleaned(invariants, basis), basis.matrix),
+        invariants=_stiffened(rotor, invariants, basis.matrix),
         rigid_kinds=basis.rigid_kinds,
         interfaces=_interfaces(rotor, basis.matrix),
-        mode_mass=_mode_mass(component, basis),
+        mode_mass=mode_mass,
         dropped=basis.dropped,
         grounded=rotor.grounded,
         shapes=_shapes(rotor, component, basis, stress) if keep_shapes else None,
@@ -165,9 +161,15 @@ def _with_attachments(
             )
         except ValueError:  # loose parts; the given modes may do without them
             return None
-        finer = basis.extended(added, rotor.mass, rotor.stiffness, rank_tolerance)
-        reduced = _reduced(rotor, _joined(component, added), finer, False, False)
+        every = _joined(component, added)
+        finer = _basis(rotor, every, rank_tolerance)
+        reduced = _reduced(rotor, every, finer, False, False)
         return reduced, finer.matrix.T @ basis.momenta
+
+
+def _basis(rotor: FiniteElementRotor, modes: ModeBasis, tolerance: float) -> OrthonormalBasis:
+    rigid = _rigid_motions(rotor, rotor.center_of_mass)
+    return OrthonormalBasis.of(rigid, modes, rotor.mass, rotor.stiffness, tolerance)
 
 
 def _joined(first: ModeBasis, second: ModeBasis) -> ModeBasis:
@@ -231,13 +233,8 @@ def _mode_mass(component: ModeBasis, basis: OrthonormalBasis) -> np.ndarray:
 
 def _cleaned(invariants: Invariants, basis: OrthonormalBasis) -> Invariants:
     """Put in exactly what holds by construction, so that round-off excites nothing."""
-    rigid_count = len(basis.rigid_kinds)
-    structural = None if invariants.H is None else invariants.H.copy()
-    if structural is not None:
-        structural[:rigid_count] = structural[:, :rigid_count] = 0.0
     return replace(
         invariants,
-        H=structural,
         M=np.eye(invariants.size),
         K=np.diag(np.maximum(basis.stiffness, 0.0)),
         center=np.zeros(3),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import MISSING, fields
 from functools import partial
 from os import PathLike
 from typing import Any, TypeVar
@@ -18,11 +19,6 @@ from exudyn_rotor.theory.invariants import Invariants
 Rotor = TypeVar("Rotor")  # ReducedRotor, which has the methods that call this module
 
 _KIND = "reduced rotor"
-_INVARIANTS = ("direction", "center", "J", "S", "P", "M", "K", "D", "G", "C")
-_OPTIONAL_INVARIANTS = ("K2", "B", "K4", "K2_estimated", "H", "K0")
-_INTERFACE = ("reference", "center", "motion")
-_SHAPES = ("nodes", "matrix")
-_CENTRIFUGAL = ("displacement", "stress", "constant_stress")
 _ATTACHED = "attached."
 _IN_ATTACHED = "in_attached"
 
@@ -42,22 +38,18 @@ def _entries(rotor: Rotor) -> dict[str, object]:
         "dropped": np.array(rotor.dropped, dtype=str),
         "grounded": rotor.grounded,
     }
-    data |= _given("invariants", rotor.invariants, ("mass", *_INVARIANTS, *_OPTIONAL_INVARIANTS))
-    data |= _given("centrifugal", rotor.centrifugal, ("yield_stress", *_CENTRIFUGAL))
-    for index, interface in enumerate(rotor.interfaces.values()):
-        data |= _given(f"interface{index}", interface, ("radius", *_INTERFACE))
-    data |= _given("shapes", rotor.shapes, ("triangles", "stress", *_SHAPES))
+    groups = {"invariants": rotor.invariants, "centrifugal": rotor.centrifugal}
+    groups |= {f"interface{i}": one for i, one in enumerate(rotor.interfaces.values())}
+    groups["shapes"] = rotor.shapes
+    for group, owner in groups.items():
+        for field in fields(owner) if owner is not None else ():
+            value = getattr(owner, field.name)
+            data |= {} if value is None else {f"{group}.{field.name}": value}
     if rotor.with_attachments is not None:
         added = _entries(rotor.with_attachments)
         data |= {_ATTACHED + key: value for key, value in added.items()}
         data[_IN_ATTACHED] = rotor.in_attached
     return data
-
-
-def _given(group: str, owner: object, names: tuple[str, ...]) -> dict[str, object]:
-    """Return the entries of `owner` that are not None."""
-    values = {name: getattr(owner, name, None) for name in names}
-    return {f"{group}.{name}": value for name, value in values.items() if value is not None}
 
 
 def load_reduced(path: str | PathLike, make: Callable[..., Rotor]) -> Rotor:
@@ -82,30 +74,30 @@ def _fields(entries: Entries, make: Callable[..., Rotor]) -> dict[str, Any]:
     if axis.shape != (2, 3):
         raise ValueError(f"axis: needs the shape (2, 3), got {axis.shape}")
     attached = entries.group(_ATTACHED)
-    fields = {
+    found = {
         "axis": SpinAxis(*axis),
         "center_of_mass": entries.array("center_of_mass"),
-        "invariants": _invariants(entries.group("invariants.")),
+        "invariants": _made(Invariants, entries.group("invariants.")),
         "rigid_kinds": _kinds(entries.words("rigid_kinds", unique=False)),
         "interfaces": {
-            name: _interface(entries.group(f"interface{index}."))
+            name: _made(ReducedInterface, entries.group(f"interface{index}."))
             for index, name in enumerate(entries.words("interface_names"))
         },
         "mode_mass": entries.array("mode_mass"),
         "dropped": entries.words("dropped", unique=False),
         "grounded": entries.flag("grounded"),
-        "shapes": _shapes(entries.group("shapes.")),
-        "centrifugal": _centrifugal(entries.group("centrifugal.")),
+        "shapes": _made(ModeShapes, entries.group("shapes."), True),
+        "centrifugal": _made(Centrifugal, entries.group("centrifugal."), True),
     }
     if attached:
         finer = make(**_fields(attached, make))
-        shape = finer.size, fields["invariants"].size
+        shape = finer.size, found["invariants"].size
         columns = checks.array(entries.array(_IN_ATTACHED), _IN_ATTACHED, shape=shape)
-        if finer.interfaces.keys() != fields["interfaces"].keys():
+        if finer.interfaces.keys() != found["interfaces"].keys():
             raise ValueError("with_attachments: needs the interfaces of the rotor")
-        fields["attached"] = partial(tuple, (finer, columns))
+        found["attached"] = partial(tuple, (finer, columns))
     attached.close()
-    return fields
+    return found
 
 
 def _kinds(names: tuple[str, ...]) -> tuple[ModeKind, ...]:
@@ -113,41 +105,15 @@ def _kinds(names: tuple[str, ...]) -> tuple[ModeKind, ...]:
     return tuple(ModeKind[name] for name in names)
 
 
-def _invariants(entries: Entries) -> Invariants:
-    invariants = Invariants(
-        mass=entries.number("mass"),
-        **entries.arrays(*_INVARIANTS),
-        **entries.arrays(*_OPTIONAL_INVARIANTS, optional=True),
-    )
-    entries.close()
-    return invariants
-
-
-def _interface(entries: Entries) -> ReducedInterface:
-    interface = ReducedInterface(radius=entries.number("radius"), **entries.arrays(*_INTERFACE))
-    entries.close()
-    return interface
-
-
-def _shapes(entries: Entries) -> ModeShapes | None:
-    if not entries:
+def _made(kind: type, entries: Entries, optional: bool = False) -> Any:
+    """Return an object of a dataclass from the entries of its fields; None of none if optional."""
+    if optional and not entries:
         return None
-    shapes = ModeShapes(
-        triangles=entries.array("triangles", int),
-        **entries.arrays(*_SHAPES),
-        **entries.arrays("stress", optional=True),
-    )
+    values = {}
+    for field in fields(kind):
+        if field.name in entries or field.default is MISSING:
+            read = entries.number if field.type.startswith("float") else entries.array
+            whole = field.name == "triangles"
+            values[field.name] = entries.array(field.name, int) if whole else read(field.name)
     entries.close()
-    return shapes
-
-
-def _centrifugal(entries: Entries) -> Centrifugal | None:
-    if not entries:
-        return None
-    known = "yield_stress" in entries
-    fields = Centrifugal(
-        yield_stress=entries.number("yield_stress") if known else None,
-        **entries.arrays(*_CENTRIFUGAL, optional=True),
-    )
-    entries.close()
-    return fields
+    return kind(**values)

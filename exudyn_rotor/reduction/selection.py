@@ -17,7 +17,7 @@ from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.invariants import Invariants
 
 NEGLIGIBLE = 1e-10  # see `negligible` of select_modes
-_SAME = 1e-6  # share of its scale below which a difference of two bases is round-off
+_SAME = 1e-6  # share of the largest entry below which a difference of bases is round-off
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +55,16 @@ class Selection:
         sign are another basis.
         """
         checks.instance(reduced, "reduced", ReducedRotor)
-        return _same_basis(self.source, reduced)
+        one, two = self.source, reduced
+        if one.rigid_kinds != two.rigid_kinds or one.size != two.size:
+            return False
+        # what is linear or bilinear in the columns, and kept without shapes
+        pairs = [(getattr(one.invariants, x), getattr(two.invariants, x)) for x in "PGCK"]
+        pairs += [
+            (one.interfaces[name].motion, two.interfaces[name].motion)
+            for name in one.interfaces.keys() & two.interfaces.keys()
+        ]
+        return all(np.abs(x - y).max() <= _SAME * np.abs(x).max() for x, y in pairs if x.size)
 
     def __repr__(self) -> str:
         return f"Selection({len(self.labels)} of the {self.T.shape[0]} columns of {self.source!r})"
@@ -113,26 +122,6 @@ def select_modes(
         invariants=_without_noise(invariants, negligible),
         source=reduced.without_shapes(),
     )
-
-
-def _same_basis(one: ReducedRotor, two: ReducedRotor) -> bool:
-    """Compare what is linear or bilinear in the columns, and kept without shapes."""
-    if one.rigid_kinds != two.rigid_kinds or one.size != two.size:
-        return False
-    a, b = one.invariants, two.invariants
-    pairs = [
-        (a.direction, b.direction, 1.0),
-        (a.mass, b.mass, a.mass),
-        (one.center_of_mass, two.center_of_mass, np.sqrt(np.trace(a.J) / a.mass)),
-        (a.P, b.P, np.sqrt(np.trace(a.J))),
-        (a.G, b.G, 1.0),  # the columns are mass-orthonormal
-        (a.C, b.C, 1.0),
-        (a.K, b.K, np.maximum(np.abs(a.K), np.abs(b.K))),
-    ]
-    for name in one.interfaces.keys() & two.interfaces.keys():
-        motion = one.interfaces[name].motion
-        pairs.append((motion, two.interfaces[name].motion, np.abs(motion).max()))
-    return all(np.all(np.abs(x - y) <= _SAME * scale) for x, y, scale in pairs)
 
 
 def _without_noise(invariants: Invariants, negligible: float) -> Invariants:

@@ -17,22 +17,9 @@ NodeSet = tuple[Sequence[int], Sequence[float] | None]
 
 @dataclass(frozen=True, eq=False)
 class FiniteElementModel:
-    """Arrays of one finite-element model as its source gave them.
+    """Arrays of one finite-element model as its source gave them, as of ``SolidRotor``.
 
-    Attributes
-    ----------
-    nodes : array_like, shape (n, 3)
-        Reference positions [m].
-    mass, stiffness, damping : array_like or sparse, shape (3n, 3n)
-        Assembled matrices; the damping may be None.
-    node_sets : mapping of str to (nodes, weights)
-        Node numbers and their weights of every interface; weights None means equal weights.
-    triangles : array_like of int, shape (t, 3) or (t, 6)
-        Surface for drawing.
-    stress_recovery : callable or None
-        See :class:`exudyn_rotor.SolidRotor`.
-    elements : SolidElements or None
-        What matrices of a static stress are assembled on.
+    `node_sets` are node numbers and weights of every interface; weights None means equal ones.
     """
 
     nodes: Any

@@ -28,6 +28,12 @@ from exudyn_rotor.solid.section import outer_section
 from exudyn_rotor.solvers.inertia_relief import SOLVERS
 from exudyn_rotor.theory.axis import SpinAxis
 
+LOSS_LEFT_OUT = (
+    "structural damping, with_damping(loss=η), belongs to one frequency at a time: only "
+    "harmonic_response and unbalance_response take it. {} without it; with_damping(stiffness=η/ν) "
+    "is viscous damping that is equal at the frequency ν [rad/s] seen in the rotor frame"
+)
+
 AxisLike = SpinAxis | str | ArrayLike
 Rotor = TypeVar("Rotor", bound="FiniteElementRotor")
 
@@ -48,8 +54,8 @@ class FiniteElementRotor:
     rigid_motions: int = 6
     elements: SolidElements | None = None
     carried_prestress: Prestress | None = None
-    mass_damping: sp.csr_array | None = None
-    structural_damping: sp.csr_array | None = None
+    mass_damping: float = 0.0
+    structural_damping: float = 0.0
     discs: tuple[RigidDisc, ...] = ()
     solver: str = "auto"
 
@@ -66,11 +72,13 @@ class FiniteElementRotor:
             "rigid_motions": checks.count(self.rigid_motions, "rigid_motions", most=6),
             "solver": checks.choice(self.solver, "solver", SOLVERS),
             "discs": checks.instances(self.discs, "discs", RigidDisc),
+            "mass_damping": checks.number(self.mass_damping, "mass_damping", "1/s", least=0.0),
+            "structural_damping": checks.number(
+                self.structural_damping, "structural_damping", least=0.0
+            ),
         }
-        for name in ("damping", "mass_damping", "structural_damping"):
-            if getattr(self, name) is not None:
-                label = "damping matrix" if name == "damping" else name
-                checked[name] = matrices.as_matrix(label, getattr(self, name), len(nodes))
+        if self.damping is not None:
+            checked["damping"] = matrices.as_matrix("damping matrix", self.damping, len(nodes))
         if self.stress_recovery is not None:
             checks.function(self.stress_recovery, "stress_recovery")
         if self.elements is not None:

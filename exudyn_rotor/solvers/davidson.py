@@ -44,7 +44,6 @@ def davidson_modes(
     ----------
     stiffness, mass : scipy.sparse.csr_array, shape (n, n)
     inverse : InertiaRelief or ConstrainedInverse
-        Its approximation ``precondition`` is used, and motions to ``start`` with.
     count : int
     tolerance : float
         Relative accuracy of the eigenvalues; their error is of second order in the residual.
@@ -53,13 +52,8 @@ def davidson_modes(
     balanced : callable, optional
         Takes what reactions balance out of residuals (n, k).
 
-    Returns
-    -------
-    eigenvalues, modes : ndarray, shape (count,) and (n, count)
-        As of :func:`exudyn_rotor.solvers.modes.lanczos_modes`; ValueError without convergence.
+    Returns as :func:`exudyn_rotor.solvers.modes.lanczos_modes`; ValueError without convergence.
 
-    Notes
-    -----
     Restarts keep the latest Ritz vectors and those before them ("GD+k"): Stathopoulos, Saad,
     "Restarting techniques for the (Jacobi-)Davidson symmetric eigenvalue methods", ETNA 7 (1998).
     """

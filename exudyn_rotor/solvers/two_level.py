@@ -52,8 +52,6 @@ class TwoLevel:
     factorised : callable
         ``factorised(PᵀKP, PᵀMP, rigid motions)`` returns the elastic inverse of linear elements.
 
-    Notes
-    -----
     Cycles are done in single precision, the linear elements excepted; what uses them sees the
     rounding as a slightly worse approximation.
     """
@@ -142,17 +140,8 @@ def conjugate_gradients(
 ) -> np.ndarray:
     """Return the displacements (m, k) of ``K u = f``, to the precision of a factorisation.
 
-    Parameters
-    ----------
-    stiffness : scipy.sparse.csr_array, shape (m, m)
-        May leave motions free that the loads do not push.
-    precondition : callable
-        Approximate inverse, for loads of shape (m, k).
-    loads : ndarray, shape (m, k)
-    unit : float
-        Rounding error of ``K u`` for a displacement of norm 1 [N].
-    tolerance : float
-        Residual over load; ValueError if it is not reached.
+    The loads must not push motions that K leaves free. `unit` is the rounding error of ``K u`` for
+    a displacement of norm 1 [N], `tolerance` the residual over the load, else ValueError.
     """
     inverse = sla.LinearOperator(
         stiffness.shape, matvec=lambda load: precondition(load.reshape(-1, 1)).ravel(), dtype=float
