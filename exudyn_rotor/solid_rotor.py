@@ -49,9 +49,6 @@ class SolidRotor(FiniteElementRotor):
     triangles : ndarray of int, shape (t, 3) or (t, 6)
         Surface for drawing, 6-node triangles where the mesh is quadratic: corners, then the mid
         nodes of the edges 0-1, 1-2, 2-0.
-    stress_recovery : callable or None
-        Maps displacement columns (3n, k) to nodal stress (n, 6, k) [Pa], components xx, yy, zz,
-        yz, xz, xy in mesh axes.
     point_masses : tuple of PointMass
         What :meth:`add_point_mass` placed, with the snapping distances.
     rigid_motions : int

@@ -80,7 +80,11 @@ def static_prestress(
     checks.flag(euler, "euler")
     _check_yield(yield_stress, speed)
     supports = checked_supports(supports)
-    _check_alone(clamped, initial_displacement, loads is not None or bool(supports))
+    if (loads is not None or supports) and (clamped or initial_displacement):
+        raise ValueError(
+            "loads, supports: have no solution with clamped interfaces or an initial displacement; "
+            "hold a rotor by stiff supports, and leave initial_displacement out"
+        )
     shape = (rotor.node_count, 6)
     rest_stress = None if stress is None else checks.array(stress, "stress", "Pa", shape=shape)
     if rotor.elements is None:
@@ -91,7 +95,10 @@ def static_prestress(
         )
     elements = rotor.elements
     residual = None if rest_stress is None else elements.load_of_stress(rest_stress)
-    state = _support(rotor, clamped)
+    supported = rotor.clamped(clamped) if clamped else rotor
+    nodes = [rotor.interfaces[name].nodes for name in clamped]
+    hub = np.unique(np.concatenate([np.zeros(0, dtype=int), *nodes]))
+    state = _StaticState(rotor, supported, hub, rotor.stiffness, inertia_relief(supported))
     constant = None
     if rest_stress is not None:
         springback = state.solve(residual)
@@ -143,14 +150,6 @@ def static_prestress(
         by_loads=by_loads,
         reactions=held,
     )
-
-
-def _check_alone(clamped: Sequence[str], initial_displacement: bool, given: bool) -> None:
-    if given and (clamped or initial_displacement):
-        raise ValueError(
-            "loads, supports: have no solution with clamped interfaces or an initial displacement; "
-            "hold a rotor by stiff supports, and leave initial_displacement out"
-        )
 
 
 def relief_rotations(rotor: FiniteElementRotor) -> np.ndarray:
@@ -231,13 +230,6 @@ class _StaticState:
             springs = disc.stiffness_matrix(self.rotor.node_count)
             matrix = matrix + _hub_stiffness(self.rotor, disc.nodes, -(springs @ displacement))
         return displacement, matrix
-
-
-def _support(rotor: FiniteElementRotor, clamped: Sequence[str]) -> _StaticState:
-    supported = rotor.clamped(clamped) if clamped else rotor
-    hub = [rotor.interfaces[name].nodes for name in clamped]
-    nodes = np.unique(np.concatenate([np.zeros(0, dtype=int), *hub]))
-    return _StaticState(rotor, supported, nodes, rotor.stiffness, inertia_relief(supported))
 
 
 def _hub_stiffness(rotor: FiniteElementRotor, hub: np.ndarray, forces: np.ndarray) -> sp.csr_array:

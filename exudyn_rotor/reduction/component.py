@@ -78,8 +78,7 @@ class ModeBasis:
         if self.stress is not None:
             shape = (len(nodes), 6, modes)
             checked["stress"] = checks.array(self.stress, "mode basis: stress", shape=shape)
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)
+        checks.keep(self, **checked)
 
 
 def free_modes(rotor: FiniteElementRotor, count: int, *, tolerance: float = 1e-10) -> ModeBasis:

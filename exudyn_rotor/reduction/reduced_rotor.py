@@ -17,7 +17,6 @@ from exudyn_rotor.reduction.fields import (
     ModeShapes,
     ReducedInterface,
     rigid_names,
-    set_checked,
 )
 from exudyn_rotor.reduction.reduced_file import load_reduced, save_reduced
 from exudyn_rotor.theory.axis import SpinAxis
@@ -112,7 +111,7 @@ class ReducedRotor:
                 f"rigid_kinds: needs at most {size} rigid motions, each once, got "
                 f"{[kind.name for kind in kinds]}"
             )
-        set_checked(
+        checks.keep(
             self,
             center_of_mass=checks.vector(self.center_of_mass, "center_of_mass", "m"),
             rigid_kinds=kinds,

@@ -123,8 +123,7 @@ class Prestress:
             checked["yield_stress"] = checks.number(
                 self.yield_stress, "yield_stress", "Pa", above=0.0
             )
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)
+        checks.keep(self, **checked)
 
     @property
     def per_square(self) -> sp.csr_array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,7 +11,6 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.solid.elements import SolidElements
 
-StressRecovery = Callable[[np.ndarray], np.ndarray]
 NodeSet = tuple[Sequence[int], Sequence[float] | None]
 
 
@@ -28,7 +27,6 @@ class FiniteElementModel:
     damping: Any = None
     node_sets: Mapping[str, NodeSet] = field(default_factory=dict)
     triangles: Any = ()
-    stress_recovery: StressRecovery | None = None
     elements: SolidElements | None = None
 
     @classmethod
@@ -42,7 +40,6 @@ class FiniteElementModel:
             stiffness=elements.stiffness_matrix(),
             node_sets=node_sets,
             triangles=triangles,
-            stress_recovery=elements.nodal_stress,
             elements=elements,
         )
 

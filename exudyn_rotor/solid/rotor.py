@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
@@ -15,7 +15,7 @@ from exudyn_rotor.solid import matrices, units
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.elements import SolidElements
 from exudyn_rotor.solid.interface import Interface
-from exudyn_rotor.solid.model import FiniteElementModel, StressRecovery
+from exudyn_rotor.solid.model import FiniteElementModel
 from exudyn_rotor.solid.point_mass import PointMass, add_nodal_mass
 from exudyn_rotor.solid.rigid import (
     check_connected,
@@ -23,7 +23,7 @@ from exudyn_rotor.solid.rigid import (
     holding_spring,
     rigid_basis,
 )
-from exudyn_rotor.solid.rigid_disc import RigidDisc, disc_on
+from exudyn_rotor.solid.rigid_disc import STIFF, RigidDisc, as_tensor
 from exudyn_rotor.solid.section import outer_section
 from exudyn_rotor.solvers.inertia_relief import SOLVERS
 from exudyn_rotor.theory.axis import SpinAxis
@@ -49,7 +49,6 @@ class FiniteElementRotor:
     damping: sp.csr_array | None = None
     interfaces: Mapping[str, Interface] = field(default_factory=dict)
     triangles: np.ndarray = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
-    stress_recovery: StressRecovery | None = None
     point_masses: tuple[PointMass, ...] = ()
     rigid_motions: int = 6
     elements: SolidElements | None = None
@@ -79,14 +78,11 @@ class FiniteElementRotor:
         }
         if self.damping is not None:
             checked["damping"] = matrices.as_matrix("damping matrix", self.damping, len(nodes))
-        if self.stress_recovery is not None:
-            checks.function(self.stress_recovery, "stress_recovery")
         if self.elements is not None:
             checks.instance(self.elements, "elements", SolidElements)
         if self.carried_prestress is not None:
             checks.instance(self.carried_prestress, "carried_prestress", Prestress)
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)
+        checks.keep(self, **checked)
 
     @classmethod
     def _of_model(
@@ -120,7 +116,6 @@ class FiniteElementRotor:
                 for name, node_set in model.node_sets.items()
             },
             triangles=model.triangles,
-            stress_recovery=model.stress_recovery,
             rigid_motions=count_rigid_motions(nodes, stiffness, grounded),
             elements=model.elements,
         )
@@ -129,6 +124,14 @@ class FiniteElementRotor:
     def node_count(self) -> int:
         """Number of nodes n."""
         return len(self.nodes)
+
+    @property
+    def stress_recovery(self) -> Callable[[np.ndarray], np.ndarray] | None:
+        """Maps displacement columns (3n, k) to nodal stress (n, 6, k) [Pa]; None without elements.
+
+        Components xx, yy, zz, yz, xz, xy in mesh axes.
+        """
+        return None if self.elements is None else self.elements.nodal_stress
 
     @property
     def total_mass(self) -> float:
@@ -295,8 +298,10 @@ class FiniteElementRotor:
                 f"{np.round(place, 9).tolist()} m; add one disc with the inertia of both, or use "
                 "narrower bands"
             )
-        disc = disc_on(self.nodes, self.stiffness, self.axis, center, nodes, mass, inertia)
         count = self.node_count
+        spring = STIFF * self.stiffness.diagonal().reshape(-1, 3)[nodes].max()
+        tensor = as_tensor(inertia, self.axis)
+        disc = RigidDisc(center, mass, tensor, nodes, self.nodes[nodes], spring)
         added = {} if name is None else {name: section}
         return replace(
             self,

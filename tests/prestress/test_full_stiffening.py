@@ -70,9 +70,6 @@ def test_conical_modes_are_exact(rotor, speed):
         assert max(np.abs(paper / root - 1).min() for root in roots) > 0.01
 
 
-# ------------------------------------------------------------------ full models
-
-
 # ------------------------------------------------------------------ reduced rotors
 
 

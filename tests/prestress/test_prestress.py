@@ -147,9 +147,6 @@ def test_both_parts_are_the_derivative_of_the_tangent(beam):
     assert abs(geometric - expected).max() > 0.1 * abs(expected).max()
 
 
-# ------------------------------------------------------------------ stress at rest
-
-
 # ------------------------------------------------------------------ yielding
 
 

@@ -93,9 +93,6 @@ def test_hub_acts_as_a_light_and_stiff_one_in_the_mesh(ring):
     assert np.abs(bare - expected).max() > 0.2 * np.abs(expected).max()
 
 
-# ------------------------------------------------------------------ another static state
-
-
 # ------------------------------------------------------------------ stress at rest
 
 
@@ -146,6 +143,3 @@ def test_yield_row_holds_the_stress_at_rest(stretched, sign):
     at_speed = von_mises(uniform_tension(stretched, sign * TENSION) + by_spin).max()
     assert row.value == pytest.approx(max(at_speed, TENSION) / (0.9 * TENSION), rel=1e-6)
     assert not row.ok
-
-
-# ------------------------------------------------------------------ input

@@ -90,6 +90,3 @@ def test_euler_stress_of_a_blade_is_that_of_its_load():
     # without it, what the tilts of rigid rotors feel is left
     plain = solid.reduce(4, prestress=True).invariants
     assert np.array_equal(stiffening(plain, "full").B, stiffening(plain, "tilt").B)
-
-
-# ------------------------------------------------------------------ modes at speed

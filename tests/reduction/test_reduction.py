@@ -141,9 +141,6 @@ def test_each_formulation_has_the_rigid_modes_that_its_frame_lacks(reduced, form
     assert selection.invariants.size == len(selection.labels)
 
 
-# ------------------------------------------------------------------ grounded rotors
-
-
 # ------------------------------------------------------------------ size, immutability
 
 

@@ -112,9 +112,6 @@ def test_a_point_mass_moves_the_centre_of_mass(beam):
     assert len(heavier.add_point_mass([0, 0, 0], 1e-3).point_masses) == 2
 
 
-# ------------------------------------------------------------------ arrays and immutability
-
-
 # ------------------------------------------------------------------ interfaces
 
 
@@ -143,9 +140,6 @@ def test_interfaces_are_centred_on_the_axis(disc):
     )
     right = moved.interfaces["right"]
     np.testing.assert_array_equal(right.reference, right.center)
-
-
-# ------------------------------------------------------------------ rigid motions
 
 
 # ------------------------------------------------------------------ stress
