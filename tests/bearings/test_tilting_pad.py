@@ -20,7 +20,6 @@ from exudyn_rotor import (
     bearing_loads,
     grooved_pads,
     linear_model,
-    recommended_settings,
     stability,
 )
 from exudyn_rotor.theory.axis import SpinAxis
@@ -144,27 +143,6 @@ def test_scene_and_linear_analyses_agree(axis, foundation):
     theirs = np.r_[theirs, theirs.conj()] + turns
     for one in ours[np.abs(ours.imag) > 1.0]:
         assert np.abs(theirs - one).min() < 1e-6 * max(abs(one), SPEED)
-
-
-def run(mbs, end_time, step):
-    settings = recommended_settings(end_time, step)
-    settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write = False
-    mbs.SolveDynamic(settings)
-    return mbs.systemData.GetODE2Coordinates()
-
-
-def test_films_brake_a_free_spin():
-    """Beside the middle of the bearing, before anything moves."""
-    rotor, supports, gravity = on_pads()
-    mbs, body, _ = scene(rotor, supports, 0.0 * gravity, initial_speed=SPEED)
-    spin = body.add_spin_sensor()
-    mbs.Assemble()
-    run(mbs, 1e-7, 2e-8)
-    still = np.zeros(2)
-    torque = sum(one.film.state(still, still, SPEED).torque for one in supports[0].pad_bearings)
-    slower = SPEED - mbs.GetSensorValues(spin)[1]
-    assert slower == pytest.approx(torque / (MASS * 0.1**2) * 1e-7, rel=2e-3)
 
 
 def test_refused_input():

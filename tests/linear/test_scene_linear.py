@@ -233,7 +233,7 @@ def test_refused_scenes():
     with pytest.raises(ValueError, match="about: 'rest' is unknown"):
         linear_model(mbs, body=body, about="rest")
     with pytest.raises(ValueError, match="finite"):
-        linear_model(mbs, body=body).at(np.nan)
+        linear_model(mbs, body=body).matrices(np.nan)
     add_rotor(mbs, rings(), name="second")
     with pytest.raises(ValueError, match="not assembled"):
         linear_model(mbs, body=body)

@@ -172,9 +172,6 @@ def test_directions_of_mesh_and_scene_change_nothing_else(
     )
 
 
-# ------------------------------------------------------------------ without the marker body
-
-
 # ------------------------------------------------------------------ several bodies
 
 
@@ -199,6 +196,3 @@ def test_several_rotors_do_not_know_each_other(reduced):
         assert abs(actual - expected).max() < 1e-9 * abs(expected).max()
     fallen = mbs.GetObjectOutputBody(ball, exu.OutputVariableType.Displacement, [0, 0, 0])
     assert fallen[2] == pytest.approx(-0.5 * 9.81 * 3e-3**2, rel=1e-9)
-
-
-# ------------------------------------------------------------------ reports

@@ -63,9 +63,6 @@ def settings(steps, end):
     return result
 
 
-# ------------------------------------------------------------------ motion
-
-
 # ------------------------------------------------------------------ loads and connectors
 
 
@@ -132,21 +129,3 @@ def test_node_carries_forces_torques_and_springs_alike(expected, axis, translati
     found, step = moved(translation, axis, spin), 2e-4
     error = (SPEED * step) ** 2 if translation == "none" else 1e-9
     assert abs(found - expected[spin]).max() < error * abs(expected[spin]).max()
-
-
-def test_energy_is_conserved_with_a_spring_at_the_node():
-    """Of rotor and springs, 2e5 and 1e5 N/m; the error of the step is of second order."""
-    drift = []
-    for steps in (50, 100):
-        mbs, body, node, seen = node_scene(tilting=0.0)
-        place = SensorMarker(
-            markerNumber=node, outputVariableType=KINDS.Position, storeInternal=True
-        )
-        place, energy = mbs.AddSensor(place), body.add_energy_sensor()
-        end = solved(mbs, seen, steps, 0.01)
-        at_node, rotor = (mbs.GetSensorStoredData(one)[:, 1:] for one in (place, energy))
-        springs = 1e5 * (at_node**2).sum(axis=1) + 0.5e5 * (end**2).sum(axis=1)
-        total = rotor.sum(axis=1) + springs
-        drift.append(np.ptp(total) / springs.max())
-    assert drift[1] < 1e-3
-    assert drift[1] < 0.3 * drift[0]

@@ -14,14 +14,10 @@ from scipy.spatial.transform import Rotation
 from exudyn_rotor import (
     SolidRotor,
     Support,
-    Unbalance,
     add_rotor,
     add_supports,
-    campbell,
     linear_model,
     recommended_settings,
-    stability,
-    unbalance_response,
 )
 from exudyn_rotor.reduction.selection import without_spin
 
@@ -98,40 +94,6 @@ def test_scene_and_linear_rotor_have_the_same_exponents(kind):
 
 TO_X, TO_Y = (Rotation.from_euler(a, 90.0, degrees=True).as_matrix() for a in ("y", "x"))
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
-
-
-MIXED = [
-    replace(KINDS["cross-coupled"], tilt_stiffness=2e3, tilt_damping=3.0),
-    KINDS["table"],
-    replace(HELD, frame="rotor", damping=0.0),
-    replace(KINDS["number"], interface="right", tilt_stiffness=([0.0, 300.0], [1e3, 5e3])),
-]
-
-
-def test_public_analyses_take_the_scene_and_the_list_alike():
-    # about the reference: centrifugal loads strain the rings, by which a scene's equations change
-    reduced, unbalance = rings(heavy=0.0), [Unbalance("left", 1e-4)]
-    held = Support("right", np.diag([1e6, 1e6, 5e5]), 150.0, np.diag([0.0, 0.0, 4e3]))
-    isotropic = [MIXED[0], held]
-    mbs, body, _ = on_supports(reduced, isotropic, spin=0.0, drive="elastic")
-    targets = (
-        linear_model(mbs, body=body, about="given"),
-        linear_model(reduced, supports=isotropic),
-    )
-    speeds = [60.0, SPEED]
-    responses = [unbalance_response(each, speeds, unbalance, accuracy=None) for each in targets]
-    orbits = [each.motion[:, :, each.orders.tolist().index(1), :3] for each in responses]
-    np.testing.assert_allclose(*orbits, rtol=0.0, atol=1e-10 * np.abs(orbits[1]).max())
-    frequencies = [np.sort(campbell(each, speeds).frequencies_rotor) for each in targets]
-    np.testing.assert_allclose(*frequencies, rtol=1e-9)
-    every = [*MIXED, held]
-    mbs, body, _ = on_supports(reduced, every, spin=0.0, drive="elastic")
-    targets = (
-        linear_model(mbs, body=body, about="given"),
-        linear_model(reduced, supports=every),
-    )
-    growth = [stability(each, [SPEED]).growth for each in targets]
-    np.testing.assert_allclose(*growth, rtol=1e-8, atol=1e-8)
 
 
 FROM_BASE = [KINDS["3 x 3"], KINDS["tilt, damped"], replace(HELD, tilt_stiffness=2e3)]
