@@ -189,7 +189,7 @@ def _rigid_motions(
     scaled = rigid / np.maximum(np.linalg.norm(rigid, axis=0), 1e-300)
     _, _, vt = scipy.linalg.svd(rotor.stiffness @ scaled, full_matrices=False)
     free = scaled @ vt[6 - rotor.rigid_motions :].T
-    return free, (ModeKind.FREE,) * rotor.rigid_motions
+    return free, (ModeKind.FREE,) * free.shape[1]
 
 
 def _with_turned_displacement(rotor: FiniteElementRotor, component: ModeBasis) -> ModeBasis:
