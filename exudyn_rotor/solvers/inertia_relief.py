@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import weakref
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import scipy.linalg as la
@@ -12,7 +12,6 @@ import scipy.sparse as sp
 
 from exudyn_rotor.solvers.factor import (
     NotPositiveDefiniteError,
-    Solve,
     SparseCholesky,
     TooLittleMemoryError,
     available_memory,
@@ -24,6 +23,7 @@ from exudyn_rotor.solvers.factor import (
 from exudyn_rotor.solvers.two_level import TwoLevel, conjugate_gradients
 from exudyn_rotor.theory.nodal import rotations, translations
 
+Rotor = Any  # a FiniteElementRotor, of the layer above
 SOLVERS = ("auto", "direct", "iterative")
 PRECISE = 1e-12  # share of a load that iteration may leave
 # coordinates below which a factor takes less memory than any machine has, and those from which 20
@@ -36,17 +36,6 @@ _ITERATIVE_PER_ENTRY, _ITERATIVE_PER_COORDINATE = 6.0, 5200.0
 # to d digits in an export 0.2·10⁻ᵈ (8 digits moved the lowest frequencies by 1e-4); a support of
 # k N/m leaves about k / ‖K‖∞
 _STRAIN_LIMIT = 1e-8
-
-
-class ElasticBody(Protocol):
-    """What inertia relief needs of a rotor: a solid rotor."""
-
-    nodes: np.ndarray
-    mass: sp.csr_array
-    stiffness: sp.csr_array
-    rigid_motions: int
-    solver: str
-    elements: Any
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +54,7 @@ class Way:
     interpolation: sp.csr_array | None = None
 
     @classmethod
-    def of(cls, rotor: ElasticBody) -> Way:
+    def of(cls, rotor: Rotor) -> Way:
         """Return the way of a rotor."""
         linear = None if rotor.elements is None else rotor.elements.interpolation()
         return cls(rotor.solver, linear)
@@ -180,7 +169,11 @@ class InertiaRelief:
         try:
             if self.iterative:
                 self._two_level = TwoLevel(
-                    stiffness, mass, rigid, way.interpolation, _of_linear_elements
+                    stiffness,
+                    mass,
+                    rigid,
+                    way.interpolation,
+                    lambda *linear: InertiaRelief(*linear, Way()).solve,
                 )
                 # not the matrix itself, whose end is the end of what inertia_relief knows
                 arrays = stiffness.data, stiffness.indices, stiffness.indptr
@@ -224,10 +217,6 @@ class InertiaRelief:
         return displacement - self.rigid @ (self._momentum.T @ displacement)
 
 
-def _of_linear_elements(stiffness: sp.csr_array, mass: sp.csr_array, rigid: np.ndarray) -> Solve:
-    return InertiaRelief(stiffness, mass, rigid, Way()).solve
-
-
 def _held(stiffness: sp.csr_array, rigid: np.ndarray) -> sp.csr_array:
     """Return the stiffness with springs that hold the rigid motions, as far apart as can be."""
     count = rigid.shape[1]
@@ -240,7 +229,7 @@ def _held(stiffness: sp.csr_array, rigid: np.ndarray) -> sp.csr_array:
     return stiffness + sp.csr_array((springs, (places, places)), shape=stiffness.shape)
 
 
-def held_inverse(rotor: ElasticBody, nodes: np.ndarray) -> InertiaRelief:
+def held_inverse(rotor: Rotor, nodes: np.ndarray) -> InertiaRelief:
     """Return the inverse of the stiffness of `nodes` with all others held.
 
     ValueError if that leaves motions free.
@@ -255,13 +244,13 @@ def held_inverse(rotor: ElasticBody, nodes: np.ndarray) -> InertiaRelief:
 _known: dict[int, tuple[weakref.ref[sp.csr_array], tuple, InertiaRelief]] = {}
 
 
-def _known_relief(rotor: ElasticBody) -> InertiaRelief | None:
+def _known_relief(rotor: Rotor) -> InertiaRelief | None:
     mass, model, relief = _known.get(id(rotor.stiffness), (lambda: None, None, None))
     same = mass() is rotor.mass and model == (rotor.rigid_motions, rotor.solver)
     return relief if same else None
 
 
-def free_motions_of(rotor: ElasticBody) -> np.ndarray:
+def free_motions_of(rotor: Rotor) -> np.ndarray:
     """Return the :func:`free_rigid_motions` of a rotor; those of its elastic inverse if known."""
     known = _known_relief(rotor)
     if known is not None:
@@ -269,7 +258,7 @@ def free_motions_of(rotor: ElasticBody) -> np.ndarray:
     return free_rigid_motions(rotor.nodes, rotor.mass, rotor.stiffness, rotor.rigid_motions)
 
 
-def inertia_relief(rotor: ElasticBody, rigid: np.ndarray | None = None) -> InertiaRelief:
+def inertia_relief(rotor: Rotor, rigid: np.ndarray | None = None) -> InertiaRelief:
     """Return the elastic inverse of a rotor; factorised once as long as its matrices live.
 
     `rigid` are its :func:`free_motions_of`, where they are computed already. ValueError if the

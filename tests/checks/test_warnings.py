@@ -31,7 +31,6 @@ from exudyn_rotor import (
     steady_state,
     stress_history,
 )
-from exudyn_rotor.solvers import factor
 
 LAMINAR = {
     "radius": 0.1, "length": 0.05, "clearance": 3e-4, "pressure_drop": 1.2e6, "density": 1000.0,
@@ -144,8 +143,6 @@ def curved_elements(_):
 
 # place of every ``warnings.warn`` (file:function): what makes it fire, kind, part of its text
 PLACES = {
-    "solvers/factor.py:_tell_of_mkl": (
-        lambda _: factor._tell_of_mkl.__wrapped__(), UserWarning, r"exudyn-rotor\[mkl\]"),
     "bearings/annular_seal.py:__post_init__": (
         lambda _: AnnularSeal(interface="a", **LAMINAR),
         UserWarning, "may be laminar"),

@@ -1,7 +1,5 @@
 """Factors by Pardiso, where it is installed, and modes with any factor."""
 
-import warnings
-
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -63,27 +61,3 @@ def test_pardiso_gives_the_modes_of_ngsolve(shaft, monkeypatch):
     again = SolidRotor.from_matrices(shaft.mass, shaft.stiffness.copy(), shaft.nodes, "x")
     assert free_modes(again, 12).frequencies == pytest.approx(expected.frequencies, rel=1e-9)
     assert len(made) == 1
-
-
-def test_mkl_is_named_once_where_a_model_is_large(monkeypatch):
-    """Not where it is installed, or where there is none for the machine."""
-
-    def messages() -> int:
-        factor._tell_of_mkl.cache_clear()
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            for _ in range(2):
-                SparseCholesky(sp.eye_array(700, format="csr"))
-        return sum("mkl" in str(one.message) for one in caught)
-
-    monkeypatch.setattr(factor, "has_pardiso", lambda: False)
-    monkeypatch.setattr("platform.machine", lambda: "AMD64")
-    monkeypatch.setattr("sys.platform", "linux")
-    assert messages() == 0
-    monkeypatch.setattr(factor, "_LARGE", 100)
-    assert messages() == 1
-    monkeypatch.setattr("platform.machine", lambda: "arm64")
-    assert messages() == 0
-    monkeypatch.setattr("platform.machine", lambda: "AMD64")
-    monkeypatch.setattr(factor, "has_pardiso", lambda: True)
-    assert messages() == 0
