@@ -131,6 +131,7 @@ def test_picture_shows_the_whole_film():
 
 def test_rigid_mass_is_at_the_limit_of_whirl():
     state = carried(film(), 0.9)
+    assert state.sommerfeld_number == pytest.approx(0.9, rel=1e-8)
     stiffness, damping = state.coefficients()
     mass = state.critical_mass()
     system = np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness / mass, -damping / mass]])

@@ -101,13 +101,3 @@ def test_tilting_pads_rest_where_someyas_do(bearing, row):
     place = bearing.equilibrium(speed)
     assert np.linalg.norm(place) / tables.CLEARANCE == pytest.approx(row[1], abs=6e-3)
     assert tables.pads_torque(bearing, speed) == pytest.approx(row[2], rel=1e-2)
-
-
-def test_losses_are_those_of_someyas_table():
-    """Two grooves of 10°, L/D = 0.5, S = 0.517: flow and friction (Databook 1989, p. 14)."""
-    state = tables.carried(tables.film(width=10.0, axial_nodes=12), 0.517)
-    assert state.eccentricity_ratio == pytest.approx(0.500, abs=2e-3)
-    assert np.degrees(state.attitude) == pytest.approx(51.1, abs=0.4)
-    flow = state.side_flow / (tables.CLEARANCE * tables.RADIUS * state.speed * state.film.length)
-    assert flow == pytest.approx(0.366, rel=1e-2)
-    assert state.torque / (tables.CLEARANCE * tables.LOAD) == pytest.approx(11.3, rel=1e-2)

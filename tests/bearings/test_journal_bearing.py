@@ -1,6 +1,5 @@
 """Journal bearings: film, equilibrium, coefficients, in scenes and in linear analyses."""
 
-import exudyn as exu
 import numpy as np
 import pytest
 from point_rotors import ring_rotor
@@ -9,14 +8,10 @@ from exudyn_rotor import (
     JournalBearing,
     OilFilm,
     ShortJournalBearing,
-    add_rotor,
-    add_supports,
     bearing_loads,
     grooved_pads,
-    recommended_settings,
     stability,
     stability_threshold,
-    steady_state,
 )
 from exudyn_rotor.bearings.support import NoCoefficientsError
 
@@ -114,29 +109,6 @@ def test_stability_limit_of_a_rigid_rotor_is_the_published_one():
     assert limit == pytest.approx(expected, rel=1e-5)
     # stable at any speed above an eccentricity of 0.756 (A. G. Holmes 1960)
     assert limit_of_a_rigid_rotor(0.7555) > 0.0 > limit_of_a_rigid_rotor(0.7565)
-
-
-def scene(rotor, bearings, **options):
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor, **({"gravity": GRAVITY} | options))
-    added = add_supports(body, bearings)
-    mbs.Assemble()
-    return mbs, body, added
-
-
-def test_a_run_begins_in_the_equilibrium_and_stays_there():
-    rotor = rigid_rotor()
-    bearings = journals(rotor)
-    mbs, body, added = scene(rotor, bearings, spin=SPEED)
-    body.start_from(steady_state(body).state())
-    settings = recommended_settings(end_time=0.05, step=1e-4)
-    settings.solution.file.write = False
-    mbs.SolveDynamic(settings)
-    for bearing, connector in zip(bearings, added, strict=True):
-        place, _, force = connector.values()
-        apart = np.abs(place[:2] - bearing.equilibrium(SPEED)).max()
-        assert apart < 1e-5 * SIZE["clearance"]
-        np.testing.assert_allclose(-force[:2], bearing.load, atol=1e-3 * 525.0)
 
 
 def test_refused_input():

@@ -58,20 +58,6 @@ def test_another_program():
     np.testing.assert_allclose(damping, np.diag([2.104e5, 2.560e5]), atol=0.01 * 2.56e5)
 
 
-def test_sense_of_the_spin_mirrors_bearing_and_pivots():
-    """Mirrored across n2, pads from the other side and pivots at the other share of the arc."""
-    mirror = np.diag([-1.0, 1.0])
-    one, other = (
-        bearing((sense * 500.0, -1500.0), pivot=0.5 + 0.1 * sense, nodes=60)
-        for sense in (1.0, -1.0)
-    )
-    np.testing.assert_allclose(
-        one.equilibrium(SPEED), mirror @ other.equilibrium(-SPEED), atol=1e-6 * CLEARANCE
-    )
-    for a, b in zip(one.coefficients(SPEED), other.coefficients(-SPEED), strict=True):
-        np.testing.assert_allclose(a, mirror @ b @ mirror, atol=1e-5 * np.abs(a).max())
-
-
 def test_pads_that_tilt_do_not_make_a_rotor_whirl():
     """A mass of 20 kg under its weight, far above the limit of the same pads fixed."""
     load, speed = [0.0, -196.0], 2000.0

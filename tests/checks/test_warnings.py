@@ -178,7 +178,7 @@ ELSEWHERE = {
     "linear/modal/basis_error.py:warn": "errs by about",
     "linear/static/static_response.py:static_response": "errs by about",
     "linear/response/steady_response.py:_with_warning": "errs by about",
-    "linear/model/linear_model.py:_warn_of_refused": "no values at .* which are NaN",
+    "linear/model/linear_model.py:warn_of_refused": "no values at .* which are NaN",
     "linear/modal/resonance.py:warn": "none are looked for",
     "linear/response/steady_response.py:_warn_of_missing": "no values at",
     "linear/response/response.py:warn_of_coarse_peaks": "too far apart to give its size and width",
@@ -195,7 +195,6 @@ ELSEWHERE = {
     "linear/own_frequency.py:own_motions": "do not settle at their own frequency",
     "linear/model/linear_model.py:warn_beyond": "keeps its ends for motions of",
     "linear/over.py:_warn_of_lost": "do not converge for all motions",
-    "linear/over.py:warn_of_refused": "no values at .* which are NaN",
 }
 TEXTS = {place: text for place, (_, _, text) in PLACES.items()} | ELSEWHERE
 # places that several kinds of bodies reach

@@ -1,13 +1,9 @@
 """Supports put into a scene, against the same list in linear analyses and against closed forms."""
 
-from dataclasses import replace
-
 import exudyn as exu
 import numpy as np
 import pytest
 from apart import distance
-from exudyn.itemInterface import MarkerBodyRigid
-from exudyn.rigidBodyUtilities import InertiaCuboid
 from point_rotors import ring_rotor
 from scipy.spatial.transform import Rotation
 
@@ -92,51 +88,8 @@ def test_scene_and_linear_rotor_have_the_same_exponents(kind):
     assert compared(kind) < 1e-7
 
 
-TO_X, TO_Y = (Rotation.from_euler(a, 90.0, degrees=True).as_matrix() for a in ("y", "x"))
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
-
-
-FROM_BASE = [KINDS["3 x 3"], KINDS["tilt, damped"], replace(HELD, tilt_stiffness=2e3)]
-
-
-def block(mbs, turn):
-    """Return a sprung rigid block below the rotor."""
-    base = mbs.CreateRigidBody(
-        inertia=InertiaCuboid(density=2500.0, sideLengths=[0.3, 0.1, 0.5]),
-        referencePosition=[0.0, -0.2, 0.0],
-        referenceRotationMatrix=turn,
-        nodeType=exu.NodeType.RotationRxyz,
-    )
-    ground = mbs.CreateGround()
-    for place in np.array([[-1, 0, -1], [-1, 0, 1], [1, 0, -1], [1, 1, 1]]) * 0.1:
-        mbs.CreateCartesianSpringDamper(
-            itemNumbers=[ground, base],
-            localPosition0=list(turn @ place + [0.0, -0.2, 0.0]),
-            localPosition1=list(place),
-            stiffness=[4e5, 6e5, 5e5],
-            damping=[100.0] * 3,
-        )
-    return base
-
-
-def test_a_foundation_feels_the_forces():
-    """On a skew block, by its number or by markers."""
-    found, turn = [], SKEW
-    for by_markers in (False, True):
-        mbs = exu.SystemContainer().AddSystem()
-        body, base = add_rotor(mbs, rings(), spin=SPEED), block(mbs, turn)
-        if by_markers:
-            base = {
-                name: mbs.AddMarker(MarkerBodyRigid(bodyNumber=base, localPosition=turn.T @ place))
-                for name, place in SEATS.items()
-            }
-        add_supports(body, FROM_BASE, base)
-        mbs.Assemble()
-        found.append(linear_model(mbs, body=body, about="given"))
-    assert distance(*found, SPEED) < 1e-9
-
-
-SEATS = {"left": np.array([0.0, 0.2, -0.15]), "right": np.array([0.0, 0.2, 0.15])}  # in the block
+TO_X, TO_Y = (Rotation.from_euler(a, 90.0, degrees=True).as_matrix() for a in ("y", "x"))
 
 
 RISING = ([0.0, 100.0], [[[2e5, 3e4], [0.0, 1e5]], [[8e5, 0.0], [-6e4, 3e5]]])
