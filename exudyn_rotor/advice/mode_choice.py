@@ -19,7 +19,6 @@ from exudyn_rotor.advice.request import Request
 
 GROWTH = 0.05  # per radian
 _FREQUENCIES = 9
-_SPEEDS = 9  # within a range, at which unbalance may meet a resonance
 _ALIKE = 0.01  # relative distance of frequencies of a pair: both planes of bending go together
 
 
@@ -102,8 +101,8 @@ def exponents(
 ) -> Iterator[tuple[float, complex]]:
     """Yield speeds and exponents s of loads in the rotor frame to look at.
 
-    Over the band evenly and at the resonances in it; unbalance at more speeds. With `steady`, a
-    growth per radian, weight and unbalance alone at the speeds.
+    Over the band evenly and at the resonances in it. With `steady`, a growth per radian, weight and
+    unbalance alone.
     """
     for speed in request.speeds:
         highest = request.loads + speed
@@ -115,9 +114,6 @@ def exponents(
             frequencies, growth = [0.0, speed] if speed else [], steady
         for nu in frequencies:
             yield float(speed), 1j * nu + growth * max(nu, speed, 0.1 * request.highest)
-    if request.low < request.high:
-        for speed in np.linspace(request.low, request.high, _SPEEDS)[1:-1]:
-            yield float(speed), complex(GROWTH * speed)
 
 
 def largest_share(change: np.ndarray, sizes: np.ndarray, least: float = 0.0) -> float:
