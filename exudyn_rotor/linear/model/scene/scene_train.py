@@ -12,7 +12,6 @@ import exudyn
 import numpy as np
 
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.drives.coupling import FlexibleCoupling
 from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.linear.model.rotor_train import Link, RotorTrain
 from exudyn_rotor.linear.model.scene.scene_checks import check_body, rotors_in
@@ -126,11 +125,8 @@ def _other_end(body: RotorBody, one: SceneSupport, markers: dict[int, str]) -> s
 
 def _link_of(one: SceneConnection) -> Link:
     law = one.connection
-    nonlinear = isinstance(law, GearMesh) and (law.backlash is not None or law.variation.size)
-    if one.other is None or nonlinear or not isinstance(law, GearMesh | FlexibleCoupling):
-        raise ValueError(
-            f"body: {one} of rotor {one.body.name!r} is not linear, or is to a shaft; {_BY_HAND}"
-        )
+    if isinstance(law, GearMesh) and (law.backlash is not None or law.variation.size):
+        raise ValueError(f"body: {one} of rotor {one.body.name!r} is not linear; {_BY_HAND}")
     given = law if isinstance(law, GearMesh) else law.support(one.at)
     return Link(f"{one.body.name}:{one.at}", f"{one.other.name}:{one.other_at}", given)
 
@@ -141,7 +137,7 @@ def _check_nothing_else(mbs: exudyn.MainSystem, bodies: Sequence[RotorBody]) -> 
     for body in bodies:
         known |= {*map(int, body.objects.values()), *map(int, body.constraints.values())}
         known |= {int(number) for one in body.supports for number in one.objects}
-        known |= {int(one.object) for one in body.drives}
+        known |= {int(number) for one in body.drives for number in one.objects}
     for number in set(range(mbs.systemData.NumberOfObjects())) - known:
         item = mbs.GetObject(number)
         if item["objectType"] != "Ground":
