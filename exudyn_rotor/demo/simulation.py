@@ -9,12 +9,12 @@ from pathlib import Path
 import exudyn
 import numpy as np
 from exudyn.FEM import FEMinterface
+from exudyn.interactive import ShowImage
 from exudyn.itemInterface import SensorMarker, SensorNode
 from exudyn.rigidBodyUtilities import RotationMatrixX, RotationMatrixZ
 from tqdm import tqdm
 
 from exudyn_rotor.demo.scene import AddRotor, add_foundation
-from exudyn_rotor.multibody.drawing import draw_scene
 
 MAGNIFICATION = 300.0
 
@@ -135,6 +135,8 @@ def _integrate(mbs: exudyn.MainSystem, label: str, end_time: float, step: float)
 
 def draw_rotor(SC: exudyn.SystemContainer, path: Path) -> None:
     """Draw the scene with the rotor's deformation, magnified."""
+    from matplotlib import pyplot
+
     settings = SC.visualizationSettings
     settings.view0.scene.drawCoordinateSystem = 0
     settings.general.showSolverInformation = False
@@ -144,10 +146,9 @@ def draw_rotor(SC: exudyn.SystemContainer, path: Path) -> None:
     settings.view0.scene.showMeshEdges = False
     for group in (settings.connectors, settings.markers, settings.loads, settings.sensors):
         group.show = False
-    draw_scene(
-        SC,
-        path,
-        deformation_scale=MAGNIFICATION,
-        contour=exudyn.OutputVariableType.DisplacementLocal,
-        view=RotationMatrixZ(-0.6) @ RotationMatrixX(1.25),
-    )
+    settings.bodies.deformationScaleFactor = MAGNIFICATION
+    settings.contour.outputVariable = exudyn.OutputVariableType.DisplacementLocal
+    settings.nodes.show = False
+    view = RotationMatrixZ(-0.6) @ RotationMatrixX(1.25)
+    image = ShowImage(SC, size=(1400, 900), modelRotation=view, show=False)
+    pyplot.imsave(path, image, format="png")

@@ -81,7 +81,6 @@ def node_scene(translation="free", axis="z", spin="free", tilting=4e3, **options
         mbs,
         reduced,
         translation=translation,
-        frame_node="mesh_origin",
         spin=spin,
         **speed,
         **options,

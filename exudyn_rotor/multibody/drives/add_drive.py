@@ -154,11 +154,6 @@ def add_drive(
             f"body: rotor {body.name!r} has a prescribed spin, which no torque changes; add it "
             "with spin='free', or read its drive torque with body.add_drive_torque_sensor()"
         )
-    if "marker_body" not in body.objects:
-        raise ValueError(
-            f"body: rotor {body.name!r} was added with marker_body=False; drives need the marker "
-            "body"
-        )
     drive.torque(body.plan.setup.placement.speed)  # a curve that fails does so here, not in a run
     if at is None:
         if base is not None:

@@ -195,11 +195,6 @@ def connect_rotors(
 def _checked_end(body: Body, at: str, argument: str, place: str) -> Seat:
     checks.instance(body, argument, (RotorBody, FullRotorBody), "add_rotor returns one")
     body.check_present()
-    if "marker_body" not in body.objects:
-        raise ValueError(
-            f"{argument}: rotor {body.name!r} was added with marker_body=False; gears and "
-            "couplings need the marker body"
-        )
     check_turning_interface(body, at, place)
     return Seat.of(body, at, None)
 

@@ -192,11 +192,6 @@ def add_supports(
     checks.instance(body, "body", (RotorBody, FullRotorBody), "add_rotor returns one")
     body.check_present()
     supports = given_supports(supports)
-    if "marker_body" not in body.objects:
-        raise ValueError(
-            f"body: rotor {body.name!r} was added with marker_body=False; supports need the marker "
-            "body"
-        )
     check_interfaces(supports, body.selection.source.interfaces)
     for support in supports:
         if isinstance(support, SeriesSupport | FloatingRingBearing):
@@ -323,7 +318,7 @@ def _check_on_rotor(body: RotorBody | FullRotorBody, support: Given, seat: Seat)
     where = f"base: the support at {support.interface!r} stands on another rotor"
     tilts = isinstance(support, Support) and support.tilts
     across = isinstance(support, Support) and not tilts
-    if not across and abs(rotor.axis @ seat.axes[:, 2]) < 1.0 - _PARALLEL:
+    if not across and abs(rotor.standing_axes[:, 2] @ seat.axes[:, 2]) < 1.0 - _PARALLEL:
         raise ValueError(
             f"{where}, whose axis is not parallel to that of rotor {body.name!r}; mount both on "
             "parallel axes"

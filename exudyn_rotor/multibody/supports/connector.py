@@ -616,7 +616,7 @@ def watch_clearance(body: RotorItems, connector: BearingConnector | MagneticConn
     """Let runs of the scene stop where the journal of a connector leaves its bearing."""
     bearing, name = connector.bearing, body.name
     stops = entry(body.mbs).setdefault(_STOPS, set())
-    place = body.mark, bearing.interface
+    place = body.token, bearing.interface
     if isinstance(bearing, ClearanceStop):
         stops.add(place)
         return

@@ -12,7 +12,6 @@ import scipy.linalg
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
-from exudyn_rotor.multibody.rotor.marker_body import around
 from exudyn_rotor.multibody.rotor.plan import turned_origin
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import StartState
@@ -197,17 +196,17 @@ class SceneCoordinates:
     def interface_motion(self, name: str) -> np.ndarray:
         """Return an interface's motion (6, k): displacement and rotation along (n1, n2, e).
 
-        In the rotor frame, as its marker moves, the marker's offset included.
+        In the rotor frame.
 
         Raises
         ------
-        KeyError
-            For an interface without a marker.
+        TypeError, ValueError
+            For an interface that is not there.
         """
         motion = np.zeros((6, len(self.free)))
         motion[: self.count, : self.count] = np.eye(self.count)
         turn = np.kron(np.eye(2), self.axes.T @ self.body.frame.B.T)
-        motion[:, self.modal] = turn @ _marker_motion(self.body, name)
+        motion[:, self.modal] = turn @ self.body.interface_carrier(name).motion
         return motion @ self.N
 
     def turn(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -276,16 +275,3 @@ def nullspace(C: np.ndarray) -> np.ndarray:
     N[untouched, np.arange(len(untouched))] = 1.0
     N[touched, len(untouched) :] = kernel
     return N
-
-
-def _marker_motion(body: RotorBody, name: str) -> np.ndarray:
-    """Return displacement and rotation (6, m) of an interface, axes of the marker body."""
-    nodes = around(list(body.mbs.GetMarker(body.marker(name))["meshNodeNumbers"]))
-    marker_body = body.mbs.GetObject(body.objects["marker_body"])
-    columns = np.asarray(marker_body["modeBasis"])
-    points = np.reshape(marker_body["referencePositions"], (-1, 3))[nodes]
-    columns = columns.reshape(len(columns) // 3, 3, -1)[nodes]
-    mean = columns.mean(axis=0)
-    turning = np.vstack([-skew(arm) for arm in points - points.mean(axis=0)])  # φ × a = −ã φ
-    rotation = np.linalg.lstsq(turning, (columns - mean).reshape(9, -1), rcond=None)[0]
-    return np.vstack([mean, rotation])
