@@ -210,7 +210,7 @@ def _instant(body: RotorBody, record: Record, index: int) -> tuple[float, ...]:
     if body.gravity_load is not None:  # a script may change it
         gravity = np.asarray(body.mbs.GetLoadParameter(body.gravity_load, "loadVector"))
     energy = energy_of(motion, t, q, q_t, gravity)
-    power, drive = external_load(body, record, index)[1] @ q_t, 0.0
+    power, drive = external_load(body, record, index) @ q_t, 0.0
     if not body.formulation.has_spin:
         moment = _moment_on_spin(body, record, index)
         if body.gravity_load is not None:
@@ -227,8 +227,6 @@ def _instant(body: RotorBody, record: Record, index: int) -> tuple[float, ...]:
 
 def _moment_on_spin(body: RotorBody, record: Record, index: int) -> float:
     """Return the external moment about e, which the locked spin holds [N m]."""
-    if "marker_body" not in body.objects:
-        return 0.0
     mass, spin = body.layout.lock_mass, body.locks.spin
     held = mass[spin] * record.q_tt[index, spin]
     if body.plan.setup.locking == "mass" and spin in body.locks.varying:

@@ -2,15 +2,12 @@
 
 import numpy as np
 import pytest
-from models import centered_disc
 from point_rotors import ring_rotor
 from shaken_rotors import ENDS, record, rigid, springs
 
 from exudyn_rotor import (
     BaseAcceleration,
     BaseRecord,
-    RotorTrain,
-    ShortJournalBearing,
     Support,
     base_response,
     harmonic_response,
@@ -90,14 +87,6 @@ def test_what_decays_or_swings_fast_takes_no_short_steps(stiffness, damping):
     assert one.peak("left")[0] == pytest.approx(other.peak("left")[0], rel=0.02)
 
 
-def test_a_stable_rotor_on_films_stays_in_range():
-    film = {"radius": 0.02, "length": 0.02, "clearance": 4e-5, "viscosity": 0.01}
-    supports = [ShortJournalBearing(interface=name, load=[0.0, -200.0], **film) for name in ENDS]
-    short, long = (base_response(centered_disc().reduce(6), noise(end), speed=314.0,
-                                 supports=supports, at="left") for end in (0.25, 1.0))  # fmt: skip
-    assert long.peak("left")[0] < 10.0 * short.peak("left")[0]
-
-
 @pytest.mark.parametrize("speed", [0.0, 0.5, 60.0])
 def test_ground_in_steady_motion_ends_in_the_harmonic_response(speed):
     """On uneven supports, from slow spin, a step for each piece of the record, to fast."""
@@ -111,17 +100,3 @@ def test_ground_in_steady_motion_ends_in_the_harmonic_response(speed):
     expected = (waves * steady.motion[0, 0, :, :2]).sum(axis=1).real
     off = found.displacement("left")[-200:, :2] - expected
     assert np.abs(off).max() < 2e-3 * np.abs(expected).max()
-
-
-def test_a_train_of_one_is_shaken_as_its_rotor():
-    supports = [Support(name, np.diag([4e4, 9e4]), 300.0) for name in ENDS]
-    train = RotorTrain({"r": rigid()}, {"r": 1.0}, {"r": supports})
-    one = base_response(rigid(), noise(0.3), speed=60.0, supports=supports)
-    other = base_response(train, noise(0.3), speed=60.0)
-    np.testing.assert_allclose(one.motion, other.motion, atol=1e-9 * np.abs(one.motion).max())
-
-
-def test_tables_have_speeds_in_rpm_by_default():
-    found = base_response(rigid(), noise(0.1), speed=np.pi, supports=springs(100.0))
-    assert "at 30 rpm" in found.table()
-    assert "at 3.14159 rad/s" in found.table(units="SI")

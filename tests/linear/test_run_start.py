@@ -14,7 +14,6 @@ from exudyn_rotor import (
     UnbalanceResponse,
     add_rotor,
     harmonic_response,
-    linear_model,
     recommended_settings,
     unbalance_response,
 )
@@ -129,26 +128,6 @@ def test_run_begins_in_steady_whirl(translation, axis, stiffness):
         return mbs, body
 
     stays(response, speed, build)
-
-
-@pytest.mark.parametrize("translation", ["none", "free"])
-def test_response_of_a_scene_starts_its_runs(translation):
-    """The unbalance is the scene's own; what stands on the ground stands still."""
-    K = STIFFNESS * np.array([1.0, 1.4, 1.0])
-    reduced, speed = rotor(), 0.7 * CRITICAL
-
-    def build():
-        return scene(reduced, K, spin=speed, translation=translation)
-
-    mbs, body = build()
-    response = unbalance_response(linear_model(mbs, body=body, about="given"), [speed])
-
-    def started():
-        mbs, body = build()
-        body.start_from(response.state(speed, body))
-        return mbs, body
-
-    stays(response, speed, started)
 
 
 @pytest.mark.parametrize("translation", ["none", "free"])

@@ -157,11 +157,7 @@ class SceneBody(RotorItems, ABC):
             raise ValueError("weights: are for mesh nodes; an interface has its own")
         if np.any(shift):
             point = point.shifted(shift)
-        number = point.add_marker(self.mbs, kind, self.frame.B, name=name or "", show=show)
-        if not isinstance(where, str):
-            share = np.ones(len(where)) if weights is None else np.asarray(weights)
-            self.node_places[int(number)] = np.asarray(where), share / share.sum()
-        return number
+        return point.add_marker(self.mbs, kind, self.frame.B, name=name or "", show=show)
 
     def add_interface_sensor(self, interface: str, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at an interface's marker; `options` go to ``SensorMarker``."""

@@ -84,8 +84,6 @@ class RotorItems:
         What :func:`exudyn_rotor.add_supports` added.
     drives : list
         What :func:`exudyn_rotor.add_drive` added.
-    node_places : dict
-        By marker number, mesh nodes and weights of markers that ``add_marker`` put there.
     """
 
     mbs: exudyn.MainSystem
@@ -98,7 +96,6 @@ class RotorItems:
     markers: dict = field(default_factory=dict, init=False)
     supports: list = field(default_factory=list, init=False)
     drives: list = field(default_factory=list, init=False)
-    node_places: dict = field(default_factory=dict, init=False)
     record_sensors: dict = field(default_factory=dict, init=False)
     token: object = field(default_factory=object, init=False)  # of this rotor alone
     script: ScriptMarkers = field(default_factory=ScriptMarkers, init=False)
