@@ -71,7 +71,8 @@ def _lost(body: RotorItems) -> Iterator[tuple[bool, int, str]]:
         reason = markers.why_lost(int(load["markerNumber"]), "a load")
         if reason and not (reason is _OFFSET and load["loadType"] != "ForceVector"):
             yield True, number, reason
-    own = {*map(int, body.constraints.values()), *(int(drive.object) for drive in body.drives)}
+    own = set(map(int, body.constraints.values()))
+    own |= {int(number) for drive in body.drives for number in drive.objects}
     for number in range(mbs.systemData.NumberOfObjects()):
         item = mbs.GetObject(number)
         if number in own or "markerNumbers" not in item or not item.get("activeConnector", 1):

@@ -107,7 +107,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
 
         Craig-Bampton modes of FEMinterface hold the frame of Exudyn's own body at the first
         boundary, and what tilts the rotor against it softens falsely with the square of the speed;
-        a warning says how much. use_mean_axis_modes(fem) gives both bodies the same modes.
+        use_mean_axis_modes(fem) gives both bodies the same modes.
 
     Example:
         >>> import exudyn

@@ -81,7 +81,7 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
     -----
     What is attached to rigid and position markers at the node ``nRigidBody`` acts as on Exudyn's
     body, in the mesh origin. The flexible object is the first object that is added.
-    It warns where Exudyn's own body would soften falsely with these modes; see
+    Exudyn's own body may soften falsely with Craig–Bampton modes; see
     :func:`exudyn_rotor.use_mean_axis_modes`.
 
     Examples

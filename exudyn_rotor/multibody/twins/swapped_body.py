@@ -14,7 +14,7 @@ from exudyn_rotor.multibody.add_rotor import add_rotor
 from exudyn_rotor.multibody.rotor.frame import LOCKINGS
 from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS, color_of
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.reduction.mean_axis import frame_shares, warn_of_held_frame
+from exudyn_rotor.reduction.mean_axis import frame_shares
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.axis import SpinAxis
@@ -89,7 +89,6 @@ def add_swapped_body(
     rotor = SolidRotor.from_fem_interface(fem, _axis_of(turn.T @ omega) if axis is None else axis)
     reduced = rotor.reduce(fem, prestress=options.pop("prestress"))
     modes = np.asarray(fem.modeBasis["matrix"])
-    warn_of_held_frame(rotor, modes, stacklevel=3)
     options["translation"] = suited_translation(options["translation"], reduced.grounded)
     formulation = Formulation(options["translation"], options["spin"])
     if formulation.translation_count:  # Exudyn's is the velocity of the mesh origin
