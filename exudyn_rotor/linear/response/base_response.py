@@ -36,8 +36,8 @@ from exudyn_rotor.linear.model.build import (
 )
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.response.loads import At, Place, checked_places, places
-from exudyn_rotor.linear.response.response import DIRECTIONS
-from exudyn_rotor.results import Result, numbers, storable, text_table, words
+from exudyn_rotor.linear.response.response import DIRECTIONS, AtPlaces
+from exudyn_rotor.results import numbers, storable, text_table
 from exudyn_rotor.theory.rotating_axes import axes_of
 from exudyn_rotor.units import Units
 
@@ -66,7 +66,7 @@ _RADAU = np.array(
 
 @storable
 @dataclass(frozen=True, eq=False)
-class BaseResponse(Result):
+class BaseResponse(AtPlaces):
     """Motion against the ground over time, along and about (n1, n2, e), inertial axes.
 
     Attributes
@@ -91,21 +91,20 @@ class BaseResponse(Result):
     left    3e-06   4e-06      0       5e-06     0.1
     """
 
-    places: tuple[str, ...] = words("places")
     time: np.ndarray = numbers("steps")
     motion: np.ndarray = numbers("steps", "places", 6, finite=False)
     speed: float = 0.0
 
     def displacement(self, place: str) -> np.ndarray:
         """Return the displacement of a place over time, shape (t, 3) [m]."""
-        return self._moved(place, "place")
+        return self.motion[:, self._at(place), :3]
 
     def between(self, place: str, other: str) -> np.ndarray:
         """Return the displacement of a place against another, shape (t, 3) [m].
 
         Of a journal against its foundation: ``between("left", "left (foundation)")``.
         """
-        return self._moved(place, "place") - self._moved(other, "other")
+        return self.displacement(place) - self.motion[:, self._at(other, "other"), :3]
 
     def peak(self, place: str, other: str | None = None) -> tuple[float, float]:
         """Return the largest displacement across the axis [m], and its time [s].
@@ -148,9 +147,6 @@ class BaseResponse(Result):
         ax.set_ylabel("displacement across the axis [µm]")
         ax.legend()
         return ax
-
-    def _moved(self, place: str, name: str) -> np.ndarray:
-        return self.motion[:, self.places.index(checks.choice(place, name, self.places)), :3]
 
 
 def base_response(

@@ -32,7 +32,6 @@ from exudyn_rotor.linear.response.loads import (
     unbalance_load,
 )
 from exudyn_rotor.linear.response.response import HarmonicResponse, UnbalanceResponse
-from exudyn_rotor.linear.response.run_start import kept_coordinates
 from exudyn_rotor.linear.solve.forced import forced_motions
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.theory.rotating_axes import FRAMES
@@ -320,7 +319,7 @@ class _Steady:
             "stiffening": model.stiffening,
             "refined": refine,
         }
-        return values, fields | kept_coordinates(model, found, self.speed)
+        return values, fields
 
     def seen(self, observed: Sequence[Place], found: Sequence[Coordinates]) -> Motions:
         """Return the motions of places."""
