@@ -197,13 +197,6 @@ def function(value: Callable, name: str) -> Callable:
     return value
 
 
-def executor(value: Any) -> Any:
-    """Return an executor with a ``submit`` method, or None."""
-    if value is None or (callable(getattr(value, "submit", None)) and not isinstance(value, type)):
-        return value
-    raise TypeError(told("executor", "an executor of concurrent.futures or alike, or None", value))
-
-
 def path(value: str | os.PathLike, name: str = "path") -> Path:
     """Return the path of a file."""
     needed = "the path of a file (text or Path)"

@@ -210,7 +210,7 @@ def _instant(body: RotorBody, record: Record, index: int) -> tuple[float, ...]:
     if body.gravity_load is not None:  # a script may change it
         gravity = np.asarray(body.mbs.GetLoadParameter(body.gravity_load, "loadVector"))
     energy = energy_of(motion, t, q, q_t, gravity)
-    power, drive = external_load(body, record, index)[1] @ q_t, 0.0
+    power, drive = external_load(body, record, index) @ q_t, 0.0
     if not body.formulation.has_spin:
         moment = _moment_on_spin(body, record, index)
         if body.gravity_load is not None:

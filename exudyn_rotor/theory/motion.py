@@ -239,18 +239,6 @@ class Motion:
             kinetic -= 1.5 * omega**4 * self._fourth(zeta)
         return float(kinetic + 0.5 * zeta @ (self.invariants.K @ zeta))
 
-    def momentum(self, t: float, q: ArrayLike, q_t: ArrayLike) -> np.ndarray:
-        """Return the generalised momenta, shape (size,): ``M q̇``, with a stiffness per ω⁴ less.
-
-        With a free spin, the entry of θ is the angular momentum about the spin axis relative to
-        the frame origin.
-        """
-        q_t = self._coordinates(q_t, "q_t")
-        momenta = self.mass_matrix(t, q) @ q_t
-        if not self.formulation.has_frozen_spin:
-            momenta[self._spin] -= 2.0 * q_t[self._spin] ** 3 * self._fourth(q[self.modes])
-        return momenta
-
     def terms(self, t: float, q: ArrayLike, q_t: ArrayLike) -> Terms:
         """Return every block by its name and equation; see :mod:`exudyn_rotor.theory.terms`."""
         return terms_of(self, t, q, q_t)

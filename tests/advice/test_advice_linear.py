@@ -5,9 +5,8 @@ import pytest
 from models import centered_disc
 
 from exudyn_rotor import Support, craig_bampton_modes, unbalance_response
-from exudyn_rotor.advice import mode_choice
-from exudyn_rotor.advice.candidate import candidate
-from exudyn_rotor.advice.mode_choice import GROWTH
+from exudyn_rotor.advice.candidate import Candidate
+from exudyn_rotor.advice.mode_choice import GROWTH, Response
 
 
 @pytest.mark.parametrize("stiffness", [1e7, 1e8])
@@ -21,10 +20,10 @@ def test_what_modes_miss_of_the_response_to_unbalance_is_the_error_of_that(stiff
     reduced, speed = solid.reduce(craig_bampton_modes(solid, 12, coupling="RBE3")), 300.0
     springs = stiffness * np.eye(3)
     supports = [Support(name, springs, springs / speed) for name in ("left", "right")]
-    given = candidate(reduced, None, supports, None, None)
+    given = Candidate.of(reduced, supports)
     s = complex(GROWTH * speed)
     found, attached = (
-        mode_choice._point(one, speed, s).response[:, -1] for one in (given, given.attached)
+        Response(one, speed, s).motion[:, -1] for one in (given, given.with_attachments())
     )
     many = solid.reduce(craig_bampton_modes(solid, 80, coupling="RBE3"))
     full, ours = (

@@ -84,6 +84,3 @@ def test_exponents_are_those_of_the_film(nodes):
         assert error < 1e-3
         assert np.abs(motions - s).min() < (error + 1e-7) * abs(s)
     assert found.stable[0] == (nodes == 24)
-
-
-# ------------------------------------------------------------------ scenes

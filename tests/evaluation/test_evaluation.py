@@ -3,21 +3,17 @@
 import numpy as np
 import pytest
 from matplotlib import pyplot
-from models import disc_with_craig_bampton_modes
 from point_rotors import ring_rotor
 
 from exudyn_rotor import (
-    BaseAcceleration,
     SolidRotor,
     StabilityLevelOne,
     Support,
     Unbalance,
     UnbalanceResponse,
     anticipated_cross_coupling,
-    bearing_loads,
     bearing_masses,
     campbell,
-    harmonic_response,
     separation_margins,
     stability,
     stability_level_one,
@@ -166,19 +162,6 @@ def test_bearings_share_the_mass_by_their_levers(axis):
 # ------------------------------------------------------------------ stability of level I
 
 
-def test_the_ground_that_rises_by_g_loads_bearings_as_their_weight():
-    """The journals go down, by the load of each bearing over its stiffness."""
-    rotor = disc_with_craig_bampton_modes()
-    stiffness = {"left": 1e6, "right": 2e6}
-    supports = [Support(name, k, damping=10.0) for name, k in stiffness.items()]
-    weight = BaseAcceleration([0.0, 9.81])
-    response = harmonic_response(rotor, [0.0], weight, supports=supports, speed=50.0)
-    loads = bearing_loads(rotor, list(stiffness), -9.81 * rotor.axis.plane[:, 1])
-    for (name, k), load in zip(stiffness.items(), loads, strict=True):
-        moved = [response.phasor(name, n)[0].real for n in ("n1", "n2")]
-        np.testing.assert_allclose(moved, load / k, atol=1e-8 * abs(load[1]) / k)
-
-
 def test_anticipated_cross_coupling_of_the_printed_formula():
     """q = P·3·9.55·(ρd/ρs)/(D H N) in kN/mm with W, mm and rpm; the constant is 30/π."""
     power, diameter, width, rpm, ratio = 2e6, 400.0, 15.0, 9000.0, 1.3
@@ -271,14 +254,6 @@ def test_several_stages_share_the_coupling_and_beyond_ten_times_there_is_no_thre
     assert none.threshold is None
     assert "Q0 above 10 QA" in none.table()
     assert not none.needs_level_two
-
-
-def test_the_picture_shows_range_margin_and_factor():
-    ax = separation_margins(jeffcott(0.05), (120.0, 150.0)).plot(units="SI")
-    assert [text.get_text() for text in ax.texts] == ["AF 9.9"]
-    assert ax.patches[0].get_x() == pytest.approx(120.0)
-    assert ax.patches[1].get_width() == pytest.approx(0.15 * 120.0, rel=0.01)
-    pyplot.close(ax.figure)
 
 
 @pytest.mark.parametrize("damping", [2.0, 20.0])

@@ -93,9 +93,6 @@ def test_damping_is_that_of_the_inertial_frequency():
     np.testing.assert_allclose(result.log_decrement, expected, rtol=1e-10)
 
 
-# ------------------------------------------------------------------ order and whirl
-
-
 # ------------------------------------------------------------------ periodic systems
 
 
@@ -112,6 +109,3 @@ def test_anisotropic_support_of_a_point_mass():
     assert np.sum(result.whirl == "mixed") == 10
     tracked = result.tracked()
     np.testing.assert_allclose(np.ptp(tracked.frequencies_inertial, axis=0), 0.0, atol=1e-6)
-
-
-# ------------------------------------------------------------------ results and input

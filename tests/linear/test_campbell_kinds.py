@@ -1,7 +1,8 @@
 """Overdamped, free and split modes, and signed frequencies of whirl."""
 
 import numpy as np
-from bodies import point_mass
+import pytest
+from bodies import SHAFT, point_mass, rings
 from models import disc_rotor
 
 from exudyn_rotor import SolidRotor, Support, campbell
@@ -29,6 +30,17 @@ def test_overdamped_motions_stand_behind_the_others():
     assert np.all(result.continued)
     few = campbell(rotor, [0.0, 50.0], supports=supports, modes=3)
     np.testing.assert_allclose(few.frequencies_inertial, 200.0, rtol=1e-9)
+
+
+@pytest.mark.parametrize("stiffness", [1e6, np.diag([1e6, 2e6, 0.0])], ids=["even", "uneven"])
+def test_free_motions_keep_their_names(stiffness):
+    """Lateral springs alone leave the spin and the axial motion free, at rest and at speed."""
+    rotor = rings(SHAFT).reduce(2)
+    support = Support("all", stiffness, 10.0, 1e4)
+    result = campbell(rotor, [0.0, 30.0, 50.0, 90.0], supports=[support])
+    for row, words in enumerate(result.whirl):
+        free = words[result.frequencies_inertial[row] == 0.0]
+        assert sorted(free) == ["axial", "torsional"]
 
 
 def test_motions_of_a_free_rotor_have_no_damping():

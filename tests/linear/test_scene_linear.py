@@ -228,12 +228,16 @@ def test_refused_scenes():
         linear_model(mbs, body=None)
     with pytest.raises(TypeError, match="target: needs"):
         linear_model(body)
+    with pytest.raises(TypeError, match="body: is only for"):
+        linear_model(rings(), body=body)
+    with pytest.raises(ValueError, match="99 is not between 1 and the"):
+        campbell(rings(), 0.0, modes=99)
     with pytest.raises(ValueError, match="another mbs"):
         linear_model(other, body=body)
     with pytest.raises(ValueError, match="about: 'rest' is unknown"):
         linear_model(mbs, body=body, about="rest")
     with pytest.raises(ValueError, match="finite"):
-        linear_model(mbs, body=body).at(np.nan)
+        linear_model(mbs, body=body).matrices(np.nan)
     add_rotor(mbs, rings(), name="second")
     with pytest.raises(ValueError, match="not assembled"):
         linear_model(mbs, body=body)

@@ -12,7 +12,6 @@ from exudyn_rotor import (
     Support,
     add_rotor,
     add_supports,
-    check_run,
     recommended_settings,
     steady_state,
 )
@@ -159,30 +158,6 @@ def test_load_that_nothing_holds_is_refused(reduced, held, monkeypatch):
     with pytest.raises(UnconvergedError, match="nothing holds"):
         steady_state(body)
     assert len(angles) <= 3 * 12 + 2 * 48
-
-
-# ------------------------------------------------------------------ static solutions
-
-
-def static(mbs):
-    settings = exu.SimulationSettings()
-    settings.staticSolver.verboseMode = 0
-    settings.solution.file.write = False
-    return mbs.SolveStatic(settings)
-
-
-@pytest.mark.parametrize("translation", ["none", "free", "in-plane"])
-def test_a_static_solution_under_gravity_holds_at_one_angle(reduced, translation):
-    for gravity, ok in ((GRAVITY, False), (0.0, True)):
-        mbs, body = build(reduced, 40.0, translation, gravity=[0.0, -gravity, 0.0])
-        mbs.Assemble()
-        assert static(mbs)
-        row = check_run(body, warn=False)["any angle"]
-        assert row.ok == (ok and translation == "none")  # else the unbalance turns in space
-        assert "steady_state(body) finds the motion" in row.advice
-
-
-# -------------------------------------------------- the own spin of a rotor with an elastic drive
 
 
 # ------------------------------------------------------------------ where the search begins

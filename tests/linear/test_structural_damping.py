@@ -114,9 +114,6 @@ def test_materials_have_loss_factors_of_their_own(cylinder, damped):
     assert damped.mass_damping is None
 
 
-# ------------------------------------------------------------------ reduced rotors
-
-
 # ------------------------------------------------------------------ scenes and analyses in time
 
 

@@ -9,8 +9,6 @@ import pytest
 from exudyn.itemInterface import (
     LoadCoordinate,
     MarkerNodeCoordinate,
-    MarkerSuperElementPosition,
-    SensorSuperElement,
 )
 from matplotlib.image import imread
 from models import STEEL, block_beam
@@ -83,31 +81,6 @@ def test_loads_on_coordinates(reduced):
     assert mbs.GetSensorValues(spin) == pytest.approx(
         [0.5e-6 * 0.2 / inertia, 1e-3 * 0.2 / inertia], rel=1e-3
     )
-
-
-def test_native_markers_and_sensors_without_helpers(solid, reduced):
-    """What a script does on Exudyn's own flexible body works by mesh node number."""
-    _, mbs, body = one_rotor(reduced, initial_speed=100.0)
-    marker_body, nodes = body.objects["marker_body"], solid.interfaces["right"].nodes.tolist()
-    marker = mbs.AddMarker(
-        MarkerSuperElementPosition(
-            bodyNumber=marker_body,
-            meshNodeNumbers=nodes,
-            weightingFactors=solid.interfaces["right"].weights,
-        )
-    )
-    sensor = mbs.AddSensor(
-        SensorSuperElement(
-            bodyNumber=marker_body,
-            meshNodeNumber=nodes[0],
-            outputVariableType=KINDS.DisplacementLocal,
-        )
-    )
-    mbs.Assemble()
-    mbs.SolveDynamic(settings())
-    own = mbs.GetMarkerOutput(body.marker("right"), KINDS.Position)
-    assert abs(mbs.GetMarkerOutput(marker, KINDS.Position) - own).max() < 1e-12
-    assert np.all(np.isfinite(mbs.GetSensorValues(sensor)))
 
 
 def test_pictures_show_the_rotor_its_deformation_and_its_stress(solid, reduced, tmp_path):

@@ -5,12 +5,10 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 from exudyn.itemInterface import SensorMarker
-from exudyn.utilities import InertiaSphere
 from models import centered_disc
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
-    PrescribedMotion,
     SolidRotor,
     add_rotor,
 )
@@ -172,33 +170,4 @@ def test_directions_of_mesh_and_scene_change_nothing_else(
     )
 
 
-# ------------------------------------------------------------------ without the marker body
-
-
 # ------------------------------------------------------------------ several bodies
-
-
-def test_several_rotors_do_not_know_each_other(reduced):
-    cases = {"a": ({"initial_speed": 300.0}, UNIT), "b": ({"spin": -200.0}, TO_X)}
-    cases["c"] = ({"translation": "none", "initial_speed": 100.0}, SKEW)
-    cases["d"] = ({"spin": PrescribedMotion.run_up(0.0, 100.0, 2e-3)}, TO_Y)
-    alone = {}
-    for name, (options, placed) in cases.items():
-        mbs = exu.SystemContainer().AddSystem()
-        _, sensors = add_scene(mbs, reduced, placed, options)
-        alone[name] = run(mbs, sensors)
-
-    mbs = exu.SystemContainer().AddSystem()
-    ball = mbs.CreateRigidBody(inertia=InertiaSphere(2.0, 0.1), gravity=[0.0, 0.0, -9.81])
-    together = {
-        name: add_scene(mbs, reduced, placed, options, name)[1]
-        for name, (options, placed) in cases.items()
-    }
-    result = run(mbs, [s for sensors in together.values() for s in sensors])
-    for expected, actual in zip(alone.values(), np.split(result, len(cases)), strict=True):
-        assert abs(actual - expected).max() < 1e-9 * abs(expected).max()
-    fallen = mbs.GetObjectOutputBody(ball, exu.OutputVariableType.Displacement, [0, 0, 0])
-    assert fallen[2] == pytest.approx(-0.5 * 9.81 * 3e-3**2, rel=1e-9)
-
-
-# ------------------------------------------------------------------ reports

@@ -53,19 +53,6 @@ def test_energy_is_conserved(translation):
     assert np.ptp(v[:, motion.formulation.translation_count]) > 1e-3  # the spin takes part
 
 
-def test_spin_follows_half_the_change_of_inertia():
-    """Θω̇ = −½ωċ without a coupling g, so ω exp(c/2Θ) stays as it is; c = ζᵀĈζ without h."""
-    motion = frozen_motion(
-        "in-plane", P=np.zeros((3, 3, 2)), S=np.zeros((3, 2)), center=np.zeros(3)
-    )
-    q, v = integrated(motion, [0.05, -0.03], 4.0)
-    zeta, omega = q[:, motion.modes], v[:, 2]
-    change = np.einsum("si,ij,sj->s", zeta, motion.spin_terms.C_hat, zeta)
-    assert np.ptp(omega) > 1e-4 * SPEED
-    kept = omega * np.exp(change / (2.0 * motion.invariants.Theta))
-    assert kept == pytest.approx(kept[0], rel=1e-9)
-
-
 @pytest.fixture(scope="module")
 def rings():
     """Two rings with an unbalance, joined by springs: rigid and flexible modes."""

@@ -164,7 +164,7 @@ def test_estimate_after_a_run_is_what_the_springs_would_bend(lopsided, whole, co
     row = check_run(body, warn=False)["residual"]
     assert row.value == pytest.approx(expected, rel=1e-5)
     assert not row.ok
-    assert check_run(body, limits={"residual": 1.01 * expected}, warn=False)["residual"].ok
+    assert check_run(body, accuracy=min(1.01 * expected, 0.9), warn=False)["residual"].ok
 
 
 def told(reduced: ReducedRotor, **given) -> str:

@@ -53,18 +53,6 @@ def test_the_order_of_damping_and_reduction_does_not_matter():
         np.testing.assert_allclose(one.invariants.D, D, rtol=0.0, atol=1e-13 * np.abs(D).max())
 
 
-def test_factors_add_up_and_keep_the_elements(cylinder):
-    damped = cylinder.with_damping(stiffness=1e-6).with_damping(stiffness=2e-6)
-    difference = damped.damping - 3e-6 * cylinder.stiffness
-    assert abs(difference).max() <= 4e-16 * abs(damped.damping).max()
-    assert damped.elements is cylinder.elements
-    assert damped.mass_damping is None
-    assert damped.prestress().balanced
-    given = cylinder.with_damping(mass=2.0).mass_damping
-    assert abs(given - 2.0 * cylinder.mass).max() == 0.0
-    assert cylinder.with_damping().damping is None
-
-
 def test_damping_of_one_material(cylinder):
     """A uniform strain ε_zz dissipates β (λ + 2 μ) ε² V of its material; v = x̂ has α m of it."""
     damped = cylinder.with_damping(materials={"aluminium": FACTORS})

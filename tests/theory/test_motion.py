@@ -123,27 +123,6 @@ def test_stiffness_of_a_static_displacement(spin, coupling):
     assert_relative(by_v, numeric_v, 1e-8)
 
 
-@pytest.mark.parametrize("translation", ["none", "free"])
-def test_a_static_displacement_keeps_momentum_and_energy_of_a_free_spin(translation):
-    """Their rates by the equations, ``ṗ = 0`` for the spin and ``Ė = 0``, as derivatives."""
-    plain, _, _ = motion_of(Formulation(translation, "free"))
-    inv = replace(plain.invariants, D=0.0 * plain.invariants.D)
-    K4 = random_spd(np.random.default_rng(9), inv.size)
-    motion = Motion(inv, plain.formulation, replace(stiffening(inv, "tilt"), K4=K4), ORIENTATION)
-    q, v = 0.1 * np.array(random_state(motion.size, 2))
-    a = np.linalg.solve(motion.mass_matrix(0.0, q, v), motion.forces(0.0, q, v))
-    spin, h = motion.formulation.translation_count, 1e-4
-    ends = [(q + s * h * v + 0.5 * h**2 * a, v + s * h * a) for s in (-1.0, 1.0)]
-    energies = [motion.energy(0.0, *end) for end in ends]
-    size = abs(motion.forces(0.0, q, v) @ v)
-    assert (energies[1] - energies[0]) / (2.0 * h) == pytest.approx(0.0, abs=1e-5 * size)
-    if translation == "none":  # the momentum of the spin is about the frame's origin
-        momenta = [motion.momentum(0.0, *end)[spin] for end in ends]
-        rate = (momenta[1] - momenta[0]) / (2.0 * h)
-        size = np.abs(motion.mass_matrix(0.0, q, v)[spin] * a).max()
-        assert rate == pytest.approx(0.0, abs=1e-5 * size)
-
-
 def blocks_of(formulation: Formulation, size: int) -> list:
     """Return index pairs of the blocks (t, r, f) × (t, r, f)."""
     spin = formulation.translation_count, formulation.translation_count + formulation.has_spin
@@ -247,6 +226,3 @@ def test_equations_with_stiffening_follow_from_their_energy(translation):
     expected = lagrange_residual(lagrangian, 0.0, q, v, a) - damping @ v
     actual = motion.mass_matrix(0.0, q) @ a - motion.forces(0.0, q, v)
     assert_relative(actual, expected, 1e-8)
-
-
-# ------------------------------------------------------------------ power

@@ -121,9 +121,3 @@ def test_units_do_not_matter(seed, count, length, mass, time):
     expected, found = stability(first, speeds), stability(second, speeds / time)
     # free rigid motions are double roots, which keep half the digits
     assert_small(found.growth * time - expected.growth, first.frequencies, 1e-6)
-
-
-# ------------------------------------------------------------------ power and momentum
-
-
-# ------------------------------------------------------------------ Jacobian

@@ -290,7 +290,7 @@ class Campbell(ModelResult):
         top = max(np.nanmax(drawn, initial=0.0), shown.frequencies(np.abs(self.speeds).max()))
         ax.set_ylim(0.0, 1.05 * top or None)
         ax.grid(alpha=0.3)
-        plotting.legend_of_seen(ax, 3, handles)
+        plotting.legend_above(ax, 3, handles)
         return ax
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:

@@ -231,4 +231,4 @@ class StaticResponse(Result):
         scale = checks.number(scale, "scale")
         moved = self.nodes + scale * self.displacement
         label = f"displacement [µm], drawn {scale:.3g} times"
-        return draw_surface(moved, self.triangles, 1e6 * sizes, label, ax, undeformed=self.nodes)
+        return draw_surface(moved, self.triangles, 1e6 * sizes, label, ax)

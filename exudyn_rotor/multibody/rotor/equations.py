@@ -24,6 +24,7 @@ _NO_FORCES = {
     "dampingMatrix": np.zeros((0, 0)),
     "forceVector": np.zeros(0),
     "forceUserFunction": 0,
+    "jacobianUserFunction": 0,
 }
 
 StateForce = Callable[[float, list, list], np.ndarray]

@@ -68,8 +68,6 @@ class Connector(ABC):
         Number of these.
     muted : bool
         Whether its object has no force, as where linear equations take the law itself.
-    native : tuple of ndarray or None
-        Constant stiffness and damping (size, size) that Exudyn evaluates itself.
     """
 
     whole = False  # whether it needs rotations
@@ -89,7 +87,7 @@ class Connector(ABC):
         self._first = end.size
         self._second = end.size + (0 if base is None else base.size)
         self.size = self._second + count
-        self.muted, self.native = False, (None, None)
+        self.muted = False
 
     # ------------------------------------------------------------------ motion
 
@@ -198,6 +196,7 @@ class Connector(ABC):
         whole = whole or self
 
         none, massive = [0.0] * self.size, self.has_mass
+        resists_nothing = np.zeros((self.size, self.size))
 
         def force(mbs, t, item, q, q_t):
             if whole.muted:
@@ -213,6 +212,8 @@ class Connector(ABC):
             return found
 
         def jacobian(mbs, t, item, q, q_t, factor_q, factor_v):
+            if whole.muted:
+                return resists_nothing
             self.begin(mbs, t)
             self.read(q, q_t)
             found = self.tangent(t)
@@ -228,7 +229,6 @@ class Connector(ABC):
         if massive:
             matrices["massMatrixUserFunction"] = mass
         given = {"massMatrix": np.zeros((self.size, self.size))} | matrices
-        self.native = tuple(given.get(name) for name in ("stiffnessMatrix", "dampingMatrix"))
         return ObjectGenericODE2(
             nodeNumbers=list(self.nodes),
             forceUserFunction=force,
