@@ -23,8 +23,8 @@ from exudyn_rotor import (
 )
 from exudyn_rotor.linear.model.body import RotorBody as LinearBody
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
-from exudyn_rotor.nonlinear.run_start import in_body
 from exudyn_rotor.multibody.evaluation import evaluating
+from exudyn_rotor.nonlinear.run_start import in_body
 from exudyn_rotor.reduction.driven import _others
 
 SPEED, ANGLE = 90.0, 0.7

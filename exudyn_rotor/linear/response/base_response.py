@@ -298,7 +298,7 @@ class _ShakenRotor:
                 both = moved[: 2 * len(last) : 2], last[: len(moved[::2])]
                 is_settled = np.abs(both[0] - both[1]).max() <= _HALVED * tolerance
                 if is_settled and _follow(moved):
-                    return time, motion
+                    return time[::2], motion[::2]
             step, last = 0.5 * step, moved
         raise UnconvergedError(
             f"base response: steps of {2.0 * step:.2g} s are too long for the motion; give an "

@@ -101,6 +101,11 @@ class Response(AtPlaces):
         raise NotImplementedError
 
     @property
+    def _rounding(self) -> np.ndarray:
+        """Amplitudes up to which a displacement is rounding, (s,) [m]."""
+        return _NO_MOTION * np.abs(self.motion[..., :3]).max(axis=(1, 2, 3), initial=0.0)
+
+    @property
     def main_order(self) -> int:
         """The harmonic with the largest displacement across the axis, or along it if none is."""
         sizes = np.abs(np.nan_to_num(self.motion)).max(axis=(0, 1))
@@ -149,7 +154,8 @@ class Response(AtPlaces):
 
         The minor one is negative where the rotor whirls backward.
         """
-        forward, backward = np.abs(self.whirl(place, order))
+        sizes = np.abs(self.whirl(place, order))
+        forward, backward = np.where(sizes <= self._rounding, 0.0, sizes)
         return forward + backward, forward - backward
 
     def peak(self, place: str | None = None, order: int | None = None) -> tuple[float, float]:
@@ -212,7 +218,6 @@ class Response(AtPlaces):
     def _columns(self, place: str, order: int, units: str) -> dict[str, np.ndarray]:
         """Return the columns of one place and harmonic."""
         values, unit = self._shown(units)
-        least = _NO_MOTION * np.abs(self.motion[..., :3]).max(axis=(1, 2, 3), initial=0.0)
         columns = {
             f"{self._what} [{unit}]": values,
             "place": np.full(len(values), place),
@@ -220,7 +225,7 @@ class Response(AtPlaces):
         }
         for name in ("n1", "n2", "e"):
             phasor = self.phasor(place, name, order)
-            phases = np.where(np.abs(phasor) <= least, 0.0, np.degrees(_angles(phasor)))
+            phases = np.where(np.abs(phasor) <= self._rounding, 0.0, np.degrees(_angles(phasor)))
             columns |= {f"{name} [m]": np.abs(phasor), f"{name} phase [deg]": phases}
         forward, backward = np.abs(self.whirl(place, order))
         errors = np.full(len(values), np.nan)
