@@ -112,9 +112,8 @@ from exudyn_rotor.reduction.component import free_modes as free_modes
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes as craig_bampton_modes
 from exudyn_rotor.reduction.mean_axis import use_mean_axis_modes as use_mean_axis_modes
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor as ReducedRotor
+from exudyn_rotor.reduction.selection import keep_modes as keep_modes
 from exudyn_rotor.reduction.selection import select_modes as select_modes
-from exudyn_rotor.reduction.spinning import spinning_modes as spinning_modes
-from exudyn_rotor.reduction.truncation import keep_modes as keep_modes
 from exudyn_rotor.results import Result as Result
 from exudyn_rotor.results import load_result as load_result
 from exudyn_rotor.ross import from_ross as from_ross

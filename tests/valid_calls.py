@@ -389,7 +389,6 @@ CALLS = {
     "sensitivity": lambda w: {"supports": [*w.magnets, *w.supports]},
     "separation_margins": {"operating_range": (500.0, 800.0)},
     "spectra": {"time": 1e-3 * np.arange(40), "motion": np.ones((40, 2)), "length": 0.02},
-    "spinning_modes": lambda w: {"rotor": w.stressed, "speeds": (5.0, 10.0)},
     "static_response": {"loads": {"left": [1.0, 2.0, 0.0]}, "gravity": DOWN},
     "stability_level_one": {"cross_coupling": 1e4},
     "stability_threshold": lambda w: {

@@ -222,13 +222,3 @@ def test_a_free_shift_along_the_axis_does_not_hinder_a_constant_load():
     assert along.phasor("at", "e")[1] == pytest.approx(-0.01)
     with pytest.raises(ValueError, match="at 0 rad/s: a constant load acts on a motion"):
         harmonic_response(rotor, [0.0], HarmonicForce("at", (0, 0, 1.0)), **given)
-
-
-def test_a_point_without_a_spin_is_loaded_at_the_frequency_of_its_spin():
-    """On uneven supports a harmonic is constant in the rotor: no spin is there to be held."""
-    point = SolidRotor.from_matrices(np.eye(3), np.zeros((3, 3)), [[0, 0, 0]], "z")
-    rotor = point.with_interface("at", [0])
-    supports = [Support("at", np.diag([1e4, 2e4]), 5.0)]
-    force = HarmonicForce("at", (1.0, 0.0))
-    found = harmonic_response(rotor, [50.0], force, speed=50.0, supports=supports)
-    assert found.phasor()[0] == pytest.approx(1.0 / (1e4 - 2500.0 + 250.0j))

@@ -25,7 +25,7 @@ from exudyn_rotor.linear.model.body import RotorBody as LinearBody
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.multibody.evaluation import evaluating
 from exudyn_rotor.nonlinear.run_start import in_body
-from exudyn_rotor.reduction.driven import _others
+from exudyn_rotor.reduction.selection import _beside_spin
 
 SPEED, ANGLE = 90.0, 0.7
 HELD = [
@@ -87,7 +87,7 @@ def forces(mbs, bodies, model, rates, motion):
                 turn @ (alone[2] - 2.0 * w * G @ alone[1] + w**2 * G @ G @ alone[0]),
             ]
         if part.name in model.driven:
-            alone = [_others(body.selection.source) @ one for one in alone]
+            alone = [_beside_spin(body.selection.source) @ one for one in alone]
         (x, x_t, x_tt), spins = zip(*(in_body(body, one) for one in alone), strict=True)
         given = SceneCoordinates.of(body)
         T, T1, T2 = given.turn(rate * ANGLE)

@@ -199,12 +199,3 @@ def test_a_second_branch_is_found_from_a_motion_on_it():
     for start, expected in ((None, small), (near, large), (near.state(), large)):
         motion = steady_state(body, start=start).interface_motion("left", 0.0)
         assert np.hypot(*motion[:2]) / c == pytest.approx(expected, rel=1e-3)
-
-
-def test_a_frozen_spin_has_the_steady_motion_of_a_free_one(reduced):
-    found = []
-    for coupling in ("full", "frozen"):
-        mbs, body = build(reduced, "free", "free", initial_speed=50.0, spin_coupling=coupling)
-        mbs.Assemble()
-        found.append(steady_state(body).interface_motion("left", 0.3))
-    np.testing.assert_allclose(*found, rtol=1e-9, atol=1e-15)
