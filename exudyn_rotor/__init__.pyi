@@ -25,7 +25,6 @@ from exudyn_rotor.bearings.short_journal import ShortJournalBearing as ShortJour
 from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper as SqueezeFilmDamper
 from exudyn_rotor.bearings.support import Support as Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing as TiltingPadBearing
-from exudyn_rotor.drives.cardan import CardanJoint as CardanJoint
 from exudyn_rotor.drives.coupling import FlexibleCoupling as FlexibleCoupling
 from exudyn_rotor.drives.drive import Drag as Drag
 from exudyn_rotor.drives.drive import TorqueCurve as TorqueCurve

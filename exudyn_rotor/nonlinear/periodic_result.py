@@ -82,7 +82,7 @@ class PeriodicResponse(Result):
     coordinates : ndarray of complex, shape (p, c, k), optional
         Harmonics of the coordinates of the reduced rotor in its own axes, from which runs begin.
     beside : tuple of str, optional
-        Names of those after the reduced rotor's: of a foundation, controllers, voids and pads.
+        Names of those after the reduced rotor's: of a foundation, controllers and pads.
 
     Examples
     --------

@@ -2,7 +2,7 @@
 
 Of a reduced rotor, ``x = F f + T ζ`` with the motions F of the frame that its formulation has, and
 the basis Ψ = Q T of its modal coordinates. After x come the modes of a foundation, and pairs of
-controllers' coordinates, which turn as x does. What films remember begins as in a journal at rest.
+controllers' coordinates, which turn as x does.
 """
 
 from __future__ import annotations
@@ -11,8 +11,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from exudyn_rotor.bearings.film.void_states import COUNT
-from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.model.assembly import WORDS
@@ -25,7 +23,7 @@ from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.rotating_axes import axes_of
 
-_OWN = dict(zip((MagneticBearing, JournalBearing, TiltingPadBearing), WORDS.values(), strict=False))
+_OWN = dict(zip((MagneticBearing, TiltingPadBearing), WORDS.values(), strict=False))
 
 
 def state_in_scene(
@@ -63,7 +61,7 @@ def state_in_scene(
     if names != beside or source.size + len(names) != len(x):
         raise ValueError(
             f"body: rotor {body.name!r} has {source.size} coordinates and {len(names)} of a "
-            f"foundation, controllers, voids and pads, the response {len(x) - len(beside)} and "
+            f"foundation, controllers and pads, the response {len(x) - len(beside)} and "
             f"{len(beside)}; compute it with the reduced rotor, the foundation and the supports, "
             "in the same order, of the scene"
         )
@@ -107,16 +105,12 @@ def _foundation(body: RotorBody) -> SceneFoundation | None:
 
 
 def _with_own(body: RotorBody) -> list[tuple[SceneSupport, np.ndarray, int]]:
-    """Return supports with own coordinates in linear analyses, where a scene has these, how many.
+    """Return supports with own coordinates, where a scene has these, and how many.
 
-    In the order of linear models. What a film remembers is no coordinate of a scene.
+    In the order of linear models.
     """
-    found = []
-    for one in body.supports:
-        places = one.own_coordinates(body.mbs)
-        remembers = isinstance(one.support, JournalBearing) and one.support.remembers
-        if size := COUNT if remembers else len(places):
-            found.append((one, places, size))
+    places = [(one, one.own_coordinates(body.mbs)) for one in body.supports]
+    found = [(one, where, len(where)) for one, where in places if len(where)]
     return sorted(found, key=lambda each: list(_OWN).index(type(each[0].support)))
 
 
@@ -133,8 +127,6 @@ def _with_beside(body: RotorBody, state: StartState, x: np.ndarray, x_t: np.ndar
     for one, places, size in _with_own(body):
         own, rates = (X[first : first + size] for X in (x, x_t))
         first += size
-        if not len(places):
-            continue
         if isinstance(one.support, TiltingPadBearing):
             radius = one.support.film.radius
             q[places], q_t[places] = -own / radius, -rates / radius

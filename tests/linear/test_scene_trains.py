@@ -134,7 +134,7 @@ def test_accelerations_of_a_scene_are_those_of_its_train(ratio, axis, rotation):
     assert accelerations_left(mbs, bodies, model, (1.0, ratio)) < 1e-9
 
 
-def geared(connection, other=None, driven="", turned=None, speed=SPEED, **options):
+def geared(connection, driven="", turned=None, speed=SPEED, **options):
     """Return two rotors, each on two springs, and what connects them; A and B may be driven."""
     mbs = exudyn.SystemContainer().AddSystem()
     apart = getattr(connection, "center_distance", 0.0)
@@ -152,7 +152,7 @@ def geared(connection, other=None, driven="", turned=None, speed=SPEED, **option
     for body in bodies:
         add_supports(body, [Support(n, np.diag([3e5, 3e5, 1e5]), 9.0) for n in "ab"])
     ends = ("a", "a") if apart else ("b", "a")
-    connect_rotors(connection, bodies[0], ends[0], other or bodies[1], None if other else ends[1])
+    connect_rotors(connection, bodies[0], ends[0], bodies[1], ends[1])
     mbs.Assemble()
     return mbs, bodies
 

@@ -17,7 +17,6 @@ import scipy.linalg as la
 from exudyn_rotor.bearings.controlled_support import (
     Controlled,
     ControlledSupport,
-    FilmSupport,
     PadSupport,
 )
 from exudyn_rotor.bearings.given import linear_supports
@@ -49,7 +48,6 @@ End = tuple[str, str]  # names of a body and of its interface
 Seen = Callable[[End], Terms]  # what a support acts on, seen from outside
 WORDS = {
     ControlledSupport: "controller",
-    FilmSupport: "voids",
     PadSupport: "pads",
     SeriesSupport: "ring",
 }
@@ -170,7 +168,7 @@ def is_isotropic_matrix(X: np.ndarray) -> bool:
 
 
 class OwnBody(Body):
-    """Coordinates that a support brings with it, as a body: of a controller, of voids, of pads."""
+    """Coordinates that a support brings with it, as a body: of a controller, of pads."""
 
     def rows(self) -> dict[int, np.ndarray]:
         """Return the displacements of its pairs of coordinates, seen from outside, (3p, k)."""
@@ -264,10 +262,7 @@ def own_elements(
     def matrices(speed: float, *_: float) -> tuple[np.ndarray, np.ndarray]:
         if isinstance(one, PadSupport):
             return _of_pads(one, rate * speed)
-        if isinstance(one, ControlledSupport):
-            D, K = one.damping, one.stiffness
-        else:
-            D, K = one.matrices(rate * speed)
+        K, D = one.stiffness, one.damping
         return lifted @ K @ lifted.T, lifted @ D @ lifted.T
 
     def motion(seen: Seen) -> Terms:
