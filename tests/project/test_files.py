@@ -12,7 +12,7 @@ from exudyn_rotor.storage import write_arrays
 # what a response has at nodes, at rest, without damping, beyond the last critical speed or peak
 MAY_BE_LONGER = ("triangles", "dropped", "field.free_motions", "field.vectors")
 MAY_BE_EMPTY = ("triangles", "field.vectors")
-MAY_BE_MISSING = (
+MAY_BE_MISSING = ("field.coordinates", 
     ".K2", ".B", ".K4", ".K2_estimated", ".H", ".K0", "shapes.stress", ".threshold", ".stiffening",
     ".critical_speed_ratio", ".gas_density", ".basis_errors",
 )  # fmt: skip
