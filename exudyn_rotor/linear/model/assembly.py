@@ -307,21 +307,10 @@ def elements_of(
 ) -> tuple[list[Element], list[OwnBody]]:
     """Return the elements of a model, and the coordinates that some of them bring.
 
-    Parameters
-    ----------
-    supports : mapping of str to sequence
-        Supports and bearings of each rotor.
-    ratios : mapping of str to float
-    links : sequence of Link
-    bases : mapping of str to (str, str)
-        What carries the support at an interface; the ground where there is nothing.
-    turns : int
-        Axes of the own coordinates.
-    kind : {'full', 'static', 'undamped'}
-        'static' elements have their static stiffness in the place of own coordinates; 'undamped'
-        ones are also without damping and the skew part of their stiffness, and keep rings.
-    begun : int
-        Number of own coordinates' bodies that there are already.
+    What carries a support is in `bases` by its interface, the ground where there is nothing. Pairs
+    of own coordinates turn with `turns` times Ω; `begun` bodies of them there are already. Of the
+    kind 'static' elements have their static stiffness in the place of own coordinates; 'undamped'
+    ones are also without damping and the skew part of their stiffness, and keep rings.
 
     Raises
     ------

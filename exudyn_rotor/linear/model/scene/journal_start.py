@@ -25,13 +25,7 @@ _SOFT = 1e-8  # of the stiffest mode: resistance of free motions, which are pref
 def journal_start(scene: SceneCoordinates, speed: float, orders: np.ndarray) -> np.ndarray:
     """Return harmonics (h, k) of the motion with all journals at rest in their equilibria.
 
-    Parameters
-    ----------
-    scene : SceneCoordinates
-    speed : float
-        Spin speed [rad/s].
-    orders : ndarray of int, shape (h,)
-        With −1, 0 and 1 among them.
+    At a spin speed [rad/s]; the orders (h,) have −1, 0 and 1 among them.
 
     Raises
     ------

@@ -183,22 +183,10 @@ class LinearScene(SceneCoordinates):
     def steady_motion(self, speed: float, tolerance: float, start: Motion | None = None) -> Motion:
         """Return the steady motion at a spin speed [rad/s] by its harmonics of the revolution.
 
-        Cages of rolling bearings stand where they are when the rotor starts.
-
-        Parameters
-        ----------
-        speed : float
-        tolerance : float
-            Largest last change of Newton's method, and largest share of the highest harmonics,
-            relative to the motion.
-        start : (ndarray, ndarray), optional
-            Orders and harmonics of a motion to begin with.
-
-        Returns
-        -------
-        orders : ndarray of int, shape (h,)
-        harmonics : ndarray of complex, shape (h, k)
-            ``y(θ) = Re Σ y_n exp(inθ)``, as deviations from :attr:`rest`.
+        Orders (h,) and harmonics (h, k) of ``y(θ) = Re Σ y_n exp(inθ)``, as deviations from
+        :attr:`rest`. Newton's last change, and the highest harmonics, are below `tolerance` of the
+        motion; the search begins with the motion `start` where one is given. Cages of rolling
+        bearings stand where they are when the rotor starts.
 
         Raises
         ------
