@@ -25,7 +25,6 @@ from exudyn_rotor.bearings.short_journal import ShortJournalBearing as ShortJour
 from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper as SqueezeFilmDamper
 from exudyn_rotor.bearings.support import Support as Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing as TiltingPadBearing
-from exudyn_rotor.drives.cardan import CardanJoint as CardanJoint
 from exudyn_rotor.drives.coupling import FlexibleCoupling as FlexibleCoupling
 from exudyn_rotor.drives.drive import Drag as Drag
 from exudyn_rotor.drives.drive import TorqueCurve as TorqueCurve
@@ -112,9 +111,8 @@ from exudyn_rotor.reduction.component import free_modes as free_modes
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes as craig_bampton_modes
 from exudyn_rotor.reduction.mean_axis import use_mean_axis_modes as use_mean_axis_modes
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor as ReducedRotor
+from exudyn_rotor.reduction.selection import keep_modes as keep_modes
 from exudyn_rotor.reduction.selection import select_modes as select_modes
-from exudyn_rotor.reduction.spinning import spinning_modes as spinning_modes
-from exudyn_rotor.reduction.truncation import keep_modes as keep_modes
 from exudyn_rotor.results import Result as Result
 from exudyn_rotor.results import load_result as load_result
 from exudyn_rotor.ross import from_ross as from_ross

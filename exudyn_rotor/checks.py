@@ -102,6 +102,12 @@ def _scalar(value: object, name: str, needed: str) -> float:
         raise ValueError(told(name, needed, value)) from error
 
 
+def keep(item: object, **values: object) -> None:
+    """Keep checked fields in a frozen dataclass."""
+    for name, value in values.items():
+        object.__setattr__(item, name, value)
+
+
 def keep_numbers(item: object, units: Mapping[str, str], **bounds: float) -> None:
     """Check attributes of a frozen object, given with their units, and keep them as floats."""
     for name, unit in units.items():

@@ -17,7 +17,7 @@ from exudyn_rotor.advice.step_size import Step, choose_step
 from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.reduction.truncation import keep_modes
+from exudyn_rotor.reduction.selection import keep_modes
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.stiffening import LEVELS, estimated_error
 from exudyn_rotor.units import IN_HERTZ

@@ -253,7 +253,7 @@ def _unresisted(run: RecordedRun) -> float:
 def _missing_stiffness(run: RecordedRun) -> float:
     """Half of the energy of what is left out over the energy of the motion.
 
-    Without a prestress by the estimate of :mod:`exudyn_rotor.prestress.estimate` or, where there
+    Without a prestress by the estimate of :mod:`exudyn_rotor.prestress.carrying` or, where there
     is none, ω² per unit of modal mass.
     """
     inv, level = run.invariants, run.body.stiffening

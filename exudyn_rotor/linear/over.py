@@ -141,19 +141,6 @@ def _warn_of_lost(found: Motions) -> None:
     )
 
 
-def warn_of_refused(refused: Sequence[tuple[str, Exception]], count: int) -> None:
-    """Warn of points without values; raise the first error where all of `count` have none."""
-    if len(refused) == count:
-        raise refused[0][1]
-    if refused:
-        shown = ", ".join(point for point, _ in refused[:5]) + (" …" if len(refused) > 5 else "")
-        warnings.warn(
-            f"no values at {shown}, which are NaN: {refused[0][1]}",
-            UserWarning,
-            stacklevel=user_level(),
-        )
-
-
 @dataclass(frozen=True, eq=False)
 class ModelResult(Result):
     """Result of the analysis of a linear model.

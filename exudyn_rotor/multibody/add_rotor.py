@@ -45,7 +45,7 @@ from exudyn_rotor.multibody.rotor.rotor_items import note_rotor
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import NEGLIGIBLE
-from exudyn_rotor.solid.damping import LOSS_LEFT_OUT
+from exudyn_rotor.solid.rotor import LOSS_LEFT_OUT
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.formulation import (
     ConstantSpeed,
@@ -292,7 +292,7 @@ def _add_solid(mbs: exudyn.MainSystem, rotor: SolidRotor, setup: Setup) -> FullR
         rotor = with_chosen_prestress(rotor, None)
     level = chosen_level(setup.stiffening, rotor.carried_prestress is not None)
     plan = make_full_plan(rotor, replace(setup, stiffening=level))
-    if rotor.structural_damping is not None:
+    if rotor.structural_damping:
         warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=3)
     return add_full(mbs, plan)
 

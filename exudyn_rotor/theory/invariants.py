@@ -58,7 +58,7 @@ class Invariants:
     K4 : shape (k, k), optional
         Stiffness per ω⁴ of a static displacement, as there.
     K2_estimated : shape (k, k), optional
-        Rough K2 where none was computed, see :mod:`exudyn_rotor.prestress.estimate`. It is in no
+        Rough K2 where none was computed, see :mod:`exudyn_rotor.prestress.carrying`. It is in no
         equation.
     H : shape (k, k), optional
         Structural damping: a motion ``e^{iνt}`` in the rotor frame has the stiffness

@@ -129,9 +129,9 @@ def test_refused_input():
     rotor = rigid_rotor()
     with pytest.raises(ValueError, match="'left': linear analyses need its static load"):
         stability(rotor, [SPEED], supports=[bearing(load=None)])
-    nothing = r"bearing at 'left': at 0 rad/s its film carries nothing; .* carries from 1 rad/s on"
+    nothing = "bearing at 'left': at 0 rad/s its film carries nothing"
     with pytest.raises(NoCoefficientsError, match=nothing):
-        journals(rotor)[0].linearised().parts(0.0)
+        journals(rotor)[0].linearised().check_range(0.0)
     with pytest.raises(ValueError, match=nothing):
         stability(rotor, [0.0], supports=journals(rotor))
 

@@ -55,6 +55,6 @@ def test_a_narrow_pad_is_a_plane_slider(pivot, sense):
     assert place[0] == pytest.approx(sunk * CLEARANCE, rel=2e-3)
     tilt = slider.tilts(sense * SPEED)[-1]  # pads are kept by their start
     assert abs(tilt) == pytest.approx(ratio * thin / (arc * RADIUS), rel=1e-2)
-    stiffness = slider._state(sense * SPEED, None).impedance(0.0).real
+    stiffness = slider._state(sense * SPEED, slider.load).impedance(0.0).real
     expected = 2.0 * force / at_pivot + 2.0 * behind / ((1.0 + sunk) * CLEARANCE)
     assert stiffness[0, 0] == pytest.approx(expected, rel=2e-3)

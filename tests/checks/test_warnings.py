@@ -7,9 +7,8 @@ from pathlib import Path
 import exudyn as exu
 import numpy as np
 import pytest
-from exudyn.FEM import FEMinterface
 from exudyn.itemInterface import LoadCoordinate, MarkerNodeCoordinate
-from models import STEEL, block_beam, disc_fem, disc_rotor
+from models import STEEL, block_beam, disc_rotor
 from point_rotors import ring_rotor
 
 import exudyn_rotor
@@ -32,7 +31,6 @@ from exudyn_rotor import (
     steady_state,
     stress_history,
 )
-from exudyn_rotor.solvers import pardiso
 
 LAMINAR = {
     "radius": 0.1, "length": 0.05, "clearance": 3e-4, "pressure_drop": 1.2e6, "density": 1000.0,
@@ -117,20 +115,6 @@ def steady_motion_on_a_stop_that_opens(_):
     steady_state(body)
 
 
-def frame_held_by_modes(_):
-    fem = disc_fem()
-    held = FEMinterface()
-    for name in ("nodes", "massMatrix", "stiffnessMatrix"):
-        setattr(held, name, getattr(fem, name))
-    matrix = fem.modeBasis["matrix"].copy()
-    held.modeBasis = {"matrix": matrix - np.tile(np.eye(3), (len(matrix) // 3, 1)) @ matrix[:3]}
-    mbs = exu.SystemContainer().AddSystem()
-    mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", held, axis="z")
-    tilted = np.cross([1.0, 0.0, 0.0], fem.GetNodePositionsAsArray()).reshape(-1, 1)
-    held.modeBasis = {"matrix": matrix + tilted}
-    mbs.CreateFixedAxisFFRFReducedOrderObject("tilted", held, axis="z")
-
-
 def torque_on_a_tilt_of_the_node(beam, source=None):
     mbs = exu.SystemContainer().AddSystem()
     body = add_rotor(mbs, source or ring_rotor(0.1, 0.1, 2.0).reduce(0))
@@ -159,8 +143,6 @@ def curved_elements(_):
 
 # place of every ``warnings.warn`` (file:function): what makes it fire, kind, part of its text
 PLACES = {
-    "solvers/pardiso.py:tell_of_mkl": (
-        lambda _: pardiso.tell_of_mkl.__wrapped__(), UserWarning, r"exudyn-rotor\[mkl\]"),
     "bearings/annular_seal.py:__post_init__": (
         lambda _: AnnularSeal(interface="a", **LAMINAR),
         UserWarning, "may be laminar"),
@@ -168,7 +150,7 @@ PLACES = {
         stress_out_of_balance, UserWarning, "not in equilibrium"),
     "multibody/rotor/sensors.py:_warn_of_static_stress": (
         native_stress_of_a_prestressed_rotor, UserWarning, "stress of the modes alone"),
-    "reduction/mode_pairs.py:lowest_with_pairs": (
+    "reduction/component.py:lowest_with_pairs": (
         lambda _: disc_rotor().reduce(1), UserWarning, "one of a pair in two planes"),
     "strength/field.py:warn_without_static": (
         stress_at_speed_without_prestress, UserWarning, "without the static centrifugal stress"),
@@ -180,8 +162,6 @@ PLACES = {
         curved_elements, UserWarning, "are replaced by mid nodes"),
     "nonlinear/periodic_response.py:warn_of": (
         unstable_motion_on_rolling_bearings, UserWarning, "values .* the motion is unstable"),
-    "reduction/mean_axis.py:warn_of_held_frame": (
-        frame_held_by_modes, UserWarning, "use_mean_axis_modes"),
     "multibody/add_rotor.py:_add_solid": (
         scene_of_a_full_lossy_rotor, UserWarning, "A scene runs without it"),
     "multibody/rotor/scene_body.py:check_connections": (
@@ -198,7 +178,7 @@ ELSEWHERE = {
     "linear/modal/basis_error.py:warn": "errs by about",
     "linear/static/static_response.py:static_response": "errs by about",
     "linear/response/steady_response.py:_with_warning": "errs by about",
-    "linear/model/linear_model.py:_warn_of_refused": "no values at .* which are NaN",
+    "linear/model/linear_model.py:warn_of_refused": "no values at .* which are NaN",
     "linear/modal/resonance.py:warn": "none are looked for",
     "linear/response/steady_response.py:_warn_of_missing": "no values at",
     "linear/response/response.py:warn_of_coarse_peaks": "too far apart to give its size and width",
@@ -215,7 +195,6 @@ ELSEWHERE = {
     "linear/own_frequency.py:own_motions": "do not settle at their own frequency",
     "linear/model/linear_model.py:warn_beyond": "keeps its ends for motions of",
     "linear/over.py:_warn_of_lost": "do not converge for all motions",
-    "linear/over.py:warn_of_refused": "no values at .* which are NaN",
 }
 TEXTS = {place: text for place, (_, _, text) in PLACES.items()} | ELSEWHERE
 # places that several kinds of bodies reach

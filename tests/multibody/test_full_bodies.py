@@ -16,7 +16,7 @@ from exudyn_rotor import (
     recommended_settings,
 )
 from exudyn_rotor.multibody.full import full_plan
-from exudyn_rotor.solvers.memory import TooLittleMemoryError
+from exudyn_rotor.solvers.factor import TooLittleMemoryError
 
 STEP, STEPS, NEWTON = 1e-4, 20, 1e-10
 GRAVITY = [1.0, -9.81, 3.0]

@@ -15,7 +15,7 @@ from exudyn_rotor import (
     linear_model,
     recommended_settings,
 )
-from exudyn_rotor.reduction.driven import without_spin
+from exudyn_rotor.reduction.selection import without_spin
 
 SPEED = 200.0
 FULL = np.array([[2.0e6, 4e5, 1e5], [-3e5, 1.2e6, 2e5], [5e4, -1e5, 3e6]])

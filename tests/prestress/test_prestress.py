@@ -178,4 +178,4 @@ def test_imported_matrix_is_taken_as_it_is(disc):
     more = Prestress.from_matrix(computed.matrix, disc.nodes, initial_displacement=(K_u, K_uu))
     assert abs(more.per_square - 3.0 * computed.matrix).max() < 1e-12 * abs(K_u).max()
     assert abs(more.per_fourth_power - K_uu).max() == 0.0
-    assert "initial displacement" in repr(more)
+    assert "initial_displacement" in repr(more)

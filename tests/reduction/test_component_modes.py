@@ -11,9 +11,8 @@ import scipy.linalg as la
 import scipy.sparse as sp
 from exudyn.FEM import FEMinterface, HCBstaticModeSelection, KirchhoffMaterial
 
-from exudyn_rotor.reduction.component import free_modes
+from exudyn_rotor.reduction.component import fem_interface_modes, free_modes
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
-from exudyn_rotor.reduction.fem_interface_modes import fem_interface_modes
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.solvers.factor import DENSE_SIZE, NotPositiveDefiniteError, SparseCholesky
 from exudyn_rotor.theory.nodal import rotations, translations

@@ -264,7 +264,7 @@ def tilting_cases() -> list[tuple[str, TiltingPadBearing, np.ndarray]]:
 
 def pads_torque(bearing: TiltingPadBearing, speed: float) -> float:
     """Return the torque over c W of the pads and, beside a single one, of two about the middle."""
-    states = [state for state in bearing._state(speed, None).states if state is not None]
+    states = [state for state in bearing._state(speed, bearing.load).states if state is not None]
     oil = bearing.film
     beside = VISCOSITY * speed * RADIUS**3 * oil.length * oil.pads[0].arc / CLEARANCE
     idle = 2.0 * beside if len(oil.pads) == 1 else 0.0

@@ -3,8 +3,7 @@
 A response keeps harmonics of coordinates in the axes of the rotor: of the reduced rotor's basis x,
 or of a scene y. Of a reduced rotor, ``x = F f + T ζ`` with the motions F of the frame that its
 formulation has, and the basis Ψ = Q T of its modal coordinates. After x come the modes of a
-foundation, and pairs of controllers' coordinates, which turn as x does. What films remember begins
-as in a journal at rest.
+foundation, and pairs of controllers' coordinates, which turn as x does.
 """
 
 from __future__ import annotations
@@ -15,8 +14,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.film.void_states import COUNT
-from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.model.assembly import WORDS
@@ -36,7 +33,7 @@ from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.rotating_axes import axes_of
 
 BASES = ("rotor", "scene")
-_OWN = dict(zip((MagneticBearing, JournalBearing, TiltingPadBearing), WORDS.values(), strict=False))
+_OWN = dict(zip((MagneticBearing, TiltingPadBearing), WORDS.values(), strict=False))
 _SAME_SPEED = 1e-9  # share by which a wanted speed may differ from a computed one
 _SAME_MOTION = 1e-4  # share of the largest motion of an interface by small harmonics left out
 
@@ -53,7 +50,7 @@ class RunStart(Result):
     basis : {'rotor', 'scene'}, optional
         Whether these are of the reduced rotor's basis or of a scene.
     beside : tuple of str, optional
-        Names of those after the reduced rotor's: of a foundation, controllers, voids and pads.
+        Names of those after the reduced rotor's: of a foundation, controllers and pads.
     """
 
     coordinates: np.ndarray | None = numbers(
@@ -151,7 +148,7 @@ class RunStart(Result):
             if names != self.beside:
                 raise ValueError(
                     f"body: beside rotor {body.name!r} the scene has {len(names)} coordinates of a "
-                    f"foundation, controllers, voids and pads, the response {len(self.beside)}; "
+                    f"foundation, controllers and pads, the response {len(self.beside)}; "
                     "give both the same supports, in the same order, and the same foundation"
                 )
             size = source.size + len(names)
@@ -226,16 +223,12 @@ def _foundation(body: RotorBody) -> SceneFoundation | None:
 
 
 def _with_own(body: RotorBody) -> list[tuple[SceneSupport, np.ndarray, int]]:
-    """Return supports with own coordinates in linear analyses, where a scene has these, how many.
+    """Return supports with own coordinates, where a scene has these, and how many.
 
-    In the order of linear models. What a film remembers is no coordinate of a scene.
+    In the order of linear models.
     """
-    found = []
-    for one in body.supports:
-        places = one.own_coordinates(body.mbs)
-        remembers = isinstance(one.support, JournalBearing) and one.support.remembers
-        if size := COUNT if remembers else len(places):
-            found.append((one, places, size))
+    places = [(one, one.own_coordinates(body.mbs)) for one in body.supports]
+    found = [(one, where, len(where)) for one, where in places if len(where)]
     return sorted(found, key=lambda each: list(_OWN).index(type(each[0].support)))
 
 
@@ -252,8 +245,6 @@ def _with_beside(body: RotorBody, state: StartState, x: np.ndarray, x_t: np.ndar
     for one, places, size in _with_own(body):
         own, rates = (X[first : first + size] for X in (x, x_t))
         first += size
-        if not len(places):
-            continue
         if isinstance(one.support, TiltingPadBearing):
             radius = one.support.film.radius
             q[places], q_t[places] = -own / radius, -rates / radius

@@ -24,8 +24,8 @@ from exudyn_rotor.linear.modal.whirl import (
     families,
 )
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_structural_damping
-from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.over import NOT_KNOWN, motions_in, warn_of_refused
+from exudyn_rotor.linear.model.linear_model import LinearModel, warn_of_refused
+from exudyn_rotor.linear.over import NOT_KNOWN, motions_in
 from exudyn_rotor.linear.stability.stability import (
     WHAT,
     check_options,

@@ -12,9 +12,8 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.resting import RigidBearing
 from exudyn_rotor.linear.static.problem import Problem, with_supports
-from exudyn_rotor.reduction.reduce import reduce_rotor
+from exudyn_rotor.reduction.reduce import reduce_rotor, reduced_for_loads
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.reduction.static_modes import reduced_for_loads
 from exudyn_rotor.solid_rotor import SolidRotor
 
 _ROUNDING = 1e-12  # share of the largest load that is none

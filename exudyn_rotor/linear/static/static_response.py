@@ -17,8 +17,8 @@ from exudyn_rotor.linear.model.rotor_train import RotorTrain
 from exudyn_rotor.linear.response.loads import At, checked_places
 from exudyn_rotor.linear.static.problem import Problem, with_supports
 from exudyn_rotor.linear.static.static_result import StaticResponse
+from exudyn_rotor.reduction.reduce import reduced_for_loads
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.reduction.static_modes import reduced_for_loads
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.theory.stiffening import CHOICES

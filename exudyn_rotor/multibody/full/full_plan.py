@@ -15,11 +15,9 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor.plan import Plan, Setup, laid_out
 from exudyn_rotor.prestress.static_solution import relief_rotations
-from exudyn_rotor.solid.clamp import clamped_coordinates
-from exudyn_rotor.solid.damping import sparse_damping
+from exudyn_rotor.solid.rigid import clamped_coordinates
 from exudyn_rotor.solid_rotor import SolidRotor
-from exudyn_rotor.solvers.choice import estimated_fill
-from exudyn_rotor.solvers.memory import TooLittleMemoryError, available_memory
+from exudyn_rotor.solvers.factor import TooLittleMemoryError, available_memory, factor_entries
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.full_motion import (
     Conditions,
@@ -40,8 +38,9 @@ _PER_ENTRY, _PER_FACTOR_ENTRY = 300.0, 22.0
 
 def needed_bytes(rotor: SolidRotor) -> float:
     """Return about what a full body takes in an implicit run, beside the rotor itself [bytes]."""
-    fill = estimated_fill(3 * rotor.node_count)
-    return _PER_ENTRY * rotor.stiffness.nnz + _PER_FACTOR_ENTRY * fill.entries
+    return _PER_ENTRY * rotor.stiffness.nnz + _PER_FACTOR_ENTRY * factor_entries(
+        3 * rotor.node_count
+    )
 
 
 def check_memory(rotor: SolidRotor) -> None:
@@ -56,6 +55,17 @@ def check_memory(rotor: SolidRotor) -> None:
             f"step of Exudyn's sparse solver, and {available / 1e9:.2g} GB of memory are "
             "available; add the reduced rotor, rotor.reduce(…), or use a coarser mesh"
         )
+
+
+def _damping(rotor: SolidRotor) -> sp.csr_array | None:
+    """Return the damping (3n, 3n); in proportion to a mass that moves freely it is not sparse."""
+    if rotor.mass_damping:
+        raise ValueError(
+            "with_damping(mass=…): a large model that rigid motions are free in cannot be analysed "
+            "with damping in proportion to its mass; reduce it, rotor.reduce(…), or give "
+            "stiffness=… alone"
+        )
+    return rotor.damping
 
 
 _ROUNDING = 1e-12  # of the accelerations that balance a load, for one of 1 rad/s²
@@ -139,7 +149,7 @@ def _invariants(rotor: SolidRotor, origin: np.ndarray) -> Invariants:
     """
     clamped = clamped_coordinates(rotor.stiffness).astype(float)
     basis = sp.csr_array(sp.diags_array(1.0 - clamped))
-    matrices = (rotor.mass, rotor.stiffness, sparse_damping(rotor))
+    matrices = (rotor.mass, rotor.stiffness, _damping(rotor))
     moving = Invariants.of(rotor.nodes - origin, *matrices, basis, rotor.axis.direction)
     M, K = (
         sp.csr_array(one + sp.diags_array(clamped * whole.diagonal()))

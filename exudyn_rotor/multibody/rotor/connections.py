@@ -110,7 +110,7 @@ class _Walk:
 
     def objects(self) -> Iterator[tuple[int, str]]:
         """Yield numbers of connectors and joints, and what of them is lost or wrong."""
-        own = self.rotor.own | {int(drive.object) for drive in self.rotor.drives}
+        own = self.rotor.own | {int(one) for drive in self.rotor.drives for one in drive.objects}
         for number in range(self.mbs.systemData.NumberOfObjects()):
             item = self.mbs.GetObject(number)
             if number in own or "markerNumbers" not in item or not item.get("activeConnector", 1):

@@ -17,7 +17,7 @@ from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS, color_of
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.rotor_items import known_rotor
 from exudyn_rotor.multibody.twins.axis_of_body import axis_at_rest, axis_of_motion
-from exudyn_rotor.reduction.mean_axis import frame_shares, warn_of_held_frame
+from exudyn_rotor.reduction.mean_axis import frame_shares
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.axis import SpinAxis
@@ -139,7 +139,6 @@ def add_swapped_body(
     more = dict(options)
     reduced = rotor.reduce(fem, prestress=more.pop("prestress"))
     modes = np.asarray(fem.modeBasis["matrix"])
-    warn_of_held_frame(rotor, modes, stacklevel=3)
     speed = _speed_along(start.rotation @ reduced.axis.direction, start.omega)
     more["translation"] = suited_translation(more["translation"], reduced.grounded)
     formulation = Formulation(more["translation"], more["spin"])

@@ -11,14 +11,12 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property, lru_cache
-from math import hypot
 from typing import NamedTuple
 
 import exudyn
 import numpy as np
 
 from exudyn_rotor.bearings.bearing import Bearing
-from exudyn_rotor.bearings.journal_bearing import FilmLaw, JournalBearing, tangent_of
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
 from exudyn_rotor.multibody.rotor.equations import without_forces
@@ -43,14 +41,9 @@ class Attached:
     """
 
     def __init__(self, mbs: exudyn.MainSystem, connector: Connector, cage: float) -> None:
-        self.connector, self._cage, self._films = connector, cage, []
+        self.connector, self._cage = connector, cage
         read = mbs.systemData.GetNodeLTGODE2
         self.places = np.concatenate([read(node) for node in connector.nodes]).astype(int)
-        if isinstance(connector, BearingConnector):
-            self._films = [
-                FilmLaw(part.film, connector.brakes) if isinstance(part, JournalBearing) else None
-                for part in connector.parts
-            ]
 
     def read(self, q: np.ndarray, q_t: np.ndarray) -> None:
         """Take the state of the scene."""
@@ -59,23 +52,17 @@ class Attached:
     def force(self, t: float) -> Force:
         """Return the law's forces on its ports where it has been read, and its tangent."""
         made = self.connector
-        if not self._films:
+        if not isinstance(made, BearingConnector):
             return made.tangent(t)
-        parts = zip(made.parts, self._films, made.motions(), strict=True)
+        parts = zip(made.parts, made.motions(), strict=True)
         return made.assembled([self._point(*each) for each in parts])
 
-    def _point(self, part: Bearing, film: FilmLaw | None, motion: tuple[float, ...]) -> FilmPoint:
+    def _point(self, part: Bearing, motion: tuple[float, ...]) -> FilmPoint:
         if part.uses_angle:  # cages of rolling bearings stand
             motion = *motion[:4], self._cage, motion[5]
-        if film is None:
-            law = part.law_with_torque if self.connector.brakes else part.law
-            values, slopes = law(*motion), part.slopes(*motion)
-        else:
-            values, slopes = film(*motion), film.slopes(*motion)
-            if part.remembers and hypot(*motion[:2]) <= film.to_the_edge(*motion[:2]):
-                place, rate = np.array(motion[:2]), np.array(motion[2:4])
-                slopes = tangent_of(film.state_at(place, rate, motion[5]))
-        return values, *slopes, np.zeros(3) if len(values) > 2 else None
+        brakes = self.connector.brakes
+        law = part.law_with_torque if brakes else part.law
+        return law(*motion), *part.slopes(*motion), np.zeros(3) if brakes else None
 
 
 class Forces(NamedTuple):

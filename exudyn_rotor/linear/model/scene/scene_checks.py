@@ -9,7 +9,6 @@ from exudyn_rotor import checks
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.probe import Probe
 from exudyn_rotor.linear.model.scene.scene_coordinates import UNHELD, SceneCoordinates
-from exudyn_rotor.multibody.drives.connect_rotors import SceneConnection
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.rotor_items import mark_of
@@ -54,13 +53,6 @@ def check_scene(mbs: exudyn.MainSystem, body: RotorBody) -> None:
             "RotorTrain of the reduced rotors and their supports, with gears and couplings as "
             "Link(…)"
         )
-    for drive in body.drives:
-        if isinstance(drive, SceneConnection):
-            raise ValueError(
-                f"linear scene: {drive} connects rotor {body.name!r} with a shaft, which turns at "
-                "a speed of its own; give linear analyses the rotor with "
-                f"supports=[…, coupling.support({drive.at!r})]"
-            )
 
 
 def rotors_in(mbs: exudyn.MainSystem) -> dict[int, str | None]:

@@ -216,8 +216,7 @@ class SceneModel(LinearModel):
             else:
                 one = next(own)
                 rows = scene.own_unknowns(one)
-                if len(rows):  # voids have none
-                    yield rows, place, _of_own(body, one, assembly.turns)
+                yield rows, place, _of_own(body, one, assembly.turns)
 
     def unknowns(self, motion: Mapping[int, np.ndarray], speed: float) -> dict[int, np.ndarray]:
         """Return harmonics of the unknowns y of the scene, given those (…, k) of coordinates."""
@@ -263,7 +262,7 @@ class SceneModel(LinearModel):
         metres = np.sqrt(np.maximum(np.diag(assembly.M), 1e-300) / scene.mass)
         for body, place in zip(assembly.bodies, assembly.slices, strict=True):
             if isinstance(body, OwnBody):
-                metres[place] = np.maximum(metres[place], 1.0)  # of light pads and voids
+                metres[place] = np.maximum(metres[place], 1.0)  # of light pads
         where = f"linear scene at {speed:g} rad/s"
         return replace(state, z=equilibrium(scene, at, unbalanced, metres, z, _TOLERANCE, where))
 

@@ -7,14 +7,12 @@ over a revolution do not do here. Supports, gears and couplings are known by wha
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import exudyn
 import numpy as np
 
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.drives.coupling import FlexibleCoupling
 from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.linear.model.rotor_train import Link, RotorTrain
 from exudyn_rotor.linear.model.scene.scene_checks import check_body, rotors_in
@@ -22,7 +20,6 @@ from exudyn_rotor.multibody.drives.connect_rotors import SceneConnection
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import spin_at_start
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
-from exudyn_rotor.theory.formulation import ConstantSpeed
 
 # entries of axes, and shares of a speed, by which rounding may set rotors apart
 _PARALLEL, _SAME_SPEED = 1e-9, 1e-9
@@ -53,7 +50,7 @@ def scene_train(mbs: exudyn.MainSystem, bodies: Sequence[RotorBody]) -> tuple[Ro
     train = RotorTrain(
         {name: body.selection.source for name, body in named.items()},
         {name: spin_at_start(body)[1] / speed for name, body in named.items()},
-        {name: [*_on_ground(body), *_on_shafts(body)] for name, body in named.items()},
+        {name: _on_ground(body) for name, body in named.items()},
         links,
         positions={
             name: body.standing_axes.T @ body.plan.setup.placement.position
@@ -117,30 +114,6 @@ def _on_ground(body: RotorBody) -> list[Given]:
     return [one.support for one in body.supports if one.base is None]
 
 
-def _on_shafts(body: RotorBody) -> list[Support]:
-    """Return couplings to shafts of the rotor's speed as supports; torsion on one of its own.
-
-    That does not turn, which for a torsion is the same, so that it is no arm on the rotor.
-    """
-    found, speed = [], spin_at_start(body)[1]
-    for one in filter(_is_on_shaft, body.drives):
-        if abs(one.shaft.speed - speed) > _SAME_SPEED * abs(speed):
-            raise ValueError(
-                f"body: rotor {body.name!r} starts with {speed:g} rad/s, the shaft of its {one} "
-                f"turns with {one.shaft.speed:g} rad/s; start the rotor with that"
-            )
-        whole = one.connection.support(one.at)
-        torsion = np.diag([0.0, 0.0, 1.0])
-        tilts = {"tilt_stiffness": whole.tilt_stiffness, "tilt_damping": whole.tilt_damping}
-        found.append(replace(whole, **{n: X - X @ torsion for n, X in tilts.items()}))
-        found.append(Support(one.at, **{n: X @ torsion for n, X in tilts.items()}))
-    return found
-
-
-def _is_on_shaft(one: SceneConnection) -> bool:
-    return isinstance(one.shaft, ConstantSpeed) and isinstance(one.connection, FlexibleCoupling)
-
-
 def _links(named: dict[str, RotorBody]) -> list[Link]:
     """Return what stands between two rotors."""
     markers = {
@@ -155,7 +128,7 @@ def _links(named: dict[str, RotorBody]) -> list[Link]:
                 other = _other_end(body, one, markers)
                 links.append(Link(f"{name}:{one.support.interface}", other, one.support))
         for one in body.drives:
-            if one.body is body and not _is_on_shaft(one):
+            if one.body is body:
                 links.append(_link_of(one))
     return links
 
@@ -180,12 +153,6 @@ def _other_end(body: RotorBody, one: SceneSupport, markers: dict[int, str]) -> s
 
 def _link_of(one: SceneConnection) -> Link:
     law = one.connection
-    if one.other is None or not isinstance(law, GearMesh | FlexibleCoupling):
-        raise ValueError(
-            f"body: {one} of rotor {one.body.name!r} is not linear, or is to a shaft and no "
-            f"flexible coupling at a constant speed; {_BY_HAND}, with gears and couplings as "
-            "Link(…)"
-        )
     if isinstance(law, GearMesh) and (law.backlash is not None or law.variation.size):
         raise ValueError(
             f"body: {one} of rotor {one.body.name!r} has backlash or a stiffness that follows the "
@@ -204,7 +171,7 @@ def _check_nothing_else(mbs: exudyn.MainSystem, bodies: Sequence[RotorBody]) -> 
             body.objects.values(),
             body.constraints.values(),
             *(one.objects for one in body.supports),
-            [one.object for one in body.drives],
+            [number for one in body.drives for number in one.objects],
         )
         for number in numbers
     }
