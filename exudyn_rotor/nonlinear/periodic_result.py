@@ -14,7 +14,7 @@ from exudyn_rotor.linear.response.run_start import RunStart
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import StartState, spin_at_start
-from exudyn_rotor.results import numbers, storable, words
+from exudyn_rotor.results import numbers, storable, text_table, words
 from exudyn_rotor.units import IN_HERTZ, Units
 
 if TYPE_CHECKING:
@@ -209,10 +209,6 @@ class PeriodicResponse(RunStart):
         mean = self.motion[:, self._at(place), self._constant(), :2].real.sum(axis=1)
         return np.linalg.norm(seen - mean[:, None], axis=-1).max(axis=1)
 
-    def end_to_end(self, place: str | None = None) -> np.ndarray:
-        """Return the way from end to end of the motion along n1 and n2, shape (p, 2) [m]."""
-        return np.ptp(self._over_phases(place), axis=1)
-
     def _constant(self) -> np.ndarray:
         return ~np.any(self.orders, axis=1)
 
@@ -297,8 +293,6 @@ class PeriodicResponse(RunStart):
                 "kind": np.array(self.kinds),
                 "place": np.full(rows, place),
                 "amplitude [m]": self.amplitudes(place),
-                "n1, end to end [m]": self.end_to_end(place)[:, 0],
-                "n2, end to end [m]": self.end_to_end(place)[:, 1],
             }
             for place in self.places
         ]
@@ -319,31 +313,27 @@ class PeriodicResponse(RunStart):
         }
         return columns | {name: np.tile(each, count) for name, each in ends.items()}
 
-    def table(self, place: str | None = None, *, units: str = "rpm", every: bool = False) -> str:
-        """Return motions at one place as text: wanted values and changes, or every point."""
-        checks.flag(every, "every")
+    def table(self, place: str | None = None, *, units: str = "rpm") -> str:
+        """Return motions at one place as text: wanted values and changes of the motion."""
         values, label = self._shown(units)
         name = self.places[self._at(place)]
-        gaps = np.full(len(values), np.nan)
-        known = np.any(np.isfinite(self.gaps), axis=1)
-        gaps[known] = np.nanmin(self.gaps[known], axis=1)
-        lines = [
-            name,
-            f"{label:>20} {'branch':>6} {'amplitude [m]':>13} {'force [N]':>10} {'gap [m]':>10} "
-            f"{'growth [1/s]':>12}  motion",
-        ]
-        rows = zip(
-            values, self.branches, self.amplitudes(name), self.forces.max(axis=1), gaps,
-            self.growth, self.stable, self.kinds, strict=True,
-        )  # fmt: skip
-        for value, branch, amplitude, force, gap, growth, stable, kind in rows:
-            if every or kind != "computed":
-                motion = kind if kind in _MARKERS else "stable" if stable else "unstable"
-                lines.append(
-                    f"{value:20.6g} {branch:6d} {amplitude:13.4e} {force:10.4g} {gap:10.3e} "
-                    f"{growth:12.4g}  {motion}"
-                )
-        return "\n".join(lines)
+        gaps = np.where(np.isfinite(self.gaps), self.gaps, np.inf).min(axis=1, initial=np.inf)
+        states = np.where(self.stable, "stable", "unstable")
+        columns = {
+            label: values,
+            "branch": self.branches,
+            "amplitude [m]": self.amplitudes(name),
+            "force [N]": self.forces.max(axis=1),
+            "gap [m]": np.where(np.isfinite(gaps), gaps, np.nan),
+            "growth [1/s]": self.growth,
+            "motion": np.array(
+                [kind if kind in _MARKERS else state
+                 for kind, state in zip(self.kinds, states, strict=True)]
+            ),
+        }  # fmt: skip
+        shown = np.array([kind != "computed" for kind in self.kinds], dtype=bool)
+        lines = text_table({title: column[shown] for title, column in columns.items()})
+        return "\n".join([name, *lines])
 
     def plot(self, place: str | None = None, *, ax: Axes | None = None, units: str = "rpm") -> Axes:
         """Draw the largest distance from the mean place [µm] over the parameter.
@@ -362,13 +352,6 @@ class PeriodicResponse(RunStart):
         name = self.places[self._at(place)]
         amplitudes = 1e6 * self.amplitudes(name)
         ax = plotting.axes_or_new(ax)
-        told: set[str] = set()
-
-        def named(word: str) -> str:
-            first = word not in told
-            told.add(word)
-            return word if first else "_" + word
-
         for branch in np.unique(self.branches):
             rows = np.flatnonzero(self.branches == branch)
             stable = self.stable[rows]
@@ -377,13 +360,14 @@ class PeriodicResponse(RunStart):
             for part in np.split(np.arange(len(rows)), ends):
                 shown = rows[part[0] : part[-1] + 2]  # to where the next part begins
                 word, line = ("stable", "-") if stable[part[0]] else ("unstable", "--")
-                ax.plot(values[shown], amplitudes[shown], line, color=color, label=named(word))
+                ax.plot(values[shown], amplitudes[shown], line, color=color, label=word)
         for kind, marker in _MARKERS.items():
             at = np.array([each == kind for each in self.kinds], dtype=bool)
             if at.any():
-                ax.plot(values[at], amplitudes[at], marker, color="k", mfc="w", label=named(kind))
+                ax.plot(values[at], amplitudes[at], marker, color="k", mfc="w", label=kind)
         ax.set_xlabel(label)
         ax.set_ylabel("amplitude [µm]")
         ax.set_title(name, loc="right", fontsize=10)
-        ax.legend()
+        once = {line.get_label(): line for line in ax.lines}
+        ax.legend(handles=list(once.values()))
         return ax

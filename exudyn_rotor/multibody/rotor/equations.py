@@ -156,7 +156,7 @@ def _varying_mass(
     fill = matrix.SetWithSparseMatrixCSR
 
     def mass_matrix(mbs, t, item, q, q_t):
-        values = kernel.mass_entries(t, q, q_t)
+        values = kernel.mass_entries(t, q)
         one[:], mirrored[:] = values, values[skipped:]
         fill(size, size, table, False)
         return matrix

@@ -15,7 +15,6 @@ from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor.frame import LOCKS, driving_force
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.energy import energy_of
 from exudyn_rotor.theory.formulation import ConstantSpeed
 
 _KINDS = exudyn.OutputVariableType
@@ -212,8 +211,8 @@ def add_energy_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
         gravity = body.plan.setup.gravity
         if body.gravity_load is not None:  # a script may change it
             gravity = mbs.GetLoadParameter(body.gravity_load, "loadVector")
-        energy = energy_of(body.motion, t, q, q_t, gravity)
-        return [energy.kinetic, energy.elastic, energy.weight]
+        energy = body.motion.energy(t, q, q_t, gravity)
+        return list(energy)
 
     return add_function_sensor(body, energy, options)
 
