@@ -177,7 +177,7 @@ PLACES = {
 ELSEWHERE = {
     "linear/modal/basis_error.py:warn": "errs by about",
     "linear/static/static_response.py:static_response": "errs by about",
-    "linear/response/steady_response.py:_with_warning": "errs by about",
+    "linear/response/steady_response.py:over": "errs by about",
     "linear/model/linear_model.py:warn_of_refused": "no values at .* which are NaN",
     "linear/modal/resonance.py:warn": "none are looked for",
     "linear/response/steady_response.py:_warn_of_missing": "no values at",
