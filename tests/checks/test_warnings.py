@@ -164,7 +164,7 @@ PLACES = {
         unstable_motion_on_rolling_bearings, UserWarning, "values .* the motion is unstable"),
     "multibody/add_rotor.py:_add_solid": (
         scene_of_a_full_lossy_rotor, UserWarning, "A scene runs without it"),
-    "multibody/rotor/scene_body.py:check_connections": (
+    "multibody/rotor/rotor_body.py:check_connections": (
         asked_for_connections, ConnectionWarning, "does not tilt"),
     "multibody/rotor/assembly.py:warn_of_lost_connections": (
         torque_on_a_tilt_of_the_node, ConnectionWarning, "does not tilt"),
@@ -198,7 +198,7 @@ ELSEWHERE = {
 TEXTS = {place: text for place, (_, _, text) in PLACES.items()} | ELSEWHERE
 # places that several kinds of bodies reach
 TRIGGERS = PLACES | {
-    "multibody/rotor/scene_body.py:check_connections, full": (
+    "multibody/rotor/rotor_body.py:check_connections, full": (
         full_body_asked_for_connections, ConnectionWarning, "does not tilt"),
 }  # fmt: skip
 
