@@ -1,7 +1,5 @@
 """The public names, and the module of each: the one list, which ``__init__.py`` reads."""
 
-from exudyn_rotor.advice.energy_balance import EnergyBalance as EnergyBalance
-from exudyn_rotor.advice.energy_balance import energy_balance as energy_balance
 from exudyn_rotor.advice.proposal import Proposal as Proposal
 from exudyn_rotor.advice.proposal import propose as propose
 from exudyn_rotor.advice.run_check import RunCheck as RunCheck

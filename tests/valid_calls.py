@@ -130,7 +130,7 @@ MADE = {
 RETURNED = {
     **{"BaseResponse": "base_response", "Campbell": "campbell", "ModeBasis": "free_modes"},
     **{"CriticalSpeedMap": "critical_speed_map", "CriticalSpeeds": "critical_speeds"},
-    **{"EnergyBalance": "energy_balance", "Foundation": "Foundation.from_modes"},
+    **{"Foundation": "Foundation.from_modes"},
     **{"HarmonicResponse": "harmonic_response", "MotionShapes": "mode_shapes"},
     **{"PrescribedMotion": "PrescribedMotion.run_up", "Prestress": "SolidRotor.prestress"},
     **{"PeriodicResponse": "periodic_response"},
@@ -355,7 +355,6 @@ CALLS = {
     "check_run": {"warn": False},
     "craig_bampton_modes": lambda w: {"rotor": w.SolidRotor, "interfaces": ["left"]},
     "critical_speed_map": {"stiffnesses": [1e6, 2e6]},
-    "energy_balance": lambda w: {"body": w.recorded},
     "free_modes": lambda w: {"rotor": w.SolidRotor, "count": 2},
     "grooved_pads": {"grooves": [0.5, 3.6], "groove_width": 0.3},
     "harmonic_response": lambda w: {"frequencies": PEAK, "loads": [w.HarmonicForce]},

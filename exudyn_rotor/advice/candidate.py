@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -68,16 +67,6 @@ class Candidate:
         """Take a reduced rotor with its supports."""
         source = linear_model(reduced, supports=supports, axes="rotor")
         return cls(reduced, source, any(map(_acts_along, source.supports[""])))
-
-    def with_attachments(self) -> Candidate | None:
-        """Return the same with attachment modes; None where they are not known."""
-        if self.reduced.with_attachments is None:
-            return None
-        with warnings.catch_warnings():  # said of the rotor without them
-            warnings.filterwarnings(
-                "ignore", message="the (centre of mass|nearest principal axis) is"
-            )
-            return Candidate.of(self.reduced.with_attachments, self.source.supports[""])
 
     @property
     def invariants(self) -> Invariants:
