@@ -78,7 +78,7 @@ def results() -> list:
             np.column_stack([speeds, 0.5 * speeds]), [[0, 0], [1, -1]],
             np.repeat(motion, 2, axis=2), ("left", "right"), table, table, table, table - 1.0,
             speeds, -speeds, speeds + 1j, 2, "spin speed [rad/s]", [[0, 1], [2, -3]],
-            coordinates=RNG.normal(size=(3, 2, 5)) + 1j, basis="rotor"),
+            coordinates=RNG.normal(size=(3, 2, 5)) + 1j),
         BaseResponse(("left", "node 2"), speeds, motion[:, :, 0].real, 90.0),
         Stability(speeds, table + 1j, speeds, speeds > 15.0, speeds, table, codes, codes),
         StabilityThresholds([20.0], [True], [9.0], [0], [1], 10.0, 30.0, False),

@@ -46,7 +46,7 @@ def interface_loads(
     comparable. None where the scene knows no interfaces.
     """
     interfaces = body.selection.source.interfaces
-    if "marker_body" not in body.objects or not interfaces:
+    if not interfaces:
         return None
     names, total = list(interfaces), np.zeros((len(interfaces), 6, len(picked)))
     places = load_places(body)

@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.response.response import DIRECTIONS
-from exudyn_rotor.linear.response.run_start import RunStart
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import StartState, spin_at_start
-from exudyn_rotor.results import numbers, storable, text_table, words
+from exudyn_rotor.nonlinear.run_start import state_in_scene
+from exudyn_rotor.results import Result, numbers, storable, text_table, words
 from exudyn_rotor.units import IN_HERTZ, Units
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ _MARKERS = {"fold": "D", "doubling": "^", "torus": "s", "branching": "P"}
 
 @storable
 @dataclass(frozen=True, eq=False)
-class PeriodicResponse(RunStart):
+class PeriodicResponse(Result):
     """Branches of steady motions ``u = Re Σ a_kn exp i(kφ + nθ/r)``, in axes that stand still.
 
     θ is the spin angle; the second phase φ is of the ball pass, or of a limit cycle; it has no
@@ -78,7 +78,11 @@ class PeriodicResponse(RunStart):
     label : str
         The parameter and its unit.
     coordinate_orders : ndarray of int, shape (c, 2)
-        As `orders`, of :attr:`coordinates`, rotor frame.
+        As `orders`, of `coordinates`.
+    coordinates : ndarray of complex, shape (p, c, k), optional
+        Harmonics of the coordinates of the reduced rotor in its own axes, from which runs begin.
+    beside : tuple of str, optional
+        Names of those after the reduced rotor's: of a foundation, controllers and pads.
 
     Examples
     --------
@@ -116,6 +120,10 @@ class PeriodicResponse(RunStart):
     revolutions: int
     label: str
     coordinate_orders: np.ndarray = numbers("harmonics", 2, dtype=int)
+    coordinates: np.ndarray | None = numbers(
+        "abscissa", "harmonics", "coordinates", dtype=complex, finite=False, optional=True
+    )
+    beside: tuple[str, ...] = words("beside", default=(), kw_only=True)
 
     def __repr__(self) -> str:
         """Return one line."""
@@ -242,28 +250,20 @@ class PeriodicResponse(RunStart):
         Raises
         ------
         TypeError, ValueError
-            As :meth:`UnbalanceResponse.state`.
+            For another rotor, foundation or controllers, and a system that is not assembled.
         """
         reduced_body(body)
         angle = spin_at_start(body)[0] if angle is None else checks.number(angle, "angle", "rad")
         point = self._point(point)
-        return self._start(point, body, angle, float(self.speeds[point]))
-
-    def _computed_at(self, value: float) -> int:
         if self.coordinates is None:
             raise ValueError(
                 "state: the response keeps no coordinates: supports have coordinates that turn"
             )
-        return int(value)
-
-    def _check_harmonics(self) -> None:
-        """Let every number of harmonics be."""
-
-    def _waves(self, index: int) -> tuple[np.ndarray, np.ndarray]:
-        rates = self.coordinate_orders @ self.rates[index]
-        speed = self.speeds[index]
-        turns = self.rates[index] / speed if speed else np.zeros(2)
-        return self.coordinate_orders @ turns, rates
+        rates, speed = self.coordinate_orders @ self.rates[point], float(self.speeds[point])
+        phases = angle * (rates / speed) if speed else 0.0 * rates
+        turned = np.exp(1j * phases)[:, None] * self.coordinates[point]
+        x, x_t = turned.sum(axis=0).real, (1j * rates[:, None] * turned).sum(axis=0).real
+        return state_in_scene(body, x, x_t, self.beside, angle, speed)
 
     def _point(self, point: int) -> int:
         return checks.count(point, "point", most=len(self.values) - 1)

@@ -169,9 +169,7 @@ def _on_coordinate(index, size):
     ("translation", "index", "size", "lost"),
     [
         ("in-plane", 2, 100.0, True),
-        ("in-plane", 0, 100.0, False),
         ("none", 0, 100.0, True),
-        ("free", 2, 100.0, False),
         ("free", 3, 20.0, True),
         ("free", 5, 2.0, False),
     ],

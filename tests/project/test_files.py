@@ -14,7 +14,7 @@ MAY_BE_LONGER = ("triangles", "dropped", "field.free_motions", "field.vectors")
 MAY_BE_EMPTY = ("triangles", "field.vectors")
 MAY_BE_MISSING = (
     ".K2", ".B", ".K4", ".K2_estimated", ".H", ".K0", "shapes.stress", ".threshold", ".stiffening",
-    ".critical_speed_ratio", ".gas_density", ".basis_errors",
+    ".critical_speed_ratio", ".gas_density", ".basis_errors", "field.coordinates",
 )  # fmt: skip
 OF_A_MESH = {f"field.{name}" for name in ("nodes", "displacement", "along", "triangles", "stress")}
 MAY_BE_NAN = {

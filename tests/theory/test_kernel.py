@@ -82,7 +82,7 @@ def test_jacobian_for_the_solver_is_the_derivative_of_its_forces(formulation):
     motion, step, time = motion_of(formulation, 4, 1.0), 1e-5, 0.4
     assert motion.invariants.D.any()
     size = motion.size
-    layout = Layout.unlocked(size)
+    layout = Layout(size, np.arange(size), np.zeros(size))
     scene = user_function_object(motion, layout, [0], None)
     state = np.random.default_rng(7).normal(size=2 * size)
 

@@ -142,4 +142,4 @@ def spin_speeds(body: RotorItems, time: np.ndarray, q_t: np.ndarray) -> np.ndarr
     """Return the spin speeds (s,) [rad/s] at times, with the rates (s, n) of the coordinates."""
     if not body.formulation.has_spin:
         return np.array([float(body.formulation.spin.rate(t)) for t in time])
-    return q_t[:, body.locks.spin if "rigid" in body.nodes else body.formulation.translation_count]
+    return q_t[:, body.locks.spin]

@@ -14,7 +14,6 @@ from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
-from exudyn_rotor.multibody.rotor.more_markers import interface_motion
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import spin_at_start
 from exudyn_rotor.theory.rotating_axes import into_rotor_frame, parts_across
@@ -75,7 +74,7 @@ def across(scene: SceneCoordinates, name: str) -> np.ndarray:
     """Return the motion of a journal across the axis by the free coordinates, turning axes."""
     motion = np.zeros((3, len(scene.free)))
     motion[: scene.count, : scene.count] = np.eye(scene.count)
-    modes = interface_motion(scene.body, name)[1][:3]
+    modes = scene.body.interface_carrier(name).motion[:3]
     motion[:, scene.modal] = scene.axes.T @ scene.body.frame.B.T @ modes
     return motion[:2]
 

@@ -141,7 +141,7 @@ class LinearScene(SceneCoordinates):
         for item in self.foreign_items:
             numbers |= {int(n) for n in item.get("markerNumbers", [item.get("markerNumber", -1)])}
         found = {one.at: None for one in self.body.drives if one.at is not None}
-        own = int(self.body.objects.get("marker_body", -1))
+        own = int(self.body.objects["marker_body"])
         for number in sorted(numbers - {-1}):
             if int(mbs.GetMarker(number).get("bodyNumber", -2)) == own:
                 found[named.get(number, f"marker {number}")] = number
