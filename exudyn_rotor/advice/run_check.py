@@ -228,7 +228,11 @@ def check_run(
     record = body.recorded()
     run = RecordedRun(body, record, reduced)
     result = RunCheck(tuple(_rows(run, proposal, accuracy)), len(record.time))
-    for message in _messages(result, ran=record.time[-1] > 0.0) if warn else ():
+    told = [f"{r.name} {r.value:.3g} exceeds {r.limit:.3g} ({r.meaning}): {r.advice}"
+            for r in result.failed]  # fmt: skip
+    if result.gap and record.time[-1] > 0.0:
+        told.insert(0, result.gap)
+    for message in told if warn else ():
         warnings.warn(f"rotor {body.name!r}: {message}", AssumptionWarning, stacklevel=2)
     return result
 
@@ -256,10 +260,3 @@ def _rows(run: RecordedRun, proposal: Proposal | None, accuracy: float) -> Itera
             1.0 + accuracy,
             f"{run.fastest:.6g} rad/s were reached; propose again with that",
         )
-
-
-def _messages(result: RunCheck, ran: bool) -> Iterator[str]:
-    if ran and not result.complete:
-        yield result.gap
-    for row in result.failed:
-        yield f"{row.name} {row.value:.3g} exceeds {row.limit:.3g} ({row.meaning}): {row.advice}"

@@ -32,19 +32,11 @@ _RINGING = 1.5  # energy about the static stretch over that of a start without i
 
 @dataclass(frozen=True, eq=False)
 class RecordedRun:
-    """What the rows of a check read of a run.
-
-    Attributes
-    ----------
-    body : RotorBody or FullRotorBody
-    record : Record
-    reduced : ReducedRotor, optional
-        Knows the yield stress.
-    """
+    """What the rows of a check read of a run."""
 
     body: RotorBody | FullRotorBody
     record: Record
-    reduced: ReducedRotor | None = None
+    reduced: ReducedRotor | None = None  # knows the yield stress
 
     @property
     def invariants(self) -> Invariants:
@@ -87,11 +79,6 @@ class RecordedRun:
     def mean_rotation(self) -> np.ndarray:
         """Rotation vector of the rotor in the mean (s, 3) [rad]."""
         return self.zeta @ self.invariants.mean_rotation.T
-
-    @cached_property
-    def mean_translation(self) -> np.ndarray:
-        """Displacement of the centre of mass in the frame (s, 3) [m]."""
-        return self.zeta @ self.invariants.S.T / self.invariants.mass
 
     @cached_property
     def energy(self) -> float:
@@ -173,9 +160,9 @@ def _tilt(run: RecordedRun) -> float:
 )
 def _deflection(run: RecordedRun) -> float:
     """Of the root mean square of what is neither mean translation nor mean rotation."""
-    inv, turned = run.invariants, run.mean_rotation
-    bent = squares(inv.M, run.zeta) - inv.mass * (run.mean_translation**2).sum(axis=1)
-    bent -= squares(inertia_tensor(inv), turned)
+    inv, momentum = run.invariants, run.zeta @ run.invariants.S.T
+    bent = squares(inv.M, run.zeta) - (momentum**2).sum(axis=1) / inv.mass
+    bent -= squares(inertia_tensor(inv), run.mean_rotation)
     return np.sqrt(max(bent.max(), 0.0) / inv.mass) / run.size
 
 

@@ -101,7 +101,15 @@ def tight_settings(body, step, steps=STEPS):
 FAMILY = {
     "2.2": ({"translation": "free", "spin": "free", "initial_speed": 300.0}, 4),
     "2.3": ({"translation": "in-plane", "spin": "free", "initial_speed": 300.0}, 3),
-    "2.4": ({"translation": "none", "spin": "free", "initial_speed": 300.0}, 1),
+    "2.4": (
+        {
+            "translation": "none",
+            "spin": "free",
+            "initial_speed": 300.0,
+            "stiffness_damping": 1e-6,
+        },
+        1,
+    ),
     "2.5": ({"translation": "none", "spin": 300.0}, 1),
     "2.5, elastic": ({"translation": "none", "spin": 300.0, "drive": "elastic"}, 0),
     "2.5, θ(t)": ({"translation": "none", "spin": RUN_UP}, 1),
