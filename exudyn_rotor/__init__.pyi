@@ -1,7 +1,5 @@
 """The public names, and the module of each: the one list, which ``__init__.py`` reads."""
 
-from exudyn_rotor.advice.energy_balance import EnergyBalance as EnergyBalance
-from exudyn_rotor.advice.energy_balance import energy_balance as energy_balance
 from exudyn_rotor.advice.proposal import Proposal as Proposal
 from exudyn_rotor.advice.proposal import propose as propose
 from exudyn_rotor.advice.run_check import RunCheck as RunCheck
@@ -75,7 +73,7 @@ from exudyn_rotor.linear.stability.stability_map import stability_map as stabili
 from exudyn_rotor.linear.stability.thresholds import StabilityThresholds as StabilityThresholds
 from exudyn_rotor.linear.stability.thresholds import stability_threshold as stability_threshold
 from exudyn_rotor.linear.stability.thresholds import unstable_ranges as unstable_ranges
-from exudyn_rotor.linear.static.bearing_loads import bearing_loads as bearing_loads
+from exudyn_rotor.linear.static.static_response import bearing_loads as bearing_loads
 from exudyn_rotor.linear.static.static_response import static_response as static_response
 from exudyn_rotor.linear.static.static_result import StaticResponse as StaticResponse
 from exudyn_rotor.multibody.add_rotor import add_rotor as add_rotor

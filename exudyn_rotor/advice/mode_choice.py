@@ -10,7 +10,7 @@ is.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,32 +19,15 @@ from exudyn_rotor.advice.request import Request
 
 GROWTH = 0.05  # per radian
 _FREQUENCIES = 9
-_SPEEDS = 9  # within a range, at which unbalance may meet a resonance
-_UNMOVED = 1e-6  # share of the largest response; the load is at a place that is held
 _ALIKE = 0.01  # relative distance of frequencies of a pair: both planes of bending go together
 
 
-@dataclass(frozen=True, eq=False)
-class Truncation:
-    """Flexible modes that stay.
+class Truncation(NamedTuple):
+    """Flexible modes that stay."""
 
-    Attributes
-    ----------
-    kept : ndarray of int
-        Flexible modes, counted from 0.
-    error : float
-        Largest relative change of the response by what was left out.
-    in_band : int
-        Number of modes kept because their frequency lies in the band.
-    missing : float or None
-        Relative change of the response by attachment modes beside all modes given; None where
-        these are not known.
-    """
-
-    kept: np.ndarray
-    error: float
-    in_band: int
-    missing: float | None
+    kept: np.ndarray  # counted from 0
+    error: float  # largest relative change of the response by what was left out
+    in_band: int  # modes kept because their frequency lies in the band
 
 
 class Response:
@@ -59,7 +42,7 @@ class Response:
         self._rows, self._loads = rows[:, used], loads[used]
         self._H = np.linalg.inv(made.stiffness(s)[np.ix_(used, used)])
         self._places = np.searchsorted(used, places)
-        self.motion = self._rows @ (self._H @ self._loads)
+        self._sizes = np.linalg.norm(self._rows @ (self._H @ self._loads), axis=0)
 
     def error_without(self, dropped: np.ndarray) -> float:
         """Return the largest relative change of the response to any load without some modes.
@@ -69,7 +52,7 @@ class Response:
         d = self._places[dropped].ravel()
         inner = np.linalg.solve(self._H[np.ix_(d, d)], self._H[d] @ self._loads)
         change = self._rows @ (self._H[:, d] @ inner)
-        return largest_share(change, np.linalg.norm(self.motion, axis=0))
+        return largest_share(change, self._sizes)
 
 
 def choose_modes(given: Candidate, request: Request) -> Truncation:
@@ -79,8 +62,7 @@ def choose_modes(given: Candidate, request: Request) -> Truncation:
     the other, those first that change the response least.
     """
     frequencies = given.frequencies
-    plan = list(exponents(given, request))
-    responses = [Response(given, *each) for each in plan]
+    responses = [Response(given, *each) for each in exponents(given, request)]
     gaps = np.diff(frequencies) > _ALIKE * frequencies[1:]
     pairs = np.split(np.arange(frequencies.size), np.flatnonzero(gaps) + 1)
     pairs = [pair for pair in pairs if pair.size and frequencies[pair].min() > request.highest]
@@ -100,7 +82,6 @@ def choose_modes(given: Candidate, request: Request) -> Truncation:
         kept=np.setdiff1d(np.arange(frequencies.size), left_out),
         error=error,
         in_band=int(np.sum(frequencies <= request.highest)),
-        missing=_missing(given, plan, responses),
     )
 
 
@@ -109,8 +90,8 @@ def exponents(
 ) -> Iterator[tuple[float, complex]]:
     """Yield speeds and exponents s of loads in the rotor frame to look at.
 
-    Over the band evenly and at the resonances in it; unbalance at more speeds. With `steady`, a
-    growth per radian, weight and unbalance alone at the speeds.
+    Over the band evenly and at the resonances in it. With `steady`, a growth per radian, weight and
+    unbalance alone.
     """
     for speed in request.speeds:
         highest = request.loads + speed
@@ -122,9 +103,6 @@ def exponents(
             frequencies, growth = [0.0, speed] if speed else [], steady
         for nu in frequencies:
             yield float(speed), 1j * nu + growth * max(nu, speed, 0.1 * request.highest)
-    if request.low < request.high:
-        for speed in np.linspace(request.low, request.high, _SPEEDS)[1:-1]:
-            yield float(speed), complex(GROWTH * speed)
 
 
 def largest_share(change: np.ndarray, sizes: np.ndarray, least: float = 0.0) -> float:
@@ -135,18 +113,3 @@ def largest_share(change: np.ndarray, sizes: np.ndarray, least: float = 0.0) -> 
     moved = sizes > least * sizes.max(initial=0.0)
     shares = np.linalg.norm(change, axis=0)[moved] / sizes[moved]
     return float(shares.max(initial=0.0))
-
-
-def _missing(
-    given: Candidate, plan: list[tuple[float, complex]], responses: list[Response]
-) -> float | None:
-    """Return the largest relative change of the response to any load by attachment modes."""
-    attached = given.with_attachments()
-    if attached is None:
-        return None
-    worst = 0.0
-    for each, response in zip(plan, responses, strict=True):
-        whole = Response(attached, *each).motion
-        change = largest_share(whole - response.motion, np.linalg.norm(whole, axis=0), _UNMOVED)
-        worst = max(worst, change)
-    return worst

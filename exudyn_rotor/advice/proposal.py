@@ -37,8 +37,6 @@ class Proposal:
     stiffening : {'tilt', 'full'}
     modes : tuple of int
         Flexible modes to keep, counted from 0; see :func:`exudyn_rotor.keep_modes`.
-    labels : tuple of str
-        Their names and frequencies.
     total : int
         Number of flexible modes that there were to choose from.
     error : float
@@ -53,9 +51,8 @@ class Proposal:
     Examples
     --------
     >>> from exudyn_rotor import Proposal
-    >>> modes, speeds = {"modes": (0, 1), "labels": ("a", "b"), "total": 2}, (20.0, 20.0)
-    >>> Proposal("none", 20.0, "tilt", **modes, error=0.0, step=1e-4, speeds=speeds,
-    ...          accuracy=1e-3, reasons=()).step
+    >>> numbers = {"error": 0.0, "step": 1e-4, "speeds": (20.0, 20.0), "accuracy": 1e-3}
+    >>> Proposal("none", 20.0, "tilt", modes=(0, 1), total=2, **numbers, reasons=()).step
     0.0001
     """
 
@@ -63,7 +60,6 @@ class Proposal:
     spin: str | float
     stiffening: str
     modes: tuple[int, ...]
-    labels: tuple[str, ...]
     total: int
     error: float
     step: float
@@ -76,9 +72,6 @@ class Proposal:
         checks.choice(self.stiffening, "stiffening", LEVELS)
         checks.count(self.total, "total")
         modes = checks.whole_numbers(self.modes, "modes", most=self.total - 1)
-        labels = checks.labels(self.labels, "labels")
-        if len(labels) != modes.size:
-            raise ValueError(f"labels: needs one per mode, {modes.size}, got {len(labels)}")
         low, high = checks.vector(self.speeds, "speeds", "rad/s", size=2).tolist()
         if not 0.0 <= low <= high:
             raise ValueError(f"speeds: needs 0 ≤ low ≤ high [rad/s], got {low}, {high}")
@@ -87,7 +80,6 @@ class Proposal:
         checks.tolerance(self.accuracy, "accuracy")
         for name, value in (
             ("modes", tuple(modes.tolist())),
-            ("labels", labels),
             ("speeds", (low, high)),
             ("reasons", checks.labels(self.reasons, "reasons")),
         ):
@@ -122,16 +114,13 @@ class Proposal:
 
     def __str__(self) -> str:
         spin = f"{self.spin:.6g} rad/s" if isinstance(self.spin, float) else self.spin
-        modes = _ranges(self.modes)
-        if self.labels:
-            modes += f": {self.labels[0]} … {self.labels[-1]}"
         lines = [
             f"proposal for {self.speeds[0]:.6g} … {self.speeds[1]:.6g} rad/s, "
             f"accuracy {self.accuracy:g}",
             f"  translation   {self.translation}",
             f"  spin          {spin}",
             f"  stiffening    {self.stiffening}",
-            f"  modes         {self.count} of {self.total}: {modes}",
+            f"  modes         {self.count} of {self.total}",
             f"  step          {self.step:.3g} s",
             *(f"  - {reason}" for reason in self.reasons),
         ]
@@ -188,9 +177,9 @@ def propose(
     Modes: a load that is fixed in space at frequency f appears in the rotor frame at f ± Ω, so the
     band ends at f + Ω. Modes in the band stay; of the others those whose absence changes the
     response of the interfaces by less than half the accuracy leave, see
-    :mod:`exudyn_rotor.advice.mode_choice`. What static responses to loads at the interfaces add to
-    the modes given is in the reasons; above half the accuracy, or with all modes in the band, that
-    warns. Other nodes and the stress err by more.
+    :mod:`exudyn_rotor.advice.mode_choice`. All modes in the band is a warning: more may lie there.
+    What the modes given lack of static responses, the row ``residual`` of :func:`check_run` tells.
+    Other nodes and the stress err by more.
 
     Step: generalised alpha makes the period of a motion of frequency ω longer by ``(ωh)²/12`` of
     itself (0.0844 (ωh)² at Exudyn's spectral radius 0.9). Half the accuracy is allowed for that at
@@ -229,30 +218,20 @@ def propose(
     given = Candidate.of(reduced, supports)
     spin, translation, why = _formulation(given, request)
     chosen, step = choose_modes(given, request), choose_step(given, request)
-    for message in _unmet(given, request, chosen):
+    for message in _unmet(given, request):
         warnings.warn(message, AssumptionWarning, stacklevel=2)
-    hertz = IN_HERTZ * given.frequencies
     return Proposal(
         translation=translation,
         spin=spin,
         stiffening="full" if given.invariants.K2 is not None else "tilt",
         modes=chosen.kept,
-        labels=tuple(f"mode {i + 1} ({hertz[i]:.4g} Hz)" for i in chosen.kept),
-        total=hertz.size,
+        total=given.frequencies.size,
         error=chosen.error,
         step=step.size,
         speeds=(request.low, request.high),
         accuracy=request.accuracy,
-        reasons=(why, *_mode_reasons(given, request, chosen), _step_reason(request, step)),
+        reasons=(why, *_reasons(given, request, chosen, step)),
     )
-
-
-def _ranges(modes: Sequence[int]) -> str:
-    """Return mode numbers counted from 1 as '1–4, 7'."""
-    numbers = np.array(modes, dtype=int) + 1
-    runs = np.split(numbers, np.flatnonzero(np.diff(numbers) > 1) + 1)
-    shown = [f"{r[0]}–{r[-1]}" if len(r) > 1 else str(r[0]) for r in runs if len(r)]
-    return ", ".join(shown) or "none, the rotor is rigid"
 
 
 def _formulation(given: Candidate, request: Request) -> tuple[str | float, str, str]:
@@ -272,44 +251,31 @@ def _formulation(given: Candidate, request: Request) -> tuple[str | float, str, 
     return "free", "in-plane", "the speed varies, and nothing acts along the axis"
 
 
-def _mode_reasons(given: Candidate, request: Request, chosen: Truncation) -> list[str]:
-    """Return why these modes, in sentences."""
-    lines = [
+def _reasons(given: Candidate, request: Request, chosen: Truncation, step: Step) -> Iterator[str]:
+    """Yield why these modes and this step."""
+    yield (
         f"modes: {chosen.in_band} lie in the band up to (f + Ω)/2π = "
-        f"{IN_HERTZ * request.highest:.4g} Hz of the rotor frame",
+        f"{IN_HERTZ * request.highest:.4g} Hz of the rotor frame"
+    )
+    yield (
         f"modes: the {given.frequencies.size - chosen.kept.size} left out change the response "
-        f"of interfaces by {chosen.error:.2g}, resonances damped by {GROWTH:.0%} at least",
-    ]
-    if chosen.missing is not None:
-        lines.append(
-            "modes: static responses to loads at the interfaces, which those given do not hold, "
-            f"change the largest of it by {chosen.missing:.2g}"
-        )
-    return lines
-
-
-def _step_reason(request: Request, step: Step) -> str:
-    """Return why this step."""
+        f"of interfaces by {chosen.error:.2g}, resonances damped by {GROWTH:.0%} at least"
+    )
     if np.isnan(step.speed):
-        return (
+        yield (
             f"step: ωh = {request.highest * step.size:.3g} at the end of the band, so periods are "
             f"too long by {request.allowed:g} of themselves there"
         )
-    return (
-        f"step: changes the response at {step.speed:.4g} rad/s, to a load at {step.frequency:.4g} "
-        f"rad/s in the rotor frame, by {request.allowed:g}, or the growth of a motion there by "
-        "half; a resonance is near, or a motion that is slow in space"
-    )
-
-
-def _unmet(given: Candidate, request: Request, chosen: Truncation) -> Iterator[str]:
-    """Yield where the accuracy is not met, each with what to do."""
-    if chosen.missing is not None and chosen.missing > request.allowed:
+    else:
         yield (
-            f"the {given.frequencies.size} flexible modes given miss {chosen.missing:.2g} of the "
-            f"response, above half the accuracy {request.accuracy:g}: reduce the rotor with more "
-            "modes, or with craig_bampton_modes, and ask again"
+            f"step: changes the response at {step.speed:.4g} rad/s, to a load at "
+            f"{step.frequency:.4g} rad/s in the rotor frame, by {request.allowed:g}, or the growth "
+            "of a motion there by half; a resonance is near, or a motion that is slow in space"
         )
+
+
+def _unmet(given: Candidate, request: Request) -> Iterator[str]:
+    """Yield where the accuracy is not met, each with what to do."""
     if given.frequencies.size and given.frequencies.max() < request.highest:
         yield (
             f"all {given.frequencies.size} flexible modes given lie in the band up to "

@@ -11,28 +11,18 @@ from exudyn_rotor import checks
 
 # relative period error per (ωh)² of generalised alpha with Exudyn's spectral radius 0.9; 1/12 at 1
 PERIOD_ERROR = 0.0844
+_SPEEDS = 5  # within a range
 
 
 @dataclass(frozen=True)
 class Request:
-    """Speeds, loads and accuracy.
+    """Speeds, loads and accuracy."""
 
-    Attributes
-    ----------
-    low, high : float
-        Range of the spin speed [rad/s].
-    loads : float
-        Highest frequency in the inertial frame [rad/s].
-    accuracy : float
-    banded : bool
-        Whether any frequency up to `loads` may occur, not those of weight and unbalance alone.
-    """
-
-    low: float
+    low: float  # range of the spin speed [rad/s]
     high: float
-    loads: float
+    loads: float  # highest frequency in the inertial frame [rad/s]
     accuracy: float
-    banded: bool
+    banded: bool  # any frequency up to `loads` may occur, not those of weight and unbalance alone
 
     @classmethod
     def of(cls, speeds: ArrayLike, load_frequencies: ArrayLike | None, accuracy: float) -> Request:
@@ -66,8 +56,8 @@ class Request:
 
     @property
     def speeds(self) -> np.ndarray:
-        """Speeds to look at: both ends and the middle [rad/s]."""
-        return np.unique([self.low, 0.5 * (self.low + self.high), self.high])
+        """Speeds to look at, unbalance may meet a resonance between [rad/s]."""
+        return np.unique(np.linspace(self.low, self.high, _SPEEDS))
 
     @property
     def allowed(self) -> float:

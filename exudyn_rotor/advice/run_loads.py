@@ -1,8 +1,11 @@
-"""Loads of a run, from the record of its motion and the equations of the rotor.
+"""Loads of a run, and the static response to them that the modes leave out.
 
 The loads on a rotor are what its equations leave over, ``f = M q̈ − Q(q, q̇)``. Forces and moments F
 at the places where something acts (:mod:`exudyn_rotor.multibody.load_places`) follow from them by
-``Uᵀ F = f`` with the motion U of these places, in the sense of least squares.
+``Uᵀ F = f`` with the motion U of these places, in the sense of least squares. They, and the
+centrifugal load of the rotor itself, deform it by more than the run shows: by what the response of
+attachment modes has beyond the response of the modes. The inertia of modes that are left out does
+not count: next to a resonance, and after a sudden start, their motion is larger.
 """
 
 from __future__ import annotations
@@ -12,9 +15,12 @@ import numpy as np
 from exudyn_rotor.multibody.load_places import load_places
 from exudyn_rotor.multibody.rotor.record import Record
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
 
+_MOST = 400  # instants of a run that are looked at
+_STILL = 1e-5  # of the rotor's size: motion that counts as none
 _SEEN = 1e-3  # singular values below this share of the largest tell nothing about loads
 
 
@@ -31,21 +37,6 @@ def external_load(body: RotorBody, record: Record, index: int) -> np.ndarray:
     return motion.mass_matrix(t, q, q_t) @ q_tt - motion.forces(t, q, q_t)
 
 
-def external_force(body: RotorBody, record: Record) -> float:
-    """Return the largest resultant of the loads on a reduced rotor in a run, by its equations [N].
-
-    Modes that do not move the centre of mass count by their share ``√m`` of a unit of modal mass.
-    """
-    if len(record.time) < 2:
-        return 0.0
-    motion, largest = body.motion, 0.0
-    for index in instants(record, 50):
-        external = external_load(body, record, index)
-        modal = np.linalg.norm(external[motion.modes]) * np.sqrt(motion.invariants.mass)
-        largest = max(largest, modal, np.linalg.norm(external[motion.translations]))
-    return float(largest)
-
-
 def interface_loads(
     body: RotorBody, record: Record, picked: np.ndarray, size: float
 ) -> np.ndarray | None:
@@ -55,7 +46,7 @@ def interface_loads(
     comparable. None where the scene knows no interfaces.
     """
     interfaces = body.selection.source.interfaces
-    if "marker_body" not in body.objects or not interfaces:
+    if not interfaces:
         return None
     names, total = list(interfaces), np.zeros((len(interfaces), 6, len(picked)))
     places = load_places(body)
@@ -95,3 +86,65 @@ def _without_weight(body: RotorBody, record: Record, index: int) -> np.ndarray:
     on_modes = external[motion.modes] - inv.S.T @ turn.T @ weight / inv.mass
     on_frame = turn.T @ N @ (external[motion.translations] - N.T @ weight)
     return np.concatenate([on_modes, on_frame / np.sqrt(inv.mass)])
+
+
+def residual_deflection(body: RotorBody, record: Record, size: float) -> float | None:
+    """Return the deflection at interfaces that the modes leave out, over their displacement.
+
+    Against the rotor's mean motion. Stiff supports let the interfaces move less than the rotor
+    bends; then over its bending there. Loads elsewhere, and on the spin of the frame, do not count.
+    `size` [m] makes forces and moments comparable. None where it is not known what the modes leave
+    out.
+    """
+    rotor, motion = body.selection.source, body.motion
+    if rotor.with_attachments is None or len(record.time) < 2:
+        return None if rotor.with_attachments is None else 0.0
+    picked = instants(record, _MOST)
+    loads = interface_loads(body, record, picked, size)
+    if loads is None:
+        return None
+    columns = body.selection.T @ record.q[picked][:, body.layout.unknowns][:, motion.modes].T
+    moved, flexible = _motion(rotor)
+    flexibility = _flexibility(rotor.with_attachments) - _flexibility(rotor)
+    stretch = _stretch(rotor.with_attachments, body) - _stretch(rotor, body)
+    missing = flexibility @ loads.reshape(-1, len(picked))
+    missing += np.outer(stretch, record.speed[picked] ** 2)
+    bent = moved @ np.where(flexible[:, None], columns, 0.0)
+    frame = np.column_stack([_of_frame(body, record.q[index]) for index in picked])
+    whole = moved @ columns + np.tile(frame, (len(rotor.interfaces), 1))
+    return _largest(missing) / max(_largest(whole), _largest(bent), _STILL * size)
+
+
+def _of_frame(body: RotorBody, q: np.ndarray) -> np.ndarray:
+    """Return how far the frame's axis has moved, in its own axes, without rotation (6,)."""
+    motion, turn = body.motion, turned(body, q)
+    # the frame may stand in a centre of mass off the axis, and that circles about it
+    arm = body.selection.origin - body.axis.project(body.selection.origin)
+    shift = motion.free_directions @ q[body.layout.unknowns][motion.translations]
+    return np.concatenate([turn.T @ (shift + motion.orientation @ arm) - arm, np.zeros(3)])
+
+
+def _largest(motion: np.ndarray) -> float:
+    """Return the largest displacement of all interfaces together, of motions (6p, s) [m]."""
+    displacements = motion.reshape(-1, 6, motion.shape[1])[:, :3]
+    return float(np.sqrt((displacements**2).sum(axis=(0, 1))).max())
+
+
+def _motion(rotor: ReducedRotor) -> tuple[np.ndarray, np.ndarray]:
+    """Return the motion of all interfaces (6p, k), and which columns are flexible."""
+    flexible = np.arange(rotor.size) >= len(rotor.rigid_kinds)
+    return np.vstack([one.motion for one in rotor.interfaces.values()]), flexible
+
+
+def _flexibility(rotor: ReducedRotor) -> np.ndarray:
+    """Return ``Σ φ φᵀ/ω²`` of the flexible modes at the interfaces, (6p, 6p)."""
+    motion, flexible = _motion(rotor)
+    scaled = motion[:, flexible] / rotor.frequencies[flexible]
+    return scaled @ scaled.T
+
+
+def _stretch(rotor: ReducedRotor, body: RotorBody) -> np.ndarray:
+    """Return the static motion of the interfaces by the centrifugal load per ω², (6p,)."""
+    motion, flexible = _motion(rotor)
+    h = rotor.invariants.moved(body.selection.origin - rotor.center_of_mass).h
+    return motion[:, flexible] @ (h[flexible] / rotor.frequencies[flexible] ** 2)

@@ -9,12 +9,12 @@ from pathlib import Path
 import exudyn
 import numpy as np
 from exudyn.FEM import FEMinterface
+from exudyn.interactive import ShowImage
 from exudyn.itemInterface import SensorMarker, SensorNode
 from exudyn.rigidBodyUtilities import RotationMatrixX, RotationMatrixZ
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.demo import scene
-from exudyn_rotor.multibody.drawing import draw_scene
 
 MODES = 12
 END_TIME = 0.5  # s
@@ -165,6 +165,8 @@ def _simulated(
 
 def _draw_rotor(SC: exudyn.SystemContainer, path: Path) -> None:
     """Draw the scene with the rotor's deformation, magnified."""
+    from matplotlib import pyplot
+
     settings = SC.visualizationSettings
     settings.view0.scene.drawCoordinateSystem = 0
     settings.general.showSolverInformation = False
@@ -174,10 +176,10 @@ def _draw_rotor(SC: exudyn.SystemContainer, path: Path) -> None:
     settings.view0.scene.showMeshEdges = False
     for group in (settings.connectors, settings.markers, settings.loads, settings.sensors):
         group.show = False
-    draw_scene(
-        SC,
-        path,
-        deformation_scale=MAGNIFICATION,
-        contour=exudyn.OutputVariableType.DisplacementLocal,
-        view=RotationMatrixZ(-0.6) @ RotationMatrixX(1.25),
-    )
+    settings.bodies.deformationScaleFactor = MAGNIFICATION
+    settings.contour.outputVariable = exudyn.OutputVariableType.DisplacementLocal
+    settings.contour.outputVariableComponent = -1
+    settings.nodes.show = False
+    view = RotationMatrixZ(-0.6) @ RotationMatrixX(1.25)
+    image = ShowImage(SC, size=(1400, 900), modelRotation=view, show=False)
+    pyplot.imsave(path, image, format="png")

@@ -97,12 +97,6 @@ class MotionShapes(Result):
                 f"motion: needs three values for each of the {len(self.positions)} nodes, got "
                 f"{self.motion.shape[2]}"
             )
-        if self.triangles.size and (
-            self.triangles.shape[1] not in (3, 6) or self.triangles.max() >= len(self.positions)
-        ):
-            raise ValueError("triangles: needs 3 or 6 numbers of nodes each")
-        if not np.any(self.direction):
-            raise ValueError("direction: needs a vector along the spin axis, got zeros")
 
     @property
     def axis(self) -> SpinAxis:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from os import PathLike
@@ -243,28 +243,6 @@ class ReducedRotor:
             return None if rotor is None else (rotor.with_damping(**factors), columns)
 
         return replace(self, invariants=damped, attached=finer)
-
-    def in_basis(self, T: np.ndarray, rigid_kinds: Iterable[ModeKind]) -> ReducedRotor:
-        """Return the rotor for combinations T (k, l) of its columns, without static responses.
-
-        `rigid_kinds` are what the leading columns of T are.
-        """
-        shapes = self.shapes
-        if shapes is not None:
-            stress = None if shapes.stress is None else shapes.stress @ T
-            shapes = replace(shapes, matrix=shapes.matrix @ T, stress=stress)
-        return replace(
-            self,
-            invariants=self.invariants.in_basis(T),
-            rigid_kinds=tuple(rigid_kinds),
-            interfaces={
-                name: replace(interface, motion=interface.motion @ T)
-                for name, interface in self.interfaces.items()
-            },
-            mode_mass=T.T @ self.mode_mass @ T,
-            shapes=shapes,
-            attached=None,
-        )
 
     def static_displacement(self, speed: float) -> np.ndarray:
         """Return the static centrifugal displacement at a spin speed.

@@ -5,7 +5,7 @@ A formulation needs the rigid modes that its frame does not hold, and no others.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -194,6 +194,29 @@ def mean_rotation(reduced: ReducedRotor) -> np.ndarray:
     return turns / size if size else turns
 
 
+def in_basis(reduced: ReducedRotor, T: np.ndarray, rigid_kinds: Iterable[ModeKind]) -> ReducedRotor:
+    """Return the rotor for combinations T (k, l) of its columns, without static responses.
+
+    `rigid_kinds` are what the leading columns of T are.
+    """
+    shapes = reduced.shapes
+    if shapes is not None:
+        stress = None if shapes.stress is None else shapes.stress @ T
+        shapes = replace(shapes, matrix=shapes.matrix @ T, stress=stress)
+    return replace(
+        reduced,
+        invariants=reduced.invariants.in_basis(T),
+        rigid_kinds=tuple(rigid_kinds),
+        interfaces={
+            name: replace(interface, motion=interface.motion @ T)
+            for name, interface in reduced.interfaces.items()
+        },
+        mode_mass=T.T @ reduced.mode_mass @ T,
+        shapes=shapes,
+        attached=None,
+    )
+
+
 def without_spin(reduced: ReducedRotor) -> ReducedRotor:
     """Return a rotor none of whose motions has a mean rotation about the axis.
 
@@ -221,7 +244,7 @@ def _beside_spin(reduced: ReducedRotor) -> np.ndarray:
 
 def _without_kind(reduced: ReducedRotor, T: np.ndarray) -> ReducedRotor:
     kinds = (kind for kind in reduced.rigid_kinds if kind is not ModeKind.SPIN)
-    return reduced.in_basis(T, kinds)
+    return in_basis(reduced, T, kinds)
 
 
 def keep_modes(reduced: ReducedRotor, indices: Sequence[int]) -> ReducedRotor:
@@ -267,7 +290,7 @@ def keep_modes(reduced: ReducedRotor, indices: Sequence[int]) -> ReducedRotor:
         rotor, shares = reduced.with_attachments, reduced.in_attached
         return None if rotor is None else (rotor, shares[:, columns])
 
-    kept = reduced.in_basis(np.eye(reduced.size)[:, columns], reduced.rigid_kinds)
+    kept = in_basis(reduced, np.eye(reduced.size)[:, columns], reduced.rigid_kinds)
     return replace(kept, attached=None if reduced.attached is None else finer)
 
 

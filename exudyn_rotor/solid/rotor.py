@@ -24,7 +24,7 @@ from exudyn_rotor.solid.rigid import (
     rigid_basis,
 )
 from exudyn_rotor.solid.rigid_disc import STIFF, RigidDisc, as_tensor
-from exudyn_rotor.solid.section import outer_section
+from exudyn_rotor.solid.surface import outer_section
 from exudyn_rotor.solvers.inertia_relief import SOLVERS
 from exudyn_rotor.theory.axis import SpinAxis
 

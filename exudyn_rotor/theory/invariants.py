@@ -22,7 +22,7 @@ Matrix = np.ndarray | sp.csr_array
 
 _OPTIONAL = ("K2", "B", "K4", "K2_estimated", "H", "K0")
 _UNIT = 1e-9  # a direction may differ from unit length by this much
-_EPSILON = np.array([skew(unit) for unit in np.eye(3)])  # ε_aik of (a × b)_i = ε_aik a_a b_k
+EPSILON = np.array([skew(unit) for unit in np.eye(3)])  # ε_aik of (a × b)_i = ε_aik a_a b_k
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,7 +223,7 @@ class Invariants:
         has no inertia does not turn.
         """
         _, P = moments_about(self, self.center)
-        momentum = np.einsum("aib,abk->ik", _EPSILON, P)
+        momentum = np.einsum("aib,abk->ik", EPSILON, P)
         return checks.read_only(inverse_inertia(self) @ momentum)
 
     def moved(self, origin: np.ndarray) -> Invariants:

@@ -22,8 +22,8 @@ from exudyn_rotor import (
     linear_model,
     recommended_settings,
 )
-from exudyn_rotor.multibody.spatial_body import add_spatial_rotor
 from exudyn_rotor.theory.rotating_axes import axes_of
+from validation.exudyn_3d.spatial_body import add_spatial_rotor
 
 # ------------------------------------------------------------------ scenes
 
@@ -123,7 +123,7 @@ def test_bad_records_and_calls_are_refused():
         BaseRecord([0.0, 1.0, 2.0], still.T[:2])
     mbs = exu.SystemContainer().AddSystem()
     body, base = add_rotor(mbs, rigid()), add_foundation(mbs, BLOCK)
-    spatial = add_spatial_rotor(mbs, ring_rotor(0.1, 0.15, 5.0), name="spatial")
+    spatial = add_spatial_rotor(mbs, ring_rotor(0.1, 0.15, 5.0))
     blind = add_foundation(mbs, replace(BLOCK, participation=None))
     loads = mbs.systemData.NumberOfLoads()
     for bodies, match in (

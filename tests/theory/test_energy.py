@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 from test_motion import AXIS, FAMILY, GRAVITY, ORIENTATION, motion_of, random_state
 
-from exudyn_rotor.theory.energy import energy_of
-
 T = 0.7  # s, of prescribed motions
 
 
@@ -28,7 +26,7 @@ def test_energy_is_that_of_the_nodes(formulation):
     rate = omega * np.cross(AXIS.direction, local) + (modes @ zeta_t).reshape(-1, 3)
     p, p_t = tau + local @ turn.T, (tau_t + rate @ turn.T).ravel()
     mass = arrays["mass"]
-    found = energy_of(motion, T, q, v)
+    found = motion.energy(T, q, v)
     assert found.kinetic == pytest.approx(0.5 * p_t @ (mass @ p_t), rel=1e-12)
     bent = modes @ zeta
     assert found.elastic == pytest.approx(0.5 * bent @ (arrays["stiffness"] @ bent), rel=1e-12)

@@ -25,7 +25,7 @@ import scipy.linalg as la
 from exudyn_rotor import checks
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear.equations import PeriodicSystem, Terms, add, others, spread, turned
+from exudyn_rotor.linear.equations import PeriodicSystem, add, others, spread
 from exudyn_rotor.linear.model.assembly import (
     Assembly,
     Element,
@@ -582,16 +582,6 @@ class LinearModel:
             rows = body.spin.about_axis(rows)
         rows = np.vstack([rows, 0.0 * rows])
         return assembly.wide(body.from_outside(rows), assembly.slices[0])
-
-    def unbalance_at(self, seen: Terms, unbalance: np.ndarray) -> dict[int, np.ndarray]:
-        """Return the load (k,) per Ω² of an unbalance (3,) in the rotor's frame, as harmonics.
-
-        `seen` is the motion of its place.
-        """
-        load: dict[int, np.ndarray] = {}
-        for n, force in turned({0: np.r_[unbalance, 0.0, 0.0, 0.0][:, None]}, 1).items():
-            add(load, {n + m: (U.T @ force)[:, 0] for m, U in seen.items()})
-        return load
 
     def unbalance(self, speed: float = 1.0) -> dict[int, np.ndarray]:
         """Return the load (k,) per Ω² of the own eccentricity of the rotors of ratio 1.

@@ -122,7 +122,7 @@ def add_drive(
     >>> float(body.coordinates()[1][0].round(2))
     63.21
     """
-    check_body(body, "body", "drives")
+    check_body(body, "body")
     checks.instance(drive, "drive", Drive, "DirectCurrentMotor, Drag and others are")
     if not body.formulation.has_spin:
         raise ValueError(

@@ -156,7 +156,7 @@ def connect_rotors(
 
 
 def _checked_end(body: Body, at: str, argument: str, place: str) -> Seat:
-    check_body(body, argument, "gears and couplings")
+    check_body(body, argument)
     check_turning_interface(body, at, place)
     return Seat.of(body, at, None)
 

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor.plan import Plan, Setup, laid_out
 from exudyn_rotor.prestress.static_solution import relief_rotations
+from exudyn_rotor.reduction.selection import NEGLIGIBLE
 from exudyn_rotor.solid.rigid import clamped_coordinates
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.solvers.factor import TooLittleMemoryError, available_memory, factor_entries
@@ -92,15 +93,7 @@ class NodalFields:
     conditions: Conditions
 
 
-@dataclass(frozen=True, eq=False)
-class FullPlan(Plan):
-    """A full body, laid out; as :class:`Plan`, with nodal displacements [m] for modes."""
-
-    selection: NodalFields
-    motion: FullMotion
-
-
-def make_full_plan(rotor: SolidRotor, setup: Setup) -> FullPlan:
+def make_full_plan(rotor: SolidRotor, setup: Setup) -> Plan:
     """Check what needs the model, and lay out the equations.
 
     `rotor` carries its prestress where ``setup.stiffening`` is 'full'.
@@ -122,7 +115,7 @@ def make_full_plan(rotor: SolidRotor, setup: Setup) -> FullPlan:
         turns = np.where(np.abs(turns) > _ROUNDING, turns, 0.0)
         whole = replace(whole, K2=carried.per_square, B=carried.euler, K4=carried.per_fourth_power)
     second = full_stiffening(whole, setup.stiffening, turns)
-    held = conditions(whole, setup.formulation, rotor.grounded, setup.negligible)
+    held = conditions(whole, setup.formulation, rotor.grounded, NEGLIGIBLE)
     inv = replace(held.invariants, K2=None, B=None, K4=None)
     fields = NodalFields(checks.read_only(origin), inv, rotor, held)
 
@@ -131,14 +124,11 @@ def make_full_plan(rotor: SolidRotor, setup: Setup) -> FullPlan:
     ) -> FullMotion:
         return FullMotion(inv, formulation, second, setup.placement.rotation, plane, gravity)
 
-    return laid_out(
-        FullPlan,
-        setup,
-        fields,
-        motion,
-        modal_start=_start(setup.modal_coordinates, "modal_coordinates", held),
-        modal_start_rate=_start(setup.modal_velocities, "modal_velocities", held),
+    start = (
+        _start(setup.modal_coordinates, "modal_coordinates", held),
+        _start(setup.modal_velocities, "modal_velocities", held),
     )
+    return laid_out(setup, fields, motion, start)
 
 
 def _invariants(rotor: SolidRotor, origin: np.ndarray) -> Invariants:

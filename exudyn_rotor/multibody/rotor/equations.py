@@ -48,11 +48,6 @@ class Layout:
     unknowns: np.ndarray
     lock_mass: np.ndarray
 
-    @classmethod
-    def unlocked(cls, size: int) -> Layout:
-        """Return the layout of a node that holds the unknowns alone."""
-        return cls(size, np.arange(size), np.zeros(size))
-
     def spread(self, matrix: np.ndarray, diagonal: np.ndarray | float = 0.0) -> np.ndarray:
         """Return a (size, size) matrix with `matrix` on the unknowns and `diagonal` added."""
         full = np.diag(np.broadcast_to(diagonal, self.size).astype(float))
@@ -156,7 +151,7 @@ def _varying_mass(
     fill = matrix.SetWithSparseMatrixCSR
 
     def mass_matrix(mbs, t, item, q, q_t):
-        values = kernel.mass_entries(t, q, q_t)
+        values = kernel.mass_entries(t, q)
         one[:], mirrored[:] = values, values[skipped:]
         fill(size, size, table, False)
         return matrix

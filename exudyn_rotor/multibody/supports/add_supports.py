@@ -156,7 +156,7 @@ def add_supports(
     >>> print(*add_supports(body, springs), sep=" and ")
     left by Exudyn and right by symbolic function
     """
-    check_body(body, "body", "supports")
+    check_body(body, "body")
     supports = given_supports(supports)
     check_interfaces(supports, body.selection.source.interfaces)
     places = []
@@ -227,7 +227,7 @@ def _check_on_rotor(body: Body, support: Given, seat: Seat) -> None:
     tilts = isinstance(support, Support) and support.tilts
     across = isinstance(support, Support) and not tilts
     bearing, reason = bearing_of(support), None
-    if not across and abs(rotor.axis @ seat.axes[:, 2]) < 1.0 - _PARALLEL:
+    if not across and abs(rotor.standing_axes[:, 2] @ seat.axes[:, 2]) < 1.0 - _PARALLEL:
         reason = (
             f", whose axis is not parallel to that of rotor {body.name!r}; mount both on parallel "
             "axes"

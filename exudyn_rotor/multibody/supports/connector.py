@@ -534,7 +534,7 @@ def watch_clearance(body: RotorItems, connector: BearingConnector | MagneticConn
     """Let runs of the scene stop where the journal of a connector leaves its bearing."""
     bearing, name = connector.bearing, body.name
     stops = entry(body.mbs).setdefault("clearance stops", set())
-    place = body.mark, bearing.interface
+    place = body.token, bearing.interface
     if isinstance(bearing, ClearanceStop):
         stops.add(place)
         return
@@ -614,12 +614,7 @@ class SceneLaw(ABC):
         return add_function_sensor(self.body, output, options)
 
 
-def check_body(body: Body, argument: str, what: str) -> None:
-    """Refuse what is no rotor of a scene, or has no marker body, which `what` needs."""
+def check_body(body: Body, argument: str) -> None:
+    """Refuse what is no rotor of a scene."""
     checks.instance(body, argument, (RotorBody, FullRotorBody), "add_rotor returns one")
     body.check_present()
-    if "marker_body" not in body.objects:
-        raise ValueError(
-            f"{argument}: rotor {body.name!r} was added with marker_body=False; {what} need the "
-            "marker body"
-        )

@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, sin
 
 import exudyn
 import numpy as np
-from exudyn.itemInterface import (
-    MarkerBodyRigid,
-    MarkerSuperElementPosition,
-    MarkerSuperElementRigid,
-    ObjectGround,
-)
+from exudyn.itemInterface import MarkerBodyRigid, ObjectGround
 from exudyn.utilities import (
     EulerParameters2G,
     EulerParameters2RotationMatrix,
@@ -24,13 +19,10 @@ from exudyn.utilities import (
 )
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.full.full_body import FullRotorBody, interface_carrier
-from exudyn_rotor.multibody.rotor.marker_body import append_nodes, virtual_nodes
-from exudyn_rotor.multibody.rotor.more_markers import interface_motion
-from exudyn_rotor.multibody.rotor.rotor_items import KnownRotor, RotorItems, carrying_rotor
+from exudyn_rotor.multibody.rotor.markers import Carrier
+from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, carrying_rotor
 from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation, foundation_marker
 from exudyn_rotor.solid.places import SAME_PLACE, leeway, off_place
-from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_rotation, axial_skew
 
@@ -171,40 +163,20 @@ def _refuse_own(body: RotorItems, name: str, base: exudyn.MarkerIndex | exudyn.O
         )
 
 
-def _carrier(
-    body: RotorItems, interface: str
-) -> tuple[exudyn.ObjectIndex, np.ndarray, np.ndarray, float]:
-    """Return a flexible body, and place on the axis, motion (6, m) and radius of an interface."""
-    if isinstance(body, FullRotorBody):
-        return interface_carrier(body, interface)
-    return body.objects["marker_body"], *interface_motion(body, interface)
-
-
 def point_marker(body: RotorItems, interface: str) -> exudyn.MarkerIndex:
     """Add a marker with the interface's mean displacement, its place on the axis."""
-    number, place, motion, _ = _carrier(body, interface)
-    nodes = append_nodes(body.mbs, number, place[None, :], motion[:3])
-    return body.mbs.AddMarker(
-        MarkerSuperElementPosition(
-            bodyNumber=number, meshNodeNumbers=nodes, weightingFactors=[1.0], visualization=_HIDDEN
-        )
-    )
+    return _on_axis(body, interface).add_marker(body.mbs, "position")
 
 
 def rigid_marker(body: RotorItems, interface: str) -> exudyn.MarkerIndex:
     """Add a marker with the mean displacement and rotation, on the axis, axes (n1, n2, e)."""
-    number, place, motion, radius = _carrier(body, interface)
-    axis = SpinAxis(body.frame.B @ body.axis.direction)
-    nodes = append_nodes(body.mbs, number, *virtual_nodes(place, radius, motion, axis))
-    return body.mbs.AddMarker(
-        MarkerSuperElementRigid(
-            bodyNumber=number,
-            meshNodeNumbers=nodes,
-            weightingFactors=[1.0 / 3.0] * 3,
-            localHT=_frame(body.frame.B @ axes_of(body.axis)),
-            visualization=_HIDDEN,
-        )
-    )
+    axes = body.frame.B @ axes_of(body.axis)
+    return _on_axis(body, interface).add_marker(body.mbs, "rigid", axes)
+
+
+def _on_axis(body: RotorItems, interface: str) -> Carrier:
+    place = body.axis.project(body.selection.source.interfaces[interface].reference)
+    return replace(body.interface_carrier(interface), point=body.frame.points(place))
 
 
 QUARTER = axial_skew(3)
@@ -235,14 +207,9 @@ class RotorEnd:
     def __init__(self, body: RotorItems, name: str) -> None:
         own = axes_of(body.axis)
         interface = body.selection.source.interfaces[name]
-        if isinstance(body, FullRotorBody):
-            carrier = interface_carrier(body, name)[0]
-            self.nodes = tuple(map(exudyn.NodeIndex, body.mbs.GetObject(carrier)["nodeNumbers"]))
-            motion = np.eye(6)
-        else:
-            self.nodes = body.nodes["rigid"], body.nodes["modes"]
-            motion = interface.motion @ body.selection.T
-        modes = np.kron(np.eye(2), own.T) @ motion
+        carrier = body.interface_carrier(name)
+        self.nodes = carrier.nodes
+        modes = np.kron(np.eye(2), own.T @ body.frame.B.T) @ carrier.motion
         self.axes = body.standing_axes
         point = own.T @ (body.axis.project(interface.reference) - body.frame.origin)
         self.size, self._point = _RIGID + modes.shape[1], point.tolist()
@@ -387,7 +354,7 @@ class MarkerEnd:
         item: dict,
         place: np.ndarray,
         axes: np.ndarray,
-        rotor: KnownRotor | None,
+        rotor: RotorItems | None,
     ) -> None:
         body = mbs.GetObject(item["bodyNumber"]) if "bodyNumber" in item else item
         nodes = body["nodeNumbers"] if "nodeNumbers" in body else [body["nodeNumber"]]
@@ -412,8 +379,8 @@ class MarkerEnd:
         self.nodes = tuple(map(exudyn.NodeIndex, nodes[: 1 + bool(modes.shape[1])]))
         self._spin, self.is_rotor = None, rotor is not None
         if rotor is not None:
-            sense = float(np.sign(np.dot(rotor.axis, axes[:, 2])))
-            self._spin = rotor.plan.locks.spin, sense
+            sense = float(np.sign(rotor.standing_axes[:, 2] @ axes[:, 2]))
+            self._spin = rotor.locks.spin, sense
 
     def read(self, q: list[float], q_t: list[float]) -> None:
         """Take the motion from coordinates and their rates."""

@@ -14,7 +14,6 @@ import numpy as np
 from exudyn.itemInterface import (
     CoordinateConstraint,
     MarkerNodeCoordinate,
-    MarkerSuperElementRigid,
     NodePointGround,
     NodeRigidBodyRxyz,
     ObjectFFRFreducedOrder,
@@ -29,9 +28,8 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.multibody.rotor.marker_body import add_weight, append_nodes, virtual_nodes
+from exudyn_rotor.multibody.rotor.markers import Carrier, add_weight
 from exudyn_rotor.multibody.rotor.plan import generic_node, main_system
-from exudyn_rotor.theory.axis import SpinAxis
 
 _ARM = 0.1  # m, of the virtual nodes of a point; any does
 
@@ -119,19 +117,9 @@ def foundation_marker(
     base: SceneFoundation, name: str, place: np.ndarray, axes: np.ndarray
 ) -> exudyn.MarkerIndex:
     """Add a rigid marker of a point at its place [m], with these axes as columns."""
-    number, motion = base.objects["marker_body"], base.foundation.points[name]
-    nodes = virtual_nodes(place, _ARM, motion, SpinAxis(axes[:, 2]))
-    frame = np.eye(4)
-    frame[:3, :3] = axes
-    return base.mbs.AddMarker(
-        MarkerSuperElementRigid(
-            bodyNumber=number,
-            meshNodeNumbers=append_nodes(base.mbs, number, *nodes),
-            weightingFactors=[1.0 / 3.0] * 3,
-            localHT=frame,
-            visualization={"show": False, "showMarkerNodes": False},
-        )
-    )
+    motion = base.foundation.points[name]
+    point = Carrier(base.objects["marker_body"], place, motion, _ARM)
+    return point.add_marker(base.mbs, "rigid", axes)
 
 
 def add_foundation(

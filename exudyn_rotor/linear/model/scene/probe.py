@@ -222,8 +222,7 @@ class Probe:
         q, q_t = self.scene.rest.copy(), np.zeros(len(self.scene.rest))
         q[self.scene.free] += x
         q_t[self.scene.free] = v
-        if self.spin is not None:
-            q[self.spin], q_t[self.spin] = theta, self.speed
+        q[self.spin], q_t[self.spin] = theta, self.speed
         return q, q_t
 
     def _set(self, theta: float, x: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

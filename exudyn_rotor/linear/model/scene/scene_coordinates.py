@@ -11,7 +11,6 @@ import scipy.linalg
 
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
-from exudyn_rotor.multibody.rotor.marker_body import around
 from exudyn_rotor.multibody.rotor.plan import turned_origin
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import StartState
@@ -56,10 +55,10 @@ class SceneCoordinates:
         free = rotor[without_spin(body)]
         made = cls(body, free, np.eye(len(free)), rest)
         rest[free[made.count :]] = 0.0
-        if made.spin_coordinate is not None:  # where the rotor is when it has turned back
-            angle = rest[made.spin_coordinate]
-            turned = turned_origin(body.selection, body.plan.setup.placement.rotation, angle)
-            rest[free[: made.count]] -= body.motion.free_directions.T @ turned
+        # where the rotor is when it has turned back
+        angle = rest[made.spin_coordinate]
+        turned = turned_origin(body.selection, body.plan.setup.placement.rotation, angle)
+        rest[free[: made.count]] -= body.motion.free_directions.T @ turned
         return made
 
     @property
@@ -89,13 +88,23 @@ class SceneCoordinates:
         return self.body.motion.formulation.translation_count
 
     @property
-    def spin_coordinate(self) -> int | None:
-        """The scene's coordinate θ; None for a prescribed spin without the marker body."""
+    def spin_coordinate(self) -> int:
+        """The scene's coordinate θ."""
         body = self.body
         places = body.mbs.systemData.GetObjectLTGODE2(body.objects["physics"])
-        if "marker_body" in body.objects:
-            return int(places[body.locks.spin])
-        return int(places[self.count]) if body.formulation.has_spin else None
+        return int(places[body.locks.spin])
+
+    @cached_property
+    def touching(self) -> np.ndarray:
+        """Which of the unknowns move the rotor, (k,)."""
+        return np.any(self.N[: self.modal.stop] != 0.0, axis=0)
+
+    @cached_property
+    def columns(self) -> np.ndarray:
+        """Columns of the reduced rotor by the unknowns that move it, (n, r)."""
+        selection = self.body.selection
+        moved = selection.source.invariants.S.T @ self.axes[:, : self.count]
+        return np.hstack([moved, selection.T]) @ self.N[: self.modal.stop, self.touching]
 
     @cached_property
     def axes(self) -> np.ndarray:
@@ -159,20 +168,23 @@ class SceneCoordinates:
 
         Raises
         ------
-        KeyError
-            For an interface without a marker.
+        TypeError, ValueError
+            For an interface that is not there.
         """
-        return self.marker_motion(int(self.body.marker(name)))
+        return self._motion(self.body.interface_carrier(name).motion)
 
     def marker_motion(self, number: int) -> np.ndarray:
         """Return a marker's motion (6, k): displacement and rotation along (n1, n2, e).
 
-        In the rotor frame, the marker's offset included.
+        In the rotor frame.
         """
+        return self._motion(_marker_motion(self.body, number))
+
+    def _motion(self, columns: np.ndarray) -> np.ndarray:
+        """Return a motion (6, k) by its columns (6, m) of modes, axes of the marker body."""
         motion = np.zeros((6, len(self.free)))
         motion[: self.count, : self.count] = np.eye(self.count)
-        turn = np.kron(np.eye(2), self.axes.T @ self.body.frame.B.T)
-        motion[:, self.modal] = turn @ _marker_motion(self.body, number)
+        motion[:, self.modal] = np.kron(np.eye(2), self.axes.T @ self.body.frame.B.T) @ columns
         return motion @ self.N
 
     def turn(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -208,8 +220,7 @@ class SceneCoordinates:
         q[self.free] += T @ y
         q_t[self.free] = T @ y_t + speed * T1 @ y
         spin = self.spin_coordinate
-        if spin is not None:
-            q[spin], q_t[spin] = angle, speed
+        q[spin], q_t[spin] = angle, speed
         return StartState(q, q_t, angle, speed)
 
 
@@ -247,8 +258,6 @@ def _marker_motion(body: RotorBody, number: int) -> np.ndarray:
     """Return displacement and rotation (6, m) of a marker, axes of the marker body."""
     item = body.mbs.GetMarker(number)
     nodes, shares = list(item["meshNodeNumbers"]), np.array(item["weightingFactors"])
-    if number in map(int, body.markers.values()):
-        nodes, shares = around(nodes), np.ones(3) / 3.0
     marker_body = body.mbs.GetObject(body.objects["marker_body"])
     columns = np.asarray(marker_body["modeBasis"])
     columns = columns.reshape(len(columns) // 3, 3, -1)[nodes]
