@@ -124,15 +124,11 @@ class TwoLevel:
 
 def _inverse_blocks(stiffness: sp.csr_array) -> sp.csr_array:
     """Return the inverse of the 3 × 3 blocks on the diagonal."""
-    size = stiffness.shape[0]
-    diagonals = [np.append(stiffness.diagonal(k), np.zeros(k)).reshape(-1, 3) for k in range(3)]
-    blocks = np.empty((size // 3, 3, 3))
-    for row in range(3):
-        for column in range(row, 3):
-            blocks[:, row, column] = blocks[:, column, row] = diagonals[column - row][:, row]
-    nodes = np.arange(size // 3 + 1)
-    inverse = sp.bsr_array((np.linalg.inv(blocks), nodes[:-1], nodes), shape=stiffness.shape)
-    return sp.csr_array(inverse.astype(np.float32))
+    blocks = sp.bsr_array(stiffness, blocksize=(3, 3))
+    nodes = np.arange(len(blocks.indptr))
+    diagonal = np.repeat(nodes[:-1], np.diff(blocks.indptr)) == blocks.indices
+    inverse = np.linalg.inv(blocks.data[diagonal]).astype(np.float32)
+    return sp.csr_array(sp.bsr_array((inverse, nodes[:-1], nodes), shape=stiffness.shape))
 
 
 def conjugate_gradients(
