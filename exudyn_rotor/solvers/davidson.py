@@ -39,16 +39,8 @@ def davidson_modes(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the `count` lowest modes by Davidson iteration with an approximate ``K⁻¹``.
 
-    Parameters
-    ----------
-    stiffness, mass : scipy.sparse.csr_array, shape (n, n)
-    inverse : InertiaRelief or ConstrainedInverse
-    count : int
-    unit : float
-        Rounding error of ``K u`` for a displacement of norm 1 [N].
-    balanced : callable, optional
-        Takes what reactions balance out of residuals (n, k).
-
+    `inverse` knows the stiffness (n, n) approximately, `unit` is the rounding error of ``K u`` for a
+    displacement of norm 1 [N], and `balanced` takes what reactions balance out of residuals (n, k).
     Returns as :func:`exudyn_rotor.solvers.modes.lanczos_modes`; ValueError without convergence.
 
     Restarts keep the latest Ritz vectors and those before them ("GD+k"): Stathopoulos, Saad,

@@ -42,15 +42,9 @@ _ROUNDING_SHARE = 0.1  # of the rounding of K u that a factorisation leaves as w
 class TwoLevel:
     """Approximate inverse of a stiffness that holds all motions but `rigid`.
 
-    Parameters
-    ----------
-    stiffness, mass : scipy.sparse.csr_array, shape (m, m)
-    rigid : ndarray, shape (m, r)
-        Mass-orthonormal free rigid motions.
-    interpolation : scipy.sparse.csr_array, shape (m, c)
-        ``P``: displacements of all nodes from those of the vertices, which come first.
-    factorised : callable
-        ``factorised(PᵀKP, PᵀMP, rigid motions)`` returns the elastic inverse of linear elements.
+    `rigid` (m, r) are mass-orthonormal, `interpolation` P (m, c) gives displacements of all nodes
+    from those of the vertices, which come first, and ``factorised(PᵀKP, PᵀMP, rigid motions)`` the
+    elastic inverse of linear elements.
 
     Cycles are done in single precision, the linear elements excepted; what uses them sees the
     rounding as a slightly worse approximation.
