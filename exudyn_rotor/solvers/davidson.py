@@ -39,7 +39,7 @@ def davidson_modes(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the `count` lowest modes by Davidson iteration with an approximate ``K⁻¹``.
 
-    `inverse` knows the stiffness (n, n) approximately, `unit` is the rounding error of ``K u`` for a
+    `inverse` is an approximate one of the stiffness, `unit` the rounding error of ``K u`` for a
     displacement of norm 1 [N], and `balanced` takes what reactions balance out of residuals (n, k).
     Returns as :func:`exudyn_rotor.solvers.modes.lanczos_modes`; ValueError without convergence.
 
