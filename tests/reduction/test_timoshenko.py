@@ -14,7 +14,7 @@ WANTED = [f"{UNIFORM}, 'full'", f"{POINTS}, 'full'", f"{POINTS}, 'tilt'", f"{HUB
 
 @pytest.fixture(scope="module")
 def results():
-    return compare_all(0.05, 1.0, WANTED)[1]
+    return compare_all(0.04, 1.5, WANTED)[1]
 
 
 def array(result: dict) -> np.ndarray:
