@@ -149,31 +149,16 @@ class Rest:
         """Ω [rad/s]."""
         return self.unloaded.speed
 
-    @property
-    def basis(self) -> np.ndarray:
-        """As :attr:`Unloaded.basis`."""
-        return self.unloaded.basis
-
-    @property
-    def system(self) -> PeriodicSystem:
-        """As :attr:`Unloaded.system`."""
-        return self.unloaded.system
-
-    @property
-    def journals(self) -> Terms:
-        """As :attr:`Unloaded.journals`."""
-        return self.unloaded.journals
-
     def frequencies(self, orders: np.ndarray) -> np.ndarray:
         """Return ν (h,) of harmonics (k, n) (h, 2) [rad/s]."""
         return orders @ np.array(self.rates)
 
     def _stiffness(self, nu: np.ndarray) -> np.ndarray:
         """Return Z (h, r, r) at frequencies (h,)."""
-        M, D, K = self.system.matrices()
+        M, D, K = self.unloaded.system.matrices()
         nu = nu[:, None, None]
         Z = K + 1j * nu * D - nu**2 * M
-        for n, H in self.system.H:
+        for n, H in self.unloaded.system.H:
             Z = Z + 1j * np.sign(nu - n * self.speed) * H
         return Z
 
@@ -181,7 +166,7 @@ class Rest:
         """Return q⁰ (d,) by its harmonics (0, n)."""
         found: dict[tuple[int, int], np.ndarray] = {}
         for n, x in self._loaded.items():
-            for m, C in self.journals.items():
+            for m, C in self.unloaded.journals.items():
                 order = 0, self.revolutions * (n + m)
                 found[order] = found.get(order, 0.0) + C @ x
         return found
@@ -192,7 +177,7 @@ class Rest:
         orders = [n for n, F in self.loads.items() if np.any(F)]
         if not orders:
             return {}
-        F = np.array([self.basis.T @ self.loads[n] for n in orders])
+        F = np.array([self.unloaded.basis.T @ self.loads[n] for n in orders])
         Z = self._stiffness(self.speed * np.array(orders))
         return dict(zip(orders, np.linalg.solve(Z, F[..., None])[..., 0], strict=True))
 
@@ -205,8 +190,8 @@ class Rest:
 
     def _receptances(self, reach: tuple[int, int]) -> dict[int, Coupling]:
         K, N = reach
-        waves = sorted(self.journals)
-        C = np.concatenate([self.journals[m] for m in waves])
+        waves = sorted(self.unloaded.journals)
+        C = np.concatenate([self.unloaded.journals[m] for m in waves])
         wide = N + self.revolutions * max(map(abs, waves))
         n = np.arange(-wide, wide + 1)
         orders = np.array([(k, each) for k in range(K + 1) for each in n if k or each >= 0])
@@ -243,16 +228,16 @@ class Rest:
         """Return the motion (k,) under loads and forces g (h, d), by all harmonics."""
         loads: dict[tuple[int, int], np.ndarray] = {}
         for (k, n), g in zip(orders.tolist(), forces, strict=True):
-            for m, C in self.journals.items():
+            for m, C in self.unloaded.journals.items():
                 order = k, n + self.revolutions * m
                 loads[order] = loads.get(order, 0.0) + C.T @ g
         for n, F in self.loads.items():
             order = 0, self.revolutions * n
-            loads[order] = loads.get(order, 0.0) + self.basis.T @ F
+            loads[order] = loads.get(order, 0.0) + self.unloaded.basis.T @ F
         keys = [order for order in loads if order >= (0, 0)]
         Z = self._stiffness(self.frequencies(np.array(keys)))
         F = np.array([loads[order] for order in keys], dtype=complex)
-        x = np.linalg.solve(Z, F[..., None])[..., 0] @ self.basis.T
+        x = np.linalg.solve(Z, F[..., None])[..., 0] @ self.unloaded.basis.T
         found = dict(zip(keys, x, strict=True))
         return found | {(-k, -n): each.conj() for (k, n), each in found.items()}
 
