@@ -61,28 +61,15 @@ def _journals(model: LinearModel, names: tuple[str, ...], moves: bool) -> Terms:
 
 @dataclass(frozen=True, eq=False)
 class Unloaded:
-    """The rest at one spin speed, without loads.
+    """The rest at one spin speed, without loads."""
 
-    Attributes
-    ----------
-    model : LinearModel
-        With a spring and a damper in place of each law.
-    names : sequence of str
-        Interfaces of the laws.
-    speed : float
-        Ω [rad/s].
-    standing : LinearModel, optional
-        The same in axes that stand still, of a round rotor: there what laws do to motions beside a
-        steady one changes little, and not at all on a circle.
-    within : ndarray, shape (r', r), optional
-        Columns of fewer motions, see :meth:`up_to`.
-    """
-
-    model: LinearModel
-    names: Sequence[str]
-    speed: float
+    model: LinearModel  # with a spring and a damper in place of each law
+    names: Sequence[str]  # interfaces of the laws
+    speed: float  # Ω [rad/s]
+    # the same in axes that stand still, of a round rotor: there what laws do to motions beside a
+    # steady one changes little, and not at all on a circle
     standing: LinearModel | None = None
-    within: np.ndarray | None = None
+    within: np.ndarray | None = None  # (r', r) Columns of fewer motions, see :meth:`up_to`
     known: dict = field(default_factory=dict, repr=False)  # receptances
 
     @cached_property
@@ -126,23 +113,12 @@ class Unloaded:
 
 @dataclass(frozen=True, eq=False)
 class Rest:
-    """The rest at one spin speed, under loads.
-
-    Attributes
-    ----------
-    unloaded : Unloaded
-    rates : tuple of float
-        Of the second phase, and Ω/r [rad/s].
-    revolutions : int
-        r.
-    loads : mapping of int to ndarray (k,)
-        Harmonics of θ, of both signs.
-    """
+    """The rest at one spin speed, under loads."""
 
     unloaded: Unloaded
-    rates: tuple[float, float]
-    revolutions: int
-    loads: Terms
+    rates: tuple[float, float]  # of the second phase, and Ω/r [rad/s]
+    revolutions: int  # r
+    loads: Terms  # harmonics of θ, of both signs
 
     @property
     def speed(self) -> float:
