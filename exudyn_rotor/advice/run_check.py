@@ -12,7 +12,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.advice.proposal import Proposal
 from exudyn_rotor.advice.run_rows import ROWS, RecordedRun
 from exudyn_rotor.advice.warning import AssumptionWarning
-from exudyn_rotor.multibody.full.full_body import FullRotorBody, recorded_states
+from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
@@ -107,8 +107,8 @@ class RunCheck:
             return ""
         known = "the end state is" if self.instants == 1 else f"{self.instants} instants are"
         return (
-            f"only {known} known: call body.start_recording(), for a full body with instants, "
-            "before mbs.Assemble(), and lower solution.sensors.writePeriod of the settings"
+            f"only {known} known: call body.start_recording() before mbs.Assemble(), and lower "
+            "solution.sensors.writePeriod of the settings"
         )
 
     def __str__(self) -> str:
@@ -132,8 +132,8 @@ def check_run(
     ----------
     body : RotorBody or FullRotorBody
         After the solution; ``body.start_recording()`` before ``mbs.Assemble()`` records the run at
-        the instants of ``solution.sensors.writePeriod``, that of a full body at instants that it is
-        given. Before a run this checks the initial state.
+        the instants of ``solution.sensors.writePeriod``. Before a run this checks the initial
+        state.
     reduced : ReducedRotor, optional
         The rotor; adds the check of yielding where it was reduced with a yield stress.
     proposal : Proposal, optional
@@ -217,7 +217,6 @@ def check_run(
     """
     checks.instance(body, "body", (RotorBody, FullRotorBody), "add_rotor returns one")
     body.check_assembled()
-    is_full = isinstance(body, FullRotorBody)
     if reduced is not None:
         checks.instance(reduced, "reduced", ReducedRotor)
     if proposal is not None:
@@ -226,7 +225,7 @@ def check_run(
         accuracy = proposal.accuracy if proposal is not None else 1e-3
     checks.tolerance(accuracy, "accuracy")
     checks.flag(warn, "warn")
-    record = recorded_states(body) if is_full else body.recorded()
+    record = body.recorded()
     run = RecordedRun(body, record, reduced)
     result = RunCheck(tuple(_rows(run, proposal, accuracy)), len(record.time))
     told = [f"{r.name} {r.value:.3g} exceeds {r.limit:.3g} ({r.meaning}): {r.advice}"

@@ -16,7 +16,7 @@ from exudyn_rotor.advice.run_loads import instants, interface_loads, residual_de
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.connections import lost_items
-from exudyn_rotor.multibody.rotor.record import Record, last_solver
+from exudyn_rotor.multibody.rotor.record import Record, implicit_step
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -189,8 +189,8 @@ def _step(run: RecordedRun) -> float:
     error of its period. Motion of the rigid rotor that is slow in space, ``ω_s``, errs by
     ``κ(ωh)² ω/ω_s`` where it is integrated in the rotor frame.
     """
-    solver, record = last_solver(run.body), run.record
-    if solver is None or solver.explicit or len(record.time) < 3:
+    step, record = implicit_step(run.body), run.record
+    if step is None or len(record.time) < 3:
         return 0.0
     moved, rate, acceleration = (
         _spread(run, rows) for rows in (record.q, record.q_t, record.q_tt[1:])
@@ -198,7 +198,7 @@ def _step(run: RecordedRun) -> float:
     if not moved:
         return 0.0
     worst = max((rate / moved) ** 2, acceleration / moved, _slow_in_space(run))
-    return PERIOD_ERROR * solver.step**2 * worst
+    return PERIOD_ERROR * step**2 * worst
 
 
 def _spread(run: RecordedRun, rows: np.ndarray) -> float:
