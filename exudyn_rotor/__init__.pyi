@@ -74,7 +74,7 @@ from exudyn_rotor.linear.stability.stability_map import stability_map as stabili
 from exudyn_rotor.linear.stability.thresholds import StabilityThresholds as StabilityThresholds
 from exudyn_rotor.linear.stability.thresholds import stability_threshold as stability_threshold
 from exudyn_rotor.linear.stability.thresholds import unstable_ranges as unstable_ranges
-from exudyn_rotor.linear.static.bearing_loads import bearing_loads as bearing_loads
+from exudyn_rotor.linear.static.static_response import bearing_loads as bearing_loads
 from exudyn_rotor.linear.static.static_response import static_response as static_response
 from exudyn_rotor.linear.static.static_result import StaticResponse as StaticResponse
 from exudyn_rotor.multibody.add_rotor import add_rotor as add_rotor

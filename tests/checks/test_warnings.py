@@ -203,7 +203,7 @@ TRIGGERS = PLACES | {
 }  # fmt: skip
 
 
-_CALLS = ("warn", "warn_explicit", "warnings.warn", "warnings.warn_explicit")
+_CALLS = ("warn", "warn_explicit")
 
 
 def calls_of_warn(source: str, file: str) -> list[str]:
@@ -213,7 +213,9 @@ def calls_of_warn(source: str, file: str) -> list[str]:
     def visit(node: ast.AST, function: str) -> None:
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
             function = node.name
-        if isinstance(node, ast.Call) and ast.unparse(node.func) in _CALLS:
+        called = node.func if isinstance(node, ast.Call) else None
+        of_warnings = isinstance(called, ast.Attribute) and ast.unparse(called.value) == "warnings"
+        if (called.attr if of_warnings else getattr(called, "id", "")) in _CALLS:
             found.append(f"{file}:{function}")
         for child in ast.iter_child_nodes(node):
             visit(child, function)

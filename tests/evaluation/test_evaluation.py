@@ -256,6 +256,14 @@ def test_several_stages_share_the_coupling_and_beyond_ten_times_there_is_no_thre
     assert not none.needs_level_two
 
 
+def test_the_picture_shows_range_margin_and_factor():
+    ax = separation_margins(jeffcott(0.05), (120.0, 150.0)).plot(units="SI")
+    assert [text.get_text() for text in ax.texts] == ["AF 9.9"]
+    assert ax.patches[0].get_x() == pytest.approx(120.0)
+    assert ax.patches[1].get_width() == pytest.approx(0.15 * 120.0, rel=0.01)
+    pyplot.close(ax.figure)
+
+
 @pytest.mark.parametrize("damping", [2.0, 20.0])
 def test_picture_of_level_one_has_threshold_and_limit_in_it(damping):
     """Q₀ on the line, also where it is a part of the first step; the limit not on the frame."""

@@ -200,11 +200,11 @@ def test_scene_has_the_critical_speeds_of_its_rotor():
     """The scene is linearised by differences, good to about 1e-7 of its stiffness."""
     K, D = (np.diag(values) for values in BEARING)
     supports = [Support(name, K, D) for name in ("left", "right")]
-    given = {"max_speed": 3000.0, "nodal_diameters": [1]}
-    rotor = critical_speeds(scene_rotor(), supports=supports, **given)
-    mbs, body = on_springs()
+    given = {"max_speed": 2000.0, "nodal_diameters": [1], "accuracy": None}
+    rotor = critical_speeds(scene_rotor(0), supports=supports, **given)
+    mbs, body = on_springs(modes=0)
     scene = critical_speeds(mbs, body=body, **given)
-    assert len(rotor.speeds) >= 4
+    assert len(rotor.speeds) >= 3
     np.testing.assert_allclose(scene.speeds, rotor.speeds, rtol=1e-5)
 
 

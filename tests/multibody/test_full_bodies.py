@@ -101,7 +101,15 @@ def tight_settings(body, step, steps=STEPS):
 FAMILY = {
     "2.2": ({"translation": "free", "spin": "free", "initial_speed": 300.0}, 4),
     "2.3": ({"translation": "in-plane", "spin": "free", "initial_speed": 300.0}, 3),
-    "2.4": ({"translation": "none", "spin": "free", "initial_speed": 300.0}, 1),
+    "2.4": (
+        {
+            "translation": "none",
+            "spin": "free",
+            "initial_speed": 300.0,
+            "stiffness_damping": 1e-6,
+        },
+        1,
+    ),
     "2.5": ({"translation": "none", "spin": 300.0}, 1),
     "2.5, elastic": ({"translation": "none", "spin": 300.0, "drive": "elastic"}, 0),
     "2.5, θ(t)": ({"translation": "none", "spin": RUN_UP}, 1),
@@ -183,18 +191,6 @@ def test_stress_is_that_of_the_rotation(bar):
     mbs.SolveStatic(settings)
     known = rotor.carried_prestress.stress
     assert np.abs(body.stress() - known).max() < 1e-4 * np.abs(known).max()
-
-
-def test_instants_that_cannot_be_stored_are_refused(bar):
-    mbs, body = scene(bar)
-    for wrong, match in (([1.0, 0.5], "ascending"), ([-1.0], "before the start")):
-        with pytest.raises(ValueError, match=f"instants: .*{match}"):
-            body.start_recording(wrong)
-    mbs.Assemble()
-    with pytest.raises(ValueError, match=r"before mbs\.Assemble"):
-        body.start_recording([0.0])
-    with pytest.raises(ValueError, match=r"call body\.start_recording"):
-        body.recorded()
 
 
 def test_too_little_memory_is_said_before_anything_is_added(bar, monkeypatch):
