@@ -59,7 +59,7 @@ def _scene(rotor, steps=0, assembled=True, **options):
     mbs = exudyn.SystemContainer().AddSystem()
     body = er.add_rotor(mbs, rotor, **options)
     if steps:
-        body.start_recording(*[[0.0, 2e-5]] * isinstance(body, er.FullRotorBody))
+        body.start_recording()
     elif isinstance(body, er.RotorBody):
         er.add_supports(body, [er.Support("left", 1e6 * np.eye(3), 9.0), er.Support("right", 1e6)])
     if assembled:
@@ -213,7 +213,6 @@ CALLS = {
     "FullRotorBody.recorded": lambda w: {"self": w.full_recorded},
     "FullRotorBody.start_recording": lambda w: {
         "self": _scene(w.SolidRotor, assembled=False, **FULL),
-        "instants": [0.0, 1e-3],
     },
     "GearMesh": {"radii": [0.05, 0.1], "stiffness": 1e8, "teeth": [20, 40], "variation": [0.1]},
     "HarmonicForce": {"force": [1.0, 0.0, 0.0]},

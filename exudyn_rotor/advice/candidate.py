@@ -23,22 +23,13 @@ _ORDER = 2  # harmonics of the speed by which supports couple the motions of a r
 
 
 class Hill(NamedTuple):
-    """Equations at a speed for h harmonics of it: ``(s²M + sD + K) X = F``, each (h k, h k).
-
-    Attributes
-    ----------
-    M, D, K : ndarray
-    rates : ndarray, shape (h k,)
-        What a harmonic adds to the exponent s of a coordinate in the rotor frame, ``imΩ``.
-    orders : int
-        How many harmonics there are, h.
-    """
+    """Equations at a speed for h harmonics of it: ``(s²M + sD + K) X = F``, each (h k, h k)."""
 
     M: np.ndarray
     D: np.ndarray
     K: np.ndarray
-    rates: np.ndarray
-    orders: int
+    rates: np.ndarray  # (h k,), what a harmonic adds to s of a coordinate, imΩ
+    orders: int  # h
 
     def stiffness(self, s: complex) -> np.ndarray:
         """Return the dynamic stiffness for motions ``exp(st)``."""
@@ -47,20 +38,11 @@ class Hill(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """All modes that can be chosen from, and what holds the rotor.
-
-    Attributes
-    ----------
-    reduced : ReducedRotor
-    source : LinearModel
-        In axes of the rotor.
-    axial : bool
-        Whether something acts along the axis.
-    """
+    """All modes that can be chosen from, and what holds the rotor."""
 
     reduced: ReducedRotor
-    source: LinearModel
-    axial: bool
+    source: LinearModel  # in axes of the rotor
+    axial: bool  # whether something acts along the axis
 
     @classmethod
     def of(cls, reduced: ReducedRotor, supports: Sequence[Support] | Support) -> Candidate:

@@ -10,7 +10,7 @@ is.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,23 +22,12 @@ _FREQUENCIES = 9
 _ALIKE = 0.01  # relative distance of frequencies of a pair: both planes of bending go together
 
 
-@dataclass(frozen=True, eq=False)
-class Truncation:
-    """Flexible modes that stay.
+class Truncation(NamedTuple):
+    """Flexible modes that stay."""
 
-    Attributes
-    ----------
-    kept : ndarray of int
-        Flexible modes, counted from 0.
-    error : float
-        Largest relative change of the response by what was left out.
-    in_band : int
-        Number of modes kept because their frequency lies in the band.
-    """
-
-    kept: np.ndarray
-    error: float
-    in_band: int
+    kept: np.ndarray  # counted from 0
+    error: float  # largest relative change of the response by what was left out
+    in_band: int  # modes kept because their frequency lies in the band
 
 
 class Response:

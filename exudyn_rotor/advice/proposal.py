@@ -120,7 +120,7 @@ class Proposal:
             f"  translation   {self.translation}",
             f"  spin          {spin}",
             f"  stiffening    {self.stiffening}",
-            f"  modes         {self.count} of {self.total}: {_ranges(self.modes)}",
+            f"  modes         {self.count} of {self.total}",
             f"  step          {self.step:.3g} s",
             *(f"  - {reason}" for reason in self.reasons),
         ]
@@ -232,14 +232,6 @@ def propose(
         accuracy=request.accuracy,
         reasons=(why, *_reasons(given, request, chosen, step)),
     )
-
-
-def _ranges(modes: Sequence[int]) -> str:
-    """Return mode numbers counted from 1 as '1–4, 7'."""
-    numbers = np.array(modes, dtype=int) + 1
-    runs = np.split(numbers, np.flatnonzero(np.diff(numbers) > 1) + 1)
-    shown = [f"{r[0]}–{r[-1]}" if len(r) > 1 else str(r[0]) for r in runs if len(r)]
-    return ", ".join(shown) or "none, the rotor is rigid"
 
 
 def _formulation(given: Candidate, request: Request) -> tuple[str | float, str, str]:

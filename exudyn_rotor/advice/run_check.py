@@ -12,7 +12,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.advice.proposal import Proposal
 from exudyn_rotor.advice.run_rows import ROWS, RecordedRun
 from exudyn_rotor.advice.warning import AssumptionWarning
-from exudyn_rotor.multibody.full.full_body import FullRotorBody, recorded_states
+from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
@@ -107,8 +107,8 @@ class RunCheck:
             return ""
         known = "the end state is" if self.instants == 1 else f"{self.instants} instants are"
         return (
-            f"only {known} known: call body.start_recording(), for a full body with instants, "
-            "before mbs.Assemble(), and lower solution.sensors.writePeriod of the settings"
+            f"only {known} known: call body.start_recording() before mbs.Assemble(), and lower "
+            "solution.sensors.writePeriod of the settings"
         )
 
     def __str__(self) -> str:
@@ -132,8 +132,8 @@ def check_run(
     ----------
     body : RotorBody or FullRotorBody
         After the solution; ``body.start_recording()`` before ``mbs.Assemble()`` records the run at
-        the instants of ``solution.sensors.writePeriod``, that of a full body at instants that it is
-        given. Before a run this checks the initial state.
+        the instants of ``solution.sensors.writePeriod``. Before a run this checks the initial
+        state.
     reduced : ReducedRotor, optional
         The rotor; adds the check of yielding where it was reduced with a yield stress.
     proposal : Proposal, optional
@@ -217,7 +217,6 @@ def check_run(
     """
     checks.instance(body, "body", (RotorBody, FullRotorBody), "add_rotor returns one")
     body.check_assembled()
-    is_full = isinstance(body, FullRotorBody)
     if reduced is not None:
         checks.instance(reduced, "reduced", ReducedRotor)
     if proposal is not None:
@@ -226,10 +225,14 @@ def check_run(
         accuracy = proposal.accuracy if proposal is not None else 1e-3
     checks.tolerance(accuracy, "accuracy")
     checks.flag(warn, "warn")
-    record = recorded_states(body) if is_full else body.recorded()
+    record = body.recorded()
     run = RecordedRun(body, record, reduced)
     result = RunCheck(tuple(_rows(run, proposal, accuracy)), len(record.time))
-    for message in _messages(result, ran=record.time[-1] > 0.0) if warn else ():
+    told = [f"{r.name} {r.value:.3g} exceeds {r.limit:.3g} ({r.meaning}): {r.advice}"
+            for r in result.failed]  # fmt: skip
+    if result.gap and record.time[-1] > 0.0:
+        told.insert(0, result.gap)
+    for message in told if warn else ():
         warnings.warn(f"rotor {body.name!r}: {message}", AssumptionWarning, stacklevel=2)
     return result
 
@@ -257,10 +260,3 @@ def _rows(run: RecordedRun, proposal: Proposal | None, accuracy: float) -> Itera
             1.0 + accuracy,
             f"{run.fastest:.6g} rad/s were reached; propose again with that",
         )
-
-
-def _messages(result: RunCheck, ran: bool) -> Iterator[str]:
-    if ran and not result.complete:
-        yield result.gap
-    for row in result.failed:
-        yield f"{row.name} {row.value:.3g} exceeds {row.limit:.3g} ({row.meaning}): {row.advice}"

@@ -16,7 +16,7 @@ from exudyn_rotor.advice.run_loads import instants, interface_loads, residual_de
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.connections import lost_items
-from exudyn_rotor.multibody.rotor.record import Record, last_solver
+from exudyn_rotor.multibody.rotor.record import Record, implicit_step
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -32,19 +32,11 @@ _RINGING = 1.5  # energy about the static stretch over that of a start without i
 
 @dataclass(frozen=True, eq=False)
 class RecordedRun:
-    """What the rows of a check read of a run.
-
-    Attributes
-    ----------
-    body : RotorBody or FullRotorBody
-    record : Record
-    reduced : ReducedRotor, optional
-        Knows the yield stress.
-    """
+    """What the rows of a check read of a run."""
 
     body: RotorBody | FullRotorBody
     record: Record
-    reduced: ReducedRotor | None = None
+    reduced: ReducedRotor | None = None  # knows the yield stress
 
     @property
     def invariants(self) -> Invariants:
@@ -87,11 +79,6 @@ class RecordedRun:
     def mean_rotation(self) -> np.ndarray:
         """Rotation vector of the rotor in the mean (s, 3) [rad]."""
         return self.zeta @ self.invariants.mean_rotation.T
-
-    @cached_property
-    def mean_translation(self) -> np.ndarray:
-        """Displacement of the centre of mass in the frame (s, 3) [m]."""
-        return self.zeta @ self.invariants.S.T / self.invariants.mass
 
     @cached_property
     def energy(self) -> float:
@@ -173,9 +160,9 @@ def _tilt(run: RecordedRun) -> float:
 )
 def _deflection(run: RecordedRun) -> float:
     """Of the root mean square of what is neither mean translation nor mean rotation."""
-    inv, turned = run.invariants, run.mean_rotation
-    bent = squares(inv.M, run.zeta) - inv.mass * (run.mean_translation**2).sum(axis=1)
-    bent -= squares(inertia_tensor(inv), turned)
+    inv, momentum = run.invariants, run.zeta @ run.invariants.S.T
+    bent = squares(inv.M, run.zeta) - (momentum**2).sum(axis=1) / inv.mass
+    bent -= squares(inertia_tensor(inv), run.mean_rotation)
     return np.sqrt(max(bent.max(), 0.0) / inv.mass) / run.size
 
 
@@ -202,8 +189,8 @@ def _step(run: RecordedRun) -> float:
     error of its period. Motion of the rigid rotor that is slow in space, ``ω_s``, errs by
     ``κ(ωh)² ω/ω_s`` where it is integrated in the rotor frame.
     """
-    solver, record = last_solver(run.body), run.record
-    if solver is None or solver.explicit or len(record.time) < 3:
+    step, record = implicit_step(run.body), run.record
+    if step is None or len(record.time) < 3:
         return 0.0
     moved, rate, acceleration = (
         _spread(run, rows) for rows in (record.q, record.q_t, record.q_tt[1:])
@@ -211,7 +198,7 @@ def _step(run: RecordedRun) -> float:
     if not moved:
         return 0.0
     worst = max((rate / moved) ** 2, acceleration / moved, _slow_in_space(run))
-    return PERIOD_ERROR * solver.step**2 * worst
+    return PERIOD_ERROR * step**2 * worst
 
 
 def _spread(run: RecordedRun, rows: np.ndarray) -> float:

@@ -33,19 +33,13 @@ _STEADY = 1e-3  # growth per radian at one speed, where motion is steady: undamp
 
 
 class Step(NamedTuple):
-    """A step size and where it comes from.
+    """A step size, and spin speed and frequency in the rotor frame that ask for it.
 
-    Attributes
-    ----------
-    size : float
-        [s]
-    speed, frequency : float
-        Spin speed, and frequency in the rotor frame, that ask for the smallest step [rad/s]; NaN
-        where the end of the band does.
+    Those are NaN where the end of the band does.
     """
 
-    size: float
-    speed: float = np.nan
+    size: float  # s
+    speed: float = np.nan  # rad/s
     frequency: float = np.nan
 
 

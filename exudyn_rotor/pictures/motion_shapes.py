@@ -97,12 +97,6 @@ class MotionShapes(Result):
                 f"motion: needs three values for each of the {len(self.positions)} nodes, got "
                 f"{self.motion.shape[2]}"
             )
-        if self.triangles.size and (
-            self.triangles.shape[1] not in (3, 6) or self.triangles.max() >= len(self.positions)
-        ):
-            raise ValueError("triangles: needs 3 or 6 numbers of nodes each")
-        if not np.any(self.direction):
-            raise ValueError("direction: needs a vector along the spin axis, got zeros")
 
     @property
     def axis(self) -> SpinAxis:
@@ -263,8 +257,7 @@ class MotionShapes(Result):
 
         Every harmonic of a shape gives two vectors, its real and its imaginary part, in mesh axes
         of the rotor frame: the displacement at the time zero, and with the opposite sign that of
-        a quarter of its period later. Names begin with the index of the shape, and have its speed
-        where speeds differ.
+        a quarter of its period later. Names begin with the index of the shape.
 
         Parameters
         ----------
@@ -278,13 +271,11 @@ class MotionShapes(Result):
         ValueError
             For another ending, or without a surface.
         """
-        values, at = {}, [""] * len(self.labels)
-        if np.ptp(self.speeds) > 0.0:
-            at = [f", {speed:.6g} rad per s" for speed in self.speeds]
+        values = {}
         for index, label in enumerate(self.labels):
             sizes = np.abs(self.motion[index]).max(axis=1)
             for row in np.flatnonzero(sizes > _WRITTEN * sizes.max()):
-                name = f"{index} {label}{at[index]}, order {self.orders[row]}"
+                name = f"{index} {label}, order {self.orders[row]}"
                 shape = self.motion[index, row].reshape(-1, 3)
                 values[f"{name}, real"] = shape.real
                 values[f"{name}, imaginary"] = shape.imag

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from train_models import FIRST, SECOND, exponents_of, rigid, rings
+from train_models import FIRST, SECOND, exponents_of, rings
 
 from exudyn_rotor import GearMesh, Link, RotorTrain, Support, campbell, stability
 
@@ -46,16 +46,3 @@ def test_geared_rotors_are_those_of_constant_equations_at_rest():
     assert stability(train, [speed]).exponents.shape == (1, 11)  # without the free spin
     with pytest.raises(ValueError, match=r"turn with 1 and -0.5, not 0.5, times"):
         RotorTrain(rotors, {"A": 1.0, "B": 0.5}, supports, links)
-
-
-def test_gears_are_apart_by_their_centre_distance():
-    """``(r₁ + r₂)/cos α`` at the angle of the line of centres, in one plane."""
-    rotors, mesh = {"A": rigid(*FIRST), "B": rigid(*SECOND)}, gears()
-    distance, links = 0.3 / np.cos(0.35), [Link("A:a", "B:a", mesh)]
-    place = distance * np.array([np.cos(0.3), np.sin(0.3), 0.0])
-    given = {"ratios": {"A": 1.0, "B": -0.5}, "links": links}
-    start = np.array([1.0, 2.0, 3.0])
-    RotorTrain(rotors, positions={"A": start, "B": start + place}, **given)
-    for off in ([0.01, 0, 0], [0, 0.01, 0], [0, 0, 0.01]):
-        with pytest.raises(ValueError, match=r"gears need axes 0\.31\d+ m apart"):
-            RotorTrain(rotors, positions={"A": np.zeros(3), "B": place + off}, **given)

@@ -99,8 +99,6 @@ def test_table_of_a_link_is_over_the_difference_of_speeds():
         RotorTrain(rotors, ratios, links=[Link(*ends, table)])
         for ends in (("A:a", "B:a"), ("B:a", "A:a"))
     )
-    with pytest.raises(
-        ValueError, match=r"not -50 rad/s.* -0.5 times the speed of the analysis, 100 rad/s"
-    ):
+    with pytest.raises(ValueError, match="not -50 rad/s"):
         linear_model(there).at(100.0)
     linear_model(back).at(100.0)

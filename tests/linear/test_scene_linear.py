@@ -5,7 +5,12 @@ import numpy as np
 import pytest
 from apart import distance, exponents
 from asymmetric import LENGTH, asymmetric_shaft
-from exudyn.itemInterface import SensorNode
+from exudyn.itemInterface import (
+    CoordinateSpringDamper,
+    MarkerNodeCoordinate,
+    NodePointGround,
+    SensorNode,
+)
 from exudyn.rigidBodyUtilities import InertiaCuboid
 from point_rotors import ring_rotor
 
@@ -244,6 +249,17 @@ def test_refused_scenes():
     mbs.Assemble()
     with pytest.raises(ValueError, match="second rotor"):
         linear_model(mbs, body=body)
+
+
+def test_what_acts_other_than_by_markers_is_refused():
+    mbs, body = on_springs()
+    point = mbs.AddNode(NodePointGround())
+    ground = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=point, coordinate=0))
+    mode = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=body.nodes["modes"], coordinate=1))
+    mbs.AddObject(CoordinateSpringDamper(markerNumbers=[ground, mode], stiffness=1e6))
+    mbs.Assemble()
+    with pytest.raises(ValueError, match="other than by markers"):
+        linear_model(mbs, body=body).matrices(SPEED)
 
 
 # ------------------------------------------------------------------ as in lists

@@ -193,18 +193,6 @@ def test_stress_is_that_of_the_rotation(bar):
     assert np.abs(body.stress() - known).max() < 1e-4 * np.abs(known).max()
 
 
-def test_instants_that_cannot_be_stored_are_refused(bar):
-    mbs, body = scene(bar)
-    for wrong, match in (([1.0, 0.5], "ascending"), ([-1.0], "before the start")):
-        with pytest.raises(ValueError, match=f"instants: .*{match}"):
-            body.start_recording(wrong)
-    mbs.Assemble()
-    with pytest.raises(ValueError, match=r"before mbs\.Assemble"):
-        body.start_recording([0.0])
-    with pytest.raises(ValueError, match=r"call body\.start_recording"):
-        body.recorded()
-
-
 def test_too_little_memory_is_said_before_anything_is_added(bar, monkeypatch):
     monkeypatch.setattr(full_plan, "available_memory", lambda: 1e5)
     mbs = exudyn.SystemContainer().AddSystem()

@@ -1,18 +1,14 @@
-"""A full body in an Exudyn ``mbs``: markers, sensors, and displacements at instants of a run.
-
-All displacements at all steps would fill the memory; a sensor keeps those of chosen instants, and
-their rates. Exudyn calls it whenever sensors are stored, and at all other times it reads nothing.
-"""
+"""A full body in an Exudyn ``mbs``: displacements, stress, markers and sensors at mesh nodes."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import exudyn
 import numpy as np
 import scipy.sparse as sp
-from exudyn.itemInterface import SensorSuperElement, SensorUserFunction
+from exudyn.itemInterface import SensorSuperElement
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
@@ -24,79 +20,9 @@ from exudyn_rotor.multibody.rotor.markers import (
     flexible_body,
     interface_of_nodes,
 )
-from exudyn_rotor.multibody.rotor.record import Record, read_record, spin_speeds
+from exudyn_rotor.multibody.rotor.record import Record
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, SceneBody
 from exudyn_rotor.solid.interface import Interface
-
-_KINDS = exudyn.OutputVariableType
-_ROUNDING = 1e-9  # of an instant, which a sum of steps may miss
-
-
-@dataclass(frozen=True, eq=False)
-class FullRecord:
-    """Displacements of a full body at the instants of its record.
-
-    Attributes
-    ----------
-    time : ndarray, shape (s,)
-        When they were stored: at the instants, or when sensors were stored next [s].
-    displacement : ndarray, shape (s, n, 3)
-        Of all nodes, rotor frame, mesh axes [m].
-    stress : ndarray, shape (s, n, 6), or None
-        xx, yy, zz, yz, xz, xy at all nodes, mesh axes [Pa], as :meth:`FullRotorBody.stress`; None
-        for a rotor without elements.
-    """
-
-    time: np.ndarray
-    displacement: np.ndarray
-    stress: np.ndarray | None
-
-
-@dataclass(eq=False)
-class Stored:
-    """Which instants are wanted, and what has been stored."""
-
-    instants: np.ndarray
-    time: list[float] = field(default_factory=list)
-    states: list[tuple[np.ndarray, ...]] = field(default_factory=list)
-    latest: float = np.inf
-
-    def is_due(self, t: float) -> bool:
-        """Return whether `t` is the next instant; a run that begins anew forgets the last one."""
-        if t < self.latest:
-            self.time, self.states = [], []
-        self.latest = t
-        done = len(self.time)
-        return done < len(self.instants) and t >= self.instants[done] * (1.0 - _ROUNDING)
-
-
-def _storing(stored: Stored, nodes: tuple[exudyn.NodeIndex, ...]) -> Callable:
-    def store(mbs, t, sensors, factors, configuration):
-        if configuration == exudyn.ConfigurationType.Current and stored.is_due(t):
-            values = (
-                np.hstack([mbs.GetNodeOutput(node, kind, configuration) for node in nodes])
-                for kind in (_KINDS.Coordinates, _KINDS.Coordinates_t, _KINDS.Coordinates_tt)
-            )
-            stored.time.append(t)
-            stored.states.append(tuple(values))
-        return [float(len(stored.time))]
-
-    return store
-
-
-def recorded_states(body: FullRotorBody) -> Record:
-    """Return all coordinates, rates and accelerations at the instants that were stored.
-
-    The current state where nothing was stored.
-    """
-    body.check_assembled()
-    stored = body.stored[0] if body.stored else None
-    if stored is None or not stored.time:
-        return read_record(body)
-    time = np.array(stored.time)
-    q, q_t, q_tt = (np.array(rows) for rows in zip(*stored.states, strict=True))
-    speed = spin_speeds(body, time, q_t)
-    return Record(time, q, q_t, q_tt, np.zeros_like(q), speed, len(time) > 1)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -134,7 +60,6 @@ class FullRotorBody(SceneBody):
     """
 
     ties: exudyn.ObjectIndex | None = None
-    stored: list = field(default_factory=list, init=False, repr=False)
     carriers: dict = field(default_factory=dict, init=False, repr=False)
 
     @property
@@ -158,18 +83,32 @@ class FullRotorBody(SceneBody):
         ]
 
     def displacement(
-        self, configuration: exudyn.ConfigurationType = exudyn.ConfigurationType.Current
+        self, of: exudyn.ConfigurationType | Record = exudyn.ConfigurationType.Current
     ) -> np.ndarray:
-        """Return the displacements of all nodes in the rotor frame, mesh axes, (n, 3) [m]."""
-        return self.coordinates(configuration)[0][self.motion.modes].reshape(-1, 3)
+        """Return the displacements of all nodes in the rotor frame, mesh axes [m].
+
+        Parameters
+        ----------
+        of : exudyn.ConfigurationType or Record
+            Shape (n, 3) of a configuration, (s, n, 3) of what :meth:`recorded` returns.
+        """
+        if isinstance(of, Record):
+            fields = self.layout.unknowns[self.motion.modes]
+            return of.q[:, fields].reshape(len(of.q), -1, 3)
+        return self.coordinates(of)[0][self.motion.modes].reshape(-1, 3)
 
     def stress(
-        self, configuration: exudyn.ConfigurationType = exudyn.ConfigurationType.Current
+        self, of: exudyn.ConfigurationType | Record = exudyn.ConfigurationType.Current
     ) -> np.ndarray:
-        """Return the stress at all nodes, (n, 6) [Pa]: xx, yy, zz, yz, xz, xy in mesh axes.
+        """Return the stress at all nodes [Pa]: xx, yy, zz, yz, xz, xy in mesh axes.
 
         That of the displacements, the static one by the spin among them. A stress at rest, of
         ``prestress(stress=…)``, is not in it.
+
+        Parameters
+        ----------
+        of : exudyn.ConfigurationType or Record
+            Shape (n, 6) of a configuration, (s, n, 6) of what :meth:`recorded` returns.
 
         Raises
         ------
@@ -182,72 +121,9 @@ class FullRotorBody(SceneBody):
                 f"stress: rotor {self.name!r} has no elements that it could be computed with; make "
                 "it with SolidRotor.from_ngsolve"
             )
-        return recover(self.displacement(configuration).reshape(-1, 1))[:, :, 0]
-
-    def start_recording(self, instants: ArrayLike) -> None:
-        """Store the displacements of all nodes at chosen instants of the coming run.
-
-        Adds a sensor, so call it before ``mbs.Assemble()``. Sensors are stored every
-        ``solution.sensors.writePeriod``; the first time at or after an instant serves it.
-
-        Parameters
-        ----------
-        instants : array_like, shape (s,)
-            Ascending, from 0 [s].
-
-        Raises
-        ------
-        TypeError, ValueError
-            For bad input, and if the system is assembled; nothing has been added then.
-        """
-        self.check_present()
-        wanted = checks.ascending(instants, "instants", "s")
-        if wanted[0] < 0.0:
-            raise ValueError(f"instants: needs none before the start at 0 s, got {wanted[0]:.6g} s")
-        if self.mbs.systemIsConsistent:
-            raise ValueError(
-                f"start_recording: the system of rotor {self.name!r} is assembled already; call "
-                "this before mbs.Assemble()"
-            )
-        if self.stored:
-            raise ValueError(f"start_recording: rotor {self.name!r} has its instants already")
-        self.stored.append(Stored(wanted))
-        self.mbs.AddSensor(
-            SensorUserFunction(
-                sensorUserFunction=_storing(self.stored[0], tuple(self.nodes.values())),
-                storeInternal=True,
-                writeToFile=False,
-            )
-        )
-
-    def recorded(self) -> FullRecord:
-        """Return displacements and stress at the instants of :meth:`start_recording`.
-
-        Raises
-        ------
-        ValueError
-            If there are no instants, or the run has not stored all.
-        """
-        self.check_assembled()
-        if not self.stored:
-            raise ValueError(
-                f"rotor {self.name!r} stores nothing; call body.start_recording(instants) before "
-                "mbs.Assemble()"
-            )
-        stored = self.stored[0]
-        done = len(stored.time)
-        if done < len(stored.instants):
-            raise ValueError(
-                f"rotor {self.name!r} stored {done} of {len(stored.instants)} instants, and "
-                f"nothing for {stored.instants[done]:.6g} s: the run ended before, or sensors were "
-                "stored too seldom; let solution.sensors.writePeriod be the step"
-            )
-        fields = self.layout.unknowns[self.motion.modes]
-        displacement = np.array([q[fields] for q, *_ in stored.states]).reshape(done, -1, 3)
-        recover, stress = self.selection.source.stress_recovery, None
-        if recover is not None:
-            stress = np.moveaxis(recover(displacement.reshape(done, -1).T), -1, 0)
-        return FullRecord(np.array(stored.time), displacement, stress)
+        moved = self.displacement(of)
+        columns = moved.reshape(-1, 3 * self.node_count).T
+        return np.moveaxis(recover(columns), -1, 0).reshape(*moved.shape[:-1], 6)
 
     def interface_carrier(self, interface: str) -> Carrier:
         """Return what moves with the mean motion of an interface; there is one for each."""

@@ -181,6 +181,19 @@ class SceneBody(RotorItems, ABC):
         """
         return sensors.add_energy_sensor(self, **options)
 
+    def start_recording(self) -> None:
+        """Record all coordinates of the coming run, for :func:`exudyn_rotor.check_run`.
+
+        Adds native sensors, so call it before ``mbs.Assemble()``. They store as often as
+        ``solution.sensors.writePeriod`` says, which decides how much memory a full body takes; a
+        step calls no Python for them.
+        """
+        add_recording(self)
+
+    def recorded(self) -> Record:
+        """Return what :meth:`start_recording` recorded; without it the current state alone."""
+        return read_record(self)
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RotorBody(SceneBody):
@@ -257,15 +270,3 @@ class RotorBody(SceneBody):
             with the rotor's prescribed spin.
         """
         start_from(self, state)
-
-    def start_recording(self) -> None:
-        """Record all coordinates of the coming run, for :func:`exudyn_rotor.check_run`.
-
-        Adds native sensors, so call it before ``mbs.Assemble()``. They store as often as
-        ``solution.sensors.writePeriod`` says, and a step calls no Python for them.
-        """
-        add_recording(self)
-
-    def recorded(self) -> Record:
-        """Return what :meth:`start_recording` recorded; without it the current state alone."""
-        return read_record(self)

@@ -73,22 +73,11 @@ def equilibrium(
     tolerance: float,
     where: str,
 ) -> np.ndarray:
-    """Return the coordinates (k,) of an equilibrium.
+    """Return the coordinates (k,) of an equilibrium, beside `start`.
 
-    Parameters
-    ----------
-    scene : SceneCoordinates
-    linearised : callable
-        Takes coordinates, gives stiffness (k, k) and what is unbalanced (k,).
-    unbalanced : callable
-        Gives the latter alone.
-    metres : ndarray, shape (k,)
-        Metres per unit of each coordinate.
-    start : ndarray, shape (k,)
-    tolerance : float
-        Largest last step, relative to the motion.
-    where : str
-        Of messages.
+    `linearised` gives stiffness (k, k) and what is unbalanced (k,), `unbalanced` the latter alone;
+    `metres` are those per unit of each coordinate, the last step is below `tolerance` of the
+    motion, and messages begin with `where`.
 
     Raises
     ------

@@ -74,18 +74,6 @@ class LinearScene(SceneCoordinates):
     # ------------------------------------------------------------------ the rotor
 
     @cached_property
-    def touching(self) -> np.ndarray:
-        """Which of the unknowns move the rotor, (k,)."""
-        return np.any(self.N[: self.modal.stop] != 0.0, axis=0)
-
-    @cached_property
-    def columns(self) -> np.ndarray:
-        """Columns of the reduced rotor by the unknowns that move it, (n, r)."""
-        selection = self.body.selection
-        moved = selection.source.invariants.S.T @ self.axes[:, : self.count]
-        return np.hstack([moved, selection.T]) @ self.N[: self.modal.stop, self.touching]
-
-    @cached_property
     def spin_column(self) -> np.ndarray:
         """Columns of the reduced rotor by a free spin, (n, 1); (n, 0) where it is prescribed."""
         source = self.body.selection.source
@@ -195,22 +183,10 @@ class LinearScene(SceneCoordinates):
     def steady_motion(self, speed: float, tolerance: float, start: Motion | None = None) -> Motion:
         """Return the steady motion at a spin speed [rad/s] by its harmonics of the revolution.
 
-        Cages of rolling bearings stand where they are when the rotor starts.
-
-        Parameters
-        ----------
-        speed : float
-        tolerance : float
-            Largest last change of Newton's method, and largest share of the highest harmonics,
-            relative to the motion.
-        start : (ndarray, ndarray), optional
-            Orders and harmonics of a motion to begin with.
-
-        Returns
-        -------
-        orders : ndarray of int, shape (h,)
-        harmonics : ndarray of complex, shape (h, k)
-            ``y(θ) = Re Σ y_n exp(inθ)``, as deviations from :attr:`rest`.
+        Orders (h,) and harmonics (h, k) of ``y(θ) = Re Σ y_n exp(inθ)``, as deviations from
+        :attr:`rest`. Newton's last change, and the highest harmonics, are below `tolerance` of the
+        motion; the search begins with the motion `start` where one is given. Cages of rolling
+        bearings stand where they are when the rotor starts.
 
         Raises
         ------

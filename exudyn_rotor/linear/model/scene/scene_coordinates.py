@@ -95,6 +95,18 @@ class SceneCoordinates:
         return int(places[body.locks.spin])
 
     @cached_property
+    def touching(self) -> np.ndarray:
+        """Which of the unknowns move the rotor, (k,)."""
+        return np.any(self.N[: self.modal.stop] != 0.0, axis=0)
+
+    @cached_property
+    def columns(self) -> np.ndarray:
+        """Columns of the reduced rotor by the unknowns that move it, (n, r)."""
+        selection = self.body.selection
+        moved = selection.source.invariants.S.T @ self.axes[:, : self.count]
+        return np.hstack([moved, selection.T]) @ self.N[: self.modal.stop, self.touching]
+
+    @cached_property
     def axes(self) -> np.ndarray:
         """``(n1, n2, e)`` in mesh axes."""
         return axes_of(SpinAxis(self.body.motion.invariants.direction))

@@ -30,7 +30,6 @@ _SOLVED = 0.01  # of what the harmonics leave out, beyond which more iterations 
 _MOST_ITERATIONS = 30
 _FEW_ITERATIONS = 4  # after which what is balanced to rounding is found, with free motions by it
 _MOST_HALVINGS = 9  # of a step
-_RISES = (2.0, 1.0)  # of what is unbalanced, in a step
 
 
 def steady_motion(
@@ -51,7 +50,12 @@ def steady_motion(
         samples = max(samples, len(start) + _LEFT_OUT)
     while samples <= _MOST_SAMPLES:
         search = _Search(scene, probe, samples, tolerance)
-        start, tail = _by_rises(search, start, samples < _ROUGH_SAMPLES and begin is None)
+        try:
+            start, tail = search.found(start)
+        except UnconvergedError as error:  # a film that is all but closed is unlike itself at few
+            if isinstance(error, _UnheldError) or samples >= _ROUGH_SAMPLES or begin is not None:
+                raise
+            start, tail = None, np.inf
         is_rough = samples >= _ROUGH_SAMPLES and _SLOWLY * before < tail <= _ROUGH
         if tail <= tolerance or is_rough:
             return search.orders, start
@@ -61,25 +65,6 @@ def steady_motion(
         "resolve the motion; is there a stop, contact or friction, or an oil film whose edge moves "
         "from node to node? A damped run from rest shows the motion"
     )
-
-
-def _by_rises(
-    search: _Search, start: np.ndarray | None, tries_finer: bool
-) -> tuple[np.ndarray | None, float]:
-    """Return as :meth:`_Search.found`, of steps that may leave more unbalanced, or may not.
-
-    Where contacts open and close the former converge, far from the motion the latter.
-    """
-    for rise in _RISES:
-        try:
-            return search.found(start, rise)
-        except _UnheldError:
-            raise
-        except UnconvergedError as error:
-            lost = error
-    if not tries_finer:  # a film that is all but closed is unlike itself at few angles
-        raise lost
-    return None, np.inf
 
 
 def _same_harmonics(orders: np.ndarray, harmonics: np.ndarray) -> np.ndarray:
@@ -116,11 +101,10 @@ class _Search:
     def waves(self) -> np.ndarray:
         return np.exp(1j * np.outer(self.angles, self.orders))
 
-    def found(self, start: np.ndarray | None, rise: float) -> tuple[np.ndarray, float]:
+    def found(self, start: np.ndarray | None) -> tuple[np.ndarray, float]:
         """Return the harmonics of the motion, and the share of it that the highest have.
 
-        By Newton's method from the harmonics of fewer samples; no step leaves more than `rise`
-        times as much unbalanced.
+        By Newton's method from the harmonics of fewer samples; no step leaves more unbalanced.
         """
         Y = journal_start(self.scene, self.probe.speed, self.orders)
         if start is not None:
@@ -136,7 +120,7 @@ class _Search:
             change, left = (X.reshape(Y.shape) for X in solved(K, -residual.ravel()))
             if np.abs(left / metres).max() > UNHELD * self.scene.mass:
                 raise self._lost(UnconvergedError if iteration else _UnheldError)
-            Y = self._ahead(Y, change, rise * np.linalg.norm(residual / metres), metres)
+            Y = self._ahead(Y, change, np.linalg.norm(residual / metres), metres)
             sizes = np.abs(Y * metres).max(axis=1)
             if sizes.max() > FAR * self.scene.length:
                 break
