@@ -94,7 +94,7 @@ class FloatingFrame:
 
     def at(self, t: float, q: ArrayLike, q_t: ArrayLike) -> Instant:
         """Return an instant, split into its parts."""
-        q, q_t = self.checked(q, "q"), self.checked(q_t, "q_t")
+        q, q_t = self._checked(q, "q"), self._checked(q_t, "q_t")
         form, t = self.formulation, checked_time(t)
         if form.has_spin:
             theta, omega, omega_t = float(q[self._spin][0]), float(q_t[self._spin][0]), 0.0
@@ -108,7 +108,7 @@ class FloatingFrame:
         """``mχ* + S*ζ``, the bracket of (65): the static unbalance of the deformed rotor."""
         return self.static_unbalance + self.S1 @ zeta
 
-    def checked(self, values: ArrayLike, name: str) -> np.ndarray:
+    def _checked(self, values: ArrayLike, name: str) -> np.ndarray:
         """Return one finite number per unknown; quick where there is nothing to refuse."""
         right = type(values) is np.ndarray and values.shape == (self.size,)
         if right and values.dtype == float and math.isfinite(values.dot(values)):

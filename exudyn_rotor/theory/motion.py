@@ -134,12 +134,8 @@ class Motion(FloatingFrame):
     def is_constant(self) -> bool:
         """True when all matrices and forces are constant: Eq. (109) and its uncoupled kin."""
         form = self.formulation
-        return (
-            form.is_constant_speed
-            and not self.is_coupled
-            and not form.moves_origin
-            and not self.has_body_force
-        )
+        varies = self.is_coupled or form.moves_origin or self.has_body_force
+        return form.is_constant_speed and not varies
 
     def mass_matrix(self, t: float, q: ArrayLike, q_t: ArrayLike | None = None) -> np.ndarray:
         """Return the mass matrix (65, 41–43, 84, 85), shape (size, size).
@@ -147,7 +143,7 @@ class Motion(FloatingFrame):
         It does not depend on the rates `q_t`.
         """
         kernel, mass = self._kernel, self._constant_mass.copy()
-        values = kernel.mass_entries(checked_time(t), self.checked(q, "q").tolist())
+        values = kernel.mass_entries(checked_time(t), self._checked(q, "q").tolist())
         mass[kernel.rows, kernel.columns] = mass[kernel.columns, kernel.rows] = values
         return mass
 
@@ -156,14 +152,14 @@ class Motion(FloatingFrame):
 
         (66), (86), (87), the prescribed accelerations of (108), and App. A.
         """
-        q, q_t = self.checked(q, "q"), self.checked(q_t, "q_t")
+        q, q_t = self._checked(q, "q"), self._checked(q_t, "q_t")
         fixed = self._constant_part
         constant = fixed.force - fixed.stiffness @ q - fixed.damping @ q_t
         return constant + self._kernel.forces(checked_time(t), q.tolist(), q_t.tolist())
 
     def jacobian(self, t: float, q: ArrayLike, q_t: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
         """Return the derivatives of :meth:`forces` by q and by q̇, each (size, size)."""
-        q, q_t = self.checked(q, "q").tolist(), self.checked(q_t, "q_t").tolist()
+        q, q_t = self._checked(q, "q").tolist(), self._checked(q_t, "q_t").tolist()
         by_q = -self._constant_part.stiffness - self._kernel.jacobian(
             checked_time(t), q, q_t, 1.0, 0.0
         )

@@ -3,7 +3,7 @@
 Here the rotation is any, with parameters θ whose local angular velocity is ``ω = G θ̇``. Invariants
 are formed as the paper prints them, with 3n × 3m tilde bases, and products as Kronecker's: plain to
 read, not fast, and not used by scenes. Contracted with a fixed axis they are the blocks of
-:mod:`exudyn_rotor.theory.terms`; with a prescribed ω(t) the equations are linear, (103) and (107).
+``Motion.terms``; with a prescribed ω(t) the equations are linear, (103) and (107).
 
 Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
 """
@@ -13,7 +13,6 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from exudyn_rotor import checks
 from exudyn_rotor.theory.nodal import skew, tilde, tilde_basis, translations
 from exudyn_rotor.theory.terms import Term, Terms
 
@@ -28,28 +27,13 @@ class SpatialFrame:
     In what follows A (3, 3) rotates frame axes into inertial axes, G (3, r) gives the local angular
     velocity by the rates of the r rotation parameters (the unit matrix gives the blocks for the
     angular velocity itself, 51), ζ (m,) are modal coordinates.
-
-    Examples
-    --------
-    A unit mass at x = 2 that can move in its three directions:
-
-    >>> import numpy as np
-    >>> from exudyn_rotor.theory.spatial import SpatialFrame
-    >>> unit = np.eye(3)
-    >>> point = SpatialFrame([[2.0, 0, 0]], unit, 9.0 * unit, None, unit)
-    >>> print(np.diag(point.invariants["Θ_u"].value))
-    [0. 4. 4.]
     """
 
     def __init__(
         self, nodes: Vector, mass: Matrix, stiffness: Matrix, damping: Matrix | None, basis: Matrix
     ) -> None:
-        nodes = checks.array(nodes, "nodes", "m", shape=(None, 3))
-        shape = (nodes.size, nodes.size)
-        M = checks.matrix(mass, "mass", "kg", shape=shape)
-        K = checks.matrix(stiffness, "stiffness", "N/m", shape=shape)
-        D = sp.csr_array(shape) if damping is None else damping
-        psi = checks.matrix(basis, "basis", shape=(nodes.size, None))
+        M, K, psi = mass, stiffness, basis
+        D = sp.csr_array(M.shape) if damping is None else damping
         phi, x_tilde, psi_tilde = translations(len(nodes)), tilde(nodes), tilde_basis(psi)
         total = float(np.trace(phi.T @ (M @ phi)) / 3.0)
         self.size = psi.shape[1]
