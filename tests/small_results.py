@@ -27,7 +27,7 @@ from exudyn_rotor import (
     StressHistory,
     UnbalanceResponse,
 )
-from exudyn_rotor.reduction.fields import Centrifugal
+from exudyn_rotor.reduction.reduced_rotor import Centrifugal
 
 RNG = np.random.default_rng(3)
 TRIANGLES = [[0, 1, 2], [1, 2, 3]]

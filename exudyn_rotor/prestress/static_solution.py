@@ -53,7 +53,7 @@ from exudyn_rotor.solvers.inertia_relief import (
     free_motions_of,
     inertia_relief,
 )
-from exudyn_rotor.theory.nodal import rotations, skew
+from exudyn_rotor.theory.axis import rotations, skew
 
 # a stress field in equilibrium loses a few per cent where it was averaged at nodes
 _OUT_OF_BALANCE = 0.3

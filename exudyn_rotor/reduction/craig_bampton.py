@@ -32,7 +32,7 @@ from exudyn_rotor.solvers.inertia_relief import (
     inertia_relief,
     relative_rounding,
 )
-from exudyn_rotor.theory.nodal import rotations, translations
+from exudyn_rotor.theory.axis import rotations, translations
 
 # static modes, eigenvalues and eigenmodes
 CoupledModes = tuple[np.ndarray, np.ndarray, np.ndarray]

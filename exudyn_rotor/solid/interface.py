@@ -9,7 +9,7 @@ import scipy.sparse as sp
 
 from exudyn_rotor import checks
 from exudyn_rotor.solid import matrices
-from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.theory.axis import skew
 
 
 @dataclass(frozen=True, eq=False, repr=False)

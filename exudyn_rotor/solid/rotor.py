@@ -11,21 +11,20 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.solid import matrices, units
+from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.elements import SolidElements
 from exudyn_rotor.solid.interface import Interface
-from exudyn_rotor.solid.model import FiniteElementModel
+from exudyn_rotor.solid.model import FiniteElementModel, check_connected, check_model_units
 from exudyn_rotor.solid.point_mass import PointMass, add_nodal_mass
-from exudyn_rotor.solid.rigid import (
-    check_connected,
+from exudyn_rotor.solid.rigid_disc import STIFF, RigidDisc, as_tensor
+from exudyn_rotor.solid.surface import outer_section
+from exudyn_rotor.solvers.inertia_relief import (
+    SOLVERS,
     count_rigid_motions,
     holding_spring,
     rigid_basis,
 )
-from exudyn_rotor.solid.rigid_disc import STIFF, RigidDisc, as_tensor
-from exudyn_rotor.solid.surface import outer_section
-from exudyn_rotor.solvers.inertia_relief import SOLVERS
 from exudyn_rotor.theory.axis import SpinAxis
 
 LOSS_LEFT_OUT = (
@@ -101,7 +100,7 @@ class FiniteElementRotor:
         nodes = matrices.as_nodes(model.nodes)
         mass = matrices.as_mass(model.mass, len(nodes))
         if check_units:
-            units.check_model_units(nodes, float(mass[::3, ::3].sum()))
+            check_model_units(nodes, float(mass[::3, ::3].sum()))
         stiffness = matrices.as_stiffness(model.stiffness, len(nodes))
         if not allow_parts:
             check_connected(nodes, mass, stiffness, model.elements)

@@ -26,7 +26,7 @@ from itertools import pairwise
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.theory.axis import skew
 from exudyn_rotor.theory.terms import Equations
 
 

@@ -1,4 +1,4 @@
-"""Centrifugal stiffening: the work of the centrifugal field on second-order displacements.
+"""Centrifugal stiffening, the work of the field on second-order displacements, and spin terms.
 
 The paper's equations (84–87, 103–109) hold the softening ``−ω²C`` only. The centrifugal load
 ``ω² M x_⊥`` also does work on the second-order part u₂ of a displacement, a stiffness of the same
@@ -23,6 +23,12 @@ Derivation of ``'tilt'``: a displacement is split by mass-orthogonality into tra
 φ about the centre of mass and a flexible rest ψ; composing them gives
 ``u₂ = ½ φ × (φ × y) + φ × ψ`` with y from the centre of mass. The work of a nodal force field
 ``f = M F x`` on it is a quadratic form in (φ, ψ) that needs only the invariants J, S and P.
+
+With it, what a spin adds to the linear equations of the modal coordinates is
+
+    M ζ̈ + (D + 2ωG) ζ̇ + (K − ω²Ĉ + ω⁴K4 + ω̇W) ζ = f + ω²h − ω̇g        (105), (109)
+
+with ``Ĉ = C − K2`` and ``W = G + B``; the paper's equations are K2 = B = K4 = 0.
 """
 
 from __future__ import annotations
@@ -34,8 +40,85 @@ import numpy as np
 import scipy.sparse as sp
 
 from exudyn_rotor import checks
-from exudyn_rotor.theory.invariants import EPSILON, Invariants, moments_about
-from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.theory.axis import skew
+from exudyn_rotor.theory.invariants import EPSILON, Invariants, Matrix, moments_about
+
+
+@dataclass(frozen=True, eq=False)
+class SpinTerms:
+    """Matrices and loads that a spin adds, in a basis of k columns.
+
+    Attributes
+    ----------
+    G : shape (k, k)
+        Gyroscopic matrix (80).
+    C_hat : shape (k, k)
+        Spin softening less stiffening per ω², ``Ĉ = C − K2``.
+    W, B : shape (k, k)
+        ``G + B``, and the stiffness of the Euler field per ω̇.
+    h, g : ndarray, shape (k,)
+        Centrifugal load per ω² (83), and mass moment of the Euler load per −ω̇ (82).
+    K4 : shape (k, k) or None
+        Stiffness per ω⁴ of a static displacement; None where it is left out.
+
+    Examples
+    --------
+    A unit mass at x = 2 in the plane of rotation, without stiffening:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import Invariants
+    >>>     >>> unit = np.eye(3)
+    >>> point = Invariants.of([[2.0, 0, 0]], unit, 9.0 * unit, None, unit, [0, 0, 1])
+    >>> terms = SpinTerms.of(point, stiffening(point, "none"))
+    >>> print(np.diag(terms.stiffness(10.0)), terms.load(10.0))
+    [-100. -100.   -0.] [200.   0.   0.]
+    """
+
+    G: Matrix
+    C_hat: Matrix
+    W: Matrix
+    B: Matrix
+    h: np.ndarray
+    g: np.ndarray
+    K4: Matrix | None = None
+
+    @classmethod
+    def of(cls, invariants: Invariants, second_order: Stiffening) -> SpinTerms:
+        """Return the terms of a basis with its second-order terms, origin on the spin axis.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For other kinds of objects, or matrices of another size.
+        """
+        checks.instance(invariants, "invariants", Invariants)
+        checks.instance(second_order, "second_order", Stiffening, "stiffening(…) makes one")
+        K2 = checks.matrix(second_order.K2, "second_order: K2", shape=invariants.C.shape)
+        return cls(
+            G=invariants.G,
+            C_hat=invariants.C - K2,
+            W=invariants.G + second_order.B,
+            B=second_order.B,
+            h=invariants.h,
+            g=invariants.g,
+            K4=second_order.K4,
+        )
+
+    def damping(self, speed: float) -> Matrix:
+        """Return the Coriolis matrix ``2ωG`` at a spin speed [rad/s]."""
+        return 2.0 * speed * self.G
+
+    def stiffness(self, speed: float, acceleration: float = 0.0) -> Matrix:
+        """Return ``−ω²Ĉ + ω⁴K4 + ω̇W`` at a spin speed [rad/s] and acceleration [rad/s²]."""
+        centrifugal = -(speed**2) * self.C_hat
+        if self.K4 is not None:
+            centrifugal = centrifugal + speed**4 * self.K4
+        return centrifugal + acceleration * self.W if acceleration else centrifugal
+
+    def load(self, speed: float, acceleration: float = 0.0) -> np.ndarray:
+        """Return ``ω²h − ω̇g``, shape (k,), of the rotor's own eccentricity."""
+        return speed**2 * self.h - acceleration * self.g
+
 
 LEVELS = ("none", "tilt", "full")
 CHOICES = ("auto", *LEVELS)
@@ -74,9 +157,8 @@ class Stiffening:
 
     >>> import numpy as np
     >>> from exudyn_rotor import Invariants
-    >>> from exudyn_rotor.theory.nodal import rotations
-    >>> from exudyn_rotor.theory.stiffening import stiffening
-    >>> ring = [[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]]
+    >>> from exudyn_rotor.theory.axis import rotations
+    >>>     >>> ring = [[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]]
     >>> tilts = rotations(ring, [0, 0, 0])[:, :2]
     >>> free = np.zeros((12, 12))
     >>> invariants = Invariants.of(ring, np.eye(12), free, None, tilts, [0, 0, 1])

@@ -18,10 +18,10 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
+from exudyn_rotor.theory.axis import skew
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.invariants import Invariants
-from exudyn_rotor.theory.nodal import skew
-from exudyn_rotor.theory.spin_terms import SpinTerms
+from exudyn_rotor.theory.stiffening import SpinTerms
 
 
 class Instant(NamedTuple):

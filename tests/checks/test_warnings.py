@@ -156,7 +156,7 @@ PLACES = {
         stress_at_speed_without_prestress, UserWarning, "without the static centrifugal stress"),
     "advice/proposal.py:propose": (
         proposal_beyond_the_formulation, AssumptionWarning, "flexible modes given lie in the band"),
-    "solid/units.py:check_model_units": (
+    "solid/model.py:check_model_units": (
         small_rotor_in_millimetres, UserWarning, "few rotors are that heavy; lengths in mm"),
     "solid/ngsolve_model.py:_prepare_mesh": (
         curved_elements, UserWarning, "are replaced by mid nodes"),

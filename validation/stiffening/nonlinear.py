@@ -33,7 +33,7 @@ from tqdm import tqdm
 from exudyn_rotor import SolidRotor
 from exudyn_rotor.solid.tensor import von_mises
 from exudyn_rotor.solvers.factor import SparseCholesky
-from exudyn_rotor.theory.nodal import block_diagonal
+from exudyn_rotor.theory.axis import block_diagonal
 from validation.rows import verdict, write_json
 
 STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
