@@ -26,8 +26,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from exudyn_rotor.reduction.component import ModeBasis, numbered, rigid_columns, unit_columns
-from exudyn_rotor.solid.interface import Interface
-from exudyn_rotor.solid.rotor import FiniteElementRotor
+from exudyn_rotor.solid.rotor import FiniteElementRotor, Interface
 from exudyn_rotor.solvers.inertia_relief import (
     clamped_coordinates,
     coordinates,

@@ -9,7 +9,6 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
-from exudyn_rotor.calls import one_thread
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.modal import basis_error
 from exudyn_rotor.linear.modal.resonance import (
@@ -25,6 +24,7 @@ from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import ModelResult, basis_column, table_lines
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.results import numbers, storable, words
+from exudyn_rotor.solvers.factor import one_thread
 from exudyn_rotor.units import Units
 
 JUDGED = 6  # critical speeds that count where no largest speed is given

@@ -31,13 +31,14 @@ import scipy.linalg as la
 from scipy.optimize import brentq
 
 from exudyn_rotor.bearings.support import NoCoefficientsError
-from exudyn_rotor.calls import one_thread, user_level
+from exudyn_rotor.calls import user_level
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, UnconvergedError, add
 from exudyn_rotor.linear.modal.whirl import Content, signed_diameters
 from exudyn_rotor.linear.model.assembly import rotors_of
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.solve.hill import real_waves
 from exudyn_rotor.linear.solve.motions import Motions
+from exudyn_rotor.solvers.factor import one_thread
 
 NO_EQUATIONS = NoCoefficientsError, UnconvergedError
 _SHARE = 0.4  # of a motion's energy that must turn with the excitation

@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 from tqdm import tqdm
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.calls import one_thread
 from exudyn_rotor.checks import ascending
 from exudyn_rotor.linear.modal import basis_error
 from exudyn_rotor.linear.modal.whirl import (
@@ -32,6 +31,7 @@ from exudyn_rotor.linear.stability.stability import (
     least_stable_of,
 )
 from exudyn_rotor.results import Result, numbers, storable, words
+from exudyn_rotor.solvers.factor import one_thread
 from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:

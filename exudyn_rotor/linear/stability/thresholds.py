@@ -20,7 +20,6 @@ from scipy.optimize import brentq, minimize_scalar
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.support import NoCoefficientsError
-from exudyn_rotor.calls import one_thread
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.modal import basis_error
 from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, Named, families
@@ -44,6 +43,7 @@ from exudyn_rotor.linear.stability.stability import (
 )
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.results import Result, numbers, storable
+from exudyn_rotor.solvers.factor import one_thread
 from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:

@@ -22,7 +22,7 @@ from exudyn_rotor.multibody.rotor.rotor_items import (
     flexible_body,
     interface_of_nodes,
 )
-from exudyn_rotor.solid.interface import Interface
+from exudyn_rotor.solid.rotor import Interface
 
 
 @dataclass(frozen=True, eq=False, repr=False)

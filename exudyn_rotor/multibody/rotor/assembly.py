@@ -39,7 +39,7 @@ from exudyn_rotor.multibody.rotor.rotor_items import (
     known_rotors,
     virtual_nodes,
 )
-from exudyn_rotor.solid.interface import rotation_moments
+from exudyn_rotor.solid.rotor import rotation_moments
 from exudyn_rotor.theory.axis import skew
 
 _NEEDED = {"SuperElementPosition": 1, "SuperElementRigid": 3}  # nodes of a condensed marker

@@ -34,7 +34,7 @@ from exudyn_rotor.multibody.rotor.frame import BodyFrame, Layout, Locks
 from exudyn_rotor.multibody.rotor.plan import Plan, marker_name
 from exudyn_rotor.reduction.reduced_rotor import ModeShapes
 from exudyn_rotor.reduction.selection import Selection
-from exudyn_rotor.solid.interface import Interface, rotation_moments
+from exudyn_rotor.solid.rotor import Interface, rotation_moments
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.motion import Motion
