@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from exudyn_rotor import SolidRotor, StabilityMap, Support, linear_model, stability_map
+from exudyn_rotor import SolidRotor, Support, linear_model, stability_map
 
 MASS, STIFFNESS = 2.0, 2e4
 
@@ -58,12 +58,6 @@ def test_a_point_that_fails_is_nan(point):
     assert found.stable.all(axis=1).tolist() == [True, True, False]
     with pytest.raises(ValueError, match="no such bearing"):
         stability_map(build, [3e4], [10.0])
-
-
-def test_old_results_without_names_have_a_table():
-    found = StabilityMap([1.0], [2.0], [[np.nan]], [[False]])
-    assert "nan" in found.table()
-    assert found.families.tolist() == [["other"]]
 
 
 def test_models_that_differ_in_numbers_are_solved_together(point):
