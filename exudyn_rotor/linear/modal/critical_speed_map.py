@@ -23,10 +23,10 @@ from exudyn_rotor.linear.modal.critical_speeds import (
     collected,
     warn_of_critical,
 )
-from exudyn_rotor.linear.modal.resonance import NO_EQUATIONS, Search, warn_of_left_out
+from exudyn_rotor.linear.modal.resonance import NO_EQUATIONS, Search
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS
 from exudyn_rotor.linear.model.build import linear_model, warn_of_left_out_stiffening
-from exudyn_rotor.linear.model.linear_model import AXES
+from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
 from exudyn_rotor.linear.over import ModelResult, basis_column, table_lines, warn_of_refused
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import numbers, storable
@@ -38,6 +38,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _CURVE = 200  # speeds of a bearing's own curve
+_FILM = 1e-3  # error of a critical speed on films
+_UNIT = 1e15  # N/m, beside which all others are rounding
 
 
 @storable
@@ -237,28 +239,50 @@ def critical_speed_map(
     checks.accuracy(accuracy)
     checks.flag(progress, "progress")
     curve = None if bearing is None else _as_support(bearing)
-    kept = [_made_once(one) for one in given_supports(supports)]
-    made = {"foundation": foundation, "stiffening": stiffening, "axes": axes}
-    springs = [Support(name, float(values[0])) for name in names]
-    first = linear_model(target, supports=[*kept, *springs], **made).undamped()
+    kept = tuple(map(_made_once, given_supports(supports)))
+    first = linear_model(
+        target, supports=_with(kept, names, values[0]), foundation=foundation,
+        stiffening=stiffening, axes=axes,
+    ).undamped()  # fmt: skip
+    # a map takes what a film is within its own smoothness, for films are solved at each speed
+    allowed = 1e-7 if first.table_speeds.size else _FILM
+    search = Search(first, *given, _added(first, names), allowed)
     judged = set() if accuracy is None else set(points(len(values)).tolist())
-    searches: list[Search] = []
     solved: dict[int, CriticalSpeeds] = {}
     failed: list[tuple[str, Exception]] = []
     for row, stiffness in enumerate(tqdm(values, "critical speed map", disable=not progress)):
-        springs = [Support(name, float(stiffness)) for name in names]
+        model = first
+        if row in judged:
+            model = replace(first, supports={"": _with(kept, names, stiffness)})
+        search.stiffness.factor = stiffness - values[0]
         try:
-            searches.append(Search(replace(first, supports={"": (*kept, *springs)}), *given))
-            solved[row] = collected(searches[-1], row in judged)
+            solved[row] = collected(search, model, row in judged)
         except ValueError as error:  # as of a support whose stiffness is negative
             failed.append((f"{stiffness:.4g} N/m", error))
     warn_of_refused(failed, len(values))
-    warn_of_left_out(searches)
+    search.warn()
     result = _collected(values, solved, curve, max_speed, is_known(first, accuracy))
     if np.any(result.speeds > 0.0):
         warn_of_left_out_stiffening(first, max_speed or np.nanmin(result.speeds))
     warn_of_critical(first, result.speeds, result.basis_errors, accuracy)
     return result
+
+
+def _with(supports: tuple[Given, ...], names: Sequence[str], stiffness: float) -> tuple[Given, ...]:
+    return (*supports, *(Support(name, float(stiffness)) for name in names))
+
+
+def _added(model: LinearModel, names: Sequence[str]) -> dict[int, np.ndarray]:
+    """Return the Fourier terms of what supports of 1 N/m add, in the coordinates of H."""
+    given = {"wanted_axes": model.axes, "largest_unevenness": np.inf}
+    stiff, none = (
+        replace(model, supports={"": supports}, **given).at(1.0).K
+        for supports in (_with((), names, _UNIT), ())
+    )
+    basis = np.eye(model.size) if model.moving_basis is None else model.moving_basis
+    added = {n: (X - none.get(n, 0.0)) / _UNIT for n, X in stiff.items()}
+    own = model.size - len(added[0])  # rings of supports in series, whose coordinates are the last
+    return {n: basis.T @ np.pad(X, (0, own)) @ basis for n, X in added.items()}
 
 
 def _made_once(given: Given) -> Given:

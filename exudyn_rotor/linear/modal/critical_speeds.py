@@ -18,7 +18,6 @@ from exudyn_rotor.linear.modal.resonance import (
     Search,
     Stiffness,
     named,
-    warn_of_left_out,
 )
 from exudyn_rotor.linear.modal.whirl import WHIRLS
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
@@ -189,8 +188,8 @@ def critical_speeds(
         axes=axes,
     ).undamped()  # fmt: skip
     search = Search(model, *given)
-    result = collected(search, accuracy is not None)
-    warn_of_left_out([search])
+    result = collected(search, model, accuracy is not None)
+    search.warn()
     model.warn_beyond(result.order * result.speeds)
     if result.speeds.size:
         warn_of_left_out_stiffening(model, max_speed or result.speeds[0])
@@ -211,14 +210,13 @@ def checked(
     return order, sorted({int(n) for n in values}), max_speed
 
 
-def collected(search: Search, estimate: bool) -> CriticalSpeeds:
-    """Return the result of a search; errors by the basis of the model where they are asked for."""
-    model = search.model
+def collected(search: Search, model: LinearModel, estimate: bool) -> CriticalSpeeds:
+    """Return the result of a search; errors by the basis of a model where they are asked for."""
     found, rotor, codes, diameters = named(search.resonances(), search.content)
     speeds = np.array([one.speed for one in found])
     errors = None
     if estimate and basis_error.is_known(model, 1.0):
-        errors = _basis_errors(search, found)
+        errors = _basis_errors(search, model, found)
     shapes = [x[np.argmax(np.linalg.norm(x, axis=1))] for _, x, _ in found]
     shapes = np.array(shapes, dtype=complex).reshape(-1, model.size).T
     return CriticalSpeeds(
@@ -236,12 +234,12 @@ def collected(search: Search, estimate: bool) -> CriticalSpeeds:
 
 
 @one_thread()
-def _basis_errors(search: Search, found: Sequence[Resonance]) -> np.ndarray:
+def _basis_errors(search: Search, model: LinearModel, found: Sequence[Resonance]) -> np.ndarray:
     """Return relative errors of the lowest critical speeds by the basis, NaN of others, (c,).
 
     Each motion is followed into the model with the shapes that the basis lacks.
     """
-    model, errors = search.model, np.full(len(found), np.nan)
+    errors = np.full(len(found), np.nan)
     judged = found if search.limit is not None else found[:_JUDGED]
     if model.is_full:
         errors[: len(judged)] = 0.0

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
@@ -30,10 +30,11 @@ from scipy.optimize import brentq
 
 from exudyn_rotor.bearings.support import NoCoefficientsError
 from exudyn_rotor.calls import one_thread, user_level
-from exudyn_rotor.linear.equations import PeriodicSystem, UnconvergedError
+from exudyn_rotor.linear.equations import PeriodicSystem, Terms, UnconvergedError
 from exudyn_rotor.linear.modal.whirl import Content, signed_diameters
 from exudyn_rotor.linear.model.assembly import rotors_of
 from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.solve.hill import real_waves
 from exudyn_rotor.linear.solve.motions import Motions
 
 NO_EQUATIONS = NoCoefficientsError, UnconvergedError
@@ -49,7 +50,6 @@ _BRACKETS = 200  # speeds at which signs of eigenvalues are looked at; half of t
 _SLOW, _RATIO = 12, 2.0**0.25  # speeds on each side of the first of these, and their ratio
 _FEW, _MOST = 4, 16  # harmonics on each side of the middle one
 _HARMONICS = 1e-6  # relative change of a critical speed by further ones
-_ERROR = 1e-7  # relative change of a critical speed in the last step, which errs by its square
 _ITERATIONS = 12
 _STEP = 1e-4  # relative distance of speeds between which H has a slope
 _FAR = 0.5  # share of a critical speed by which the same motion may differ
@@ -66,16 +66,19 @@ class Resonance(NamedTuple):
     multiples: np.ndarray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Stiffness:
     """The dynamic stiffness of an undamped model, whose equations are made once per speed.
 
     Motions that nothing holds at any speed, like a free spin, are none of its coordinates. Tables
-    over the frequency are taken at `order` times the speed.
+    over the frequency are taken at `order` times the speed. A stiffness with the Fourier terms
+    `unit` is added by its `factor`.
     """
 
     model: LinearModel
     order: float = 1.0
+    unit: Terms = field(default_factory=dict)
+    factor: float = 0.0
     known: dict[float, PeriodicSystem] = field(default_factory=dict)
 
     def system(self, speed: float) -> PeriodicSystem:
@@ -88,17 +91,21 @@ class Stiffness:
     def __call__(self, speed: float, multiples: np.ndarray) -> np.ndarray:
         """Return H at a speed for frequencies `multiples` (h,) of it, (h·k, h·k)."""
         system, h = self.system(speed), len(multiples)
-        H = np.zeros((h, system.size, h, system.size), dtype=complex)
+        H = _blocks(multiples, system.K, system.size)
         for a, f in enumerate(multiples):
             for b, g in enumerate(multiples):
-                n = round(f - g)
+                D = system.D.get(round(f - g))
                 # the Hermitian part: what damps and what drives a motion is the other
-                if n in system.K:
-                    H[a, :, b] += 0.5 * (system.K[n] + system.K[n].T)
-                if n in system.D:
-                    H[a, :, b] += 0.5j * speed * (g * system.D[n] - f * system.D[n].T)
+                if D is not None:
+                    H[a, :, b] += 0.5j * speed * (g * D - f * D.T)
             H[a, :, a] -= (f * speed) ** 2 * system.M
-        return H.reshape(h * system.size, -1)
+        H = H.reshape(h * system.size, -1)
+        return H + self.factor * self.added(multiples) if self.factor else H
+
+    def added(self, multiples: np.ndarray) -> np.ndarray:
+        """Return what a factor of one adds to H."""
+        k = self.model.size - self.model.neutral_motions.shape[1]
+        return _blocks(multiples, self.unit, k).reshape(len(multiples) * k, -1)
 
     def motions(self, vectors: np.ndarray, multiples: np.ndarray) -> np.ndarray:
         """Return vectors (h·k, …) of H as harmonics (h, c, …) in all coordinates of the model."""
@@ -150,6 +157,10 @@ class Search:
         Nodal diameters that may be excited.
     limit : float or None
         Largest speed [rad/s]; needed where the stiffness varies with it.
+    unit : mapping of int to ndarray
+        What :class:`Stiffness` adds.
+    error : float
+        Relative change of a critical speed in the last step, which errs by its square.
     lost, jumps : list of float
         Speeds that did not settle, and at which a film jumps.
     """
@@ -158,6 +169,8 @@ class Search:
     order: float
     diameters: Sequence[int]
     limit: float | None
+    unit: Terms = field(default_factory=dict)
+    error: float = 1e-7
     lost: list[float] = field(default_factory=list)
     jumps: list[float] = field(default_factory=list)
 
@@ -168,7 +181,7 @@ class Search:
                 "max_speed: a system that varies with the speed needs the largest speed of "
                 "interest [rad/s]"
             )
-        self.stiffness = Stiffness(self.model, self.order)
+        self.stiffness = Stiffness(self.model, self.order, self.unit)
         self.content = Content.of(self.model)
 
     @one_thread()
@@ -238,44 +251,64 @@ class Search:
         return near, {speed: refused[speed] for speed in refused if speed >= first}
 
     def _bracketed(self, multiples: np.ndarray) -> list[Pair]:
-        """Return where H, linear between neighbours of the grid, is singular, and null vectors."""
-        found, last = [], (0.0, np.zeros(0), np.zeros(0))
+        """Return where H, linear between neighbours of the grid, is singular, and null vectors.
+
+        Only where a part of the motion turns with the excitation.
+        """
+        basis, place, stack, added = self._sampled(multiples)
+        stack = stack + self.stiffness.factor * added
+        signs, found = _eigenvalues(stack), []
         for low, high in self.grid[0]:
-            first = last if last[0] == low else self._sampled(low, multiples)
-            last = self._sampled(high, multiples)
-            found += self._between(first, last, multiples)
+            A, B = stack[place[low]], stack[place[high]]
+            a, b = signs[place[low]], signs[place[high]]
+            changes = np.flatnonzero((a < 0.0) != (b < 0.0))
+            if not changes.size:
+                continue
+
+            def value(at: float, j: int, A: np.ndarray = A, B: np.ndarray = B) -> float:
+                return _eigenvalues((1.0 - at) * A + at * B)[j]
+
+            zeros = [brentq(value, 0.0, 1.0, args=(j,), xtol=_FINE) for j in changes]
+            zeros = np.round(zeros, _DIGITS)
+            for at in np.unique(zeros):
+                vectors = basis @ np.linalg.eigh((1.0 - at) * A + at * B)[1]
+                for j in changes[zeros == at]:
+                    beside = vectors[:, max(j - 1, 0) : j + 2]
+                    share, _ = self._shares(self.stiffness.motions(beside, multiples), multiples)
+                    if share.max() >= 0.5 * _SHARE:
+                        found.append((low + (high - low) * at, vectors[:, j]))
         return found
 
-    def _sampled(self, speed: float, multiples: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
-        """Return a speed, H there, and its eigenvalues."""
-        H = self.stiffness(speed, multiples)
-        return speed, H, _eigenvalues(H)
+    def _sampled(self, multiples: np.ndarray) -> tuple:
+        """Return a basis, the places of the grid's speeds, H there in the basis, and the unit.
 
-    def _between(self, first: tuple, last: tuple, multiples: np.ndarray) -> list[Pair]:
-        """Return the zeros between two speeds with a part that the excitation meets."""
-        (low, A, a), (high, B, b) = first, last
+        Real where the frequencies lie on both sides of zero alike.
+        """
+        key = multiples.tobytes()
+        if key not in self._samples:
+            speeds = sorted({speed for pair in self.grid[0] for speed in pair})
+            plain = replace(self.stiffness, factor=0.0)
+            parts = [*(plain(speed, multiples) for speed in speeds), plain.added(multiples)]
+            h = len(multiples)
+            basis = np.eye(len(parts[0]))
+            if h > 1 and np.array_equal(multiples, -multiples[::-1]):
+                basis = np.kron(real_waves(h), np.eye(len(basis) // h))
+                parts = [(basis.conj().T @ X @ basis).real for X in parts]
+            place = {speed: i for i, speed in enumerate(speeds)}
+            self._samples[key] = basis, place, np.array(parts[:-1]), parts[-1]
+        return self._samples[key]
 
-        def value(place: float, j: int) -> float:
-            return _eigenvalues((1.0 - place) * A + place * B)[j]
-
-        changes = np.flatnonzero((a < 0.0) != (b < 0.0))
-        places = [brentq(value, 0.0, 1.0, args=(j,), xtol=_FINE) for j in changes]
-        places, found = np.round(places, _DIGITS), []
-        for place in np.unique(places):
-            _, vectors = np.linalg.eigh((1.0 - place) * A + place * B)
-            for j in changes[places == place]:
-                beside = vectors[:, max(j - 1, 0) : j + 2]
-                share, _ = self._shares(self.stiffness.motions(beside, multiples), multiples)
-                if share.max() >= 0.5 * _SHARE:
-                    found.append((low + (high - low) * place, vectors[:, j]))
-        return found
+    @cached_property
+    def _samples(self) -> dict[bytes, tuple]:
+        """H over the grid for given frequencies, made once for all factors."""
+        return {}
 
     def _exact(self, found: Pair, multiples: np.ndarray) -> Pair:
         """Return a zero with the equations that are there; NaN where they jump."""
         low, high = next(pair for pair in self.grid[0] if pair[1] >= found[0])
         slack = _BEYOND * (high - low)
         try:
-            speed, x = self.stiffness.refined(found, multiples, self._before(found[0]), _ERROR)
+            speed, x = self.stiffness.refined(found, multiples, self._before(found[0]), self.error)
         except NO_EQUATIONS:  # beyond the end of a table, by rounding
             return found
         if low - slack < speed < high + slack:
@@ -350,9 +383,8 @@ class Search:
 
     # ------------------------------------------------------------------ what is left out
 
-    @property
-    def told(self) -> str:
-        """What is left out, in words."""
+    def warn(self) -> None:
+        """Warn of critical speeds that are left out, once of all kinds."""
         told = []
         if self.varies and self.grid[1]:
             near, refused = self.grid
@@ -371,14 +403,9 @@ class Search:
                 f"near {_shown(self.jumps)} rad/s the stiffness of a film jumps where one would "
                 "be, and it is left out; a film with more nodes jumps by less"
             )
-        return "; ".join(told)
-
-
-def warn_of_left_out(searches: Sequence[Search]) -> None:
-    """Warn of critical speeds that the first search of several leaves out, if one does."""
-    told = next((search.told for search in searches if search.told), "")
-    if told:
-        warnings.warn(f"critical speeds: {told}", UserWarning, stacklevel=user_level())
+        if told:
+            what = "; ".join(told)
+            warnings.warn(f"critical speeds: {what}", UserWarning, stacklevel=user_level())
 
 
 def _shown(speeds: Sequence[float]) -> str:
@@ -396,10 +423,21 @@ def _groups(speeds: np.ndarray) -> np.ndarray:
 
 
 def _eigenvalues(H: np.ndarray) -> np.ndarray:
-    """Return the eigenvalues of H, zero where they are rounding."""
+    """Return the eigenvalues of H, or of a stack, zero where they are rounding."""
     values = np.linalg.eigvalsh(H)
-    rounding = _FREE * np.abs(values).max(initial=0.0)
+    rounding = _FREE * np.abs(values).max(axis=-1, initial=0.0, keepdims=True)
     return np.where(np.abs(values) <= rounding, 0.0, values)
+
+
+def _blocks(multiples: np.ndarray, terms: Terms, k: int) -> np.ndarray:
+    """Return the symmetric part of Fourier terms (k, k) between frequencies, (h, k, h, k)."""
+    H = np.zeros((len(multiples), k, len(multiples), k), dtype=complex)
+    for a, f in enumerate(multiples):
+        for b, g in enumerate(multiples):
+            X = terms.get(round(f - g))
+            if X is not None:
+                H[a, :, b] = 0.5 * (X + X.T)
+    return H
 
 
 def _quadratic(stiffness: Stiffness, multiples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
