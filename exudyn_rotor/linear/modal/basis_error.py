@@ -23,7 +23,7 @@ from exudyn_rotor.linear.over import motions_over
 _DAMPED = 0.01  # share of the frequency that growth counts as at least
 _SLOW = 0.1  # share of the spin speed that a frequency counts as at least
 _RANGE, _LOWEST = 2.0, 6  # times the fastest speed, and lowest modes: what is judged in any case
-_SPREAD = 0.1  # third of the share of a frequency by which the same motion may differ
+_SPREAD = 0.2  # third of the share of a frequency by which the same motion may differ
 _POINTS = 3  # speeds at which the richer model is solved
 _LEAST = 0.1  # of the largest motion at the same speed or frequency: smaller ones count as that
 _AXIAL = 1e-6  # share of a motion across the axis that is rounding

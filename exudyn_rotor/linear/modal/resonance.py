@@ -26,6 +26,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+import scipy.linalg as la
 from scipy.optimize import brentq
 
 from exudyn_rotor.bearings.support import NoCoefficientsError
@@ -113,6 +114,18 @@ class Stiffness:
         harmonics = vectors.reshape(len(multiples), -1, *vectors.shape[1:])
         return harmonics if basis is None else np.einsum("ck,hk...->hc...", basis, harmonics)
 
+    def _solve(self, H: np.ndarray, load: np.ndarray, speed: float) -> np.ndarray:
+        """Return ``H⁻¹ load`` at a speed, of blocks of which only near ones are coupled."""
+        system = self.system(speed)
+        reach = max(abs(n) for terms in (system.D, system.K) for n in terms)
+        width = system.size * (1 + reach // (system.step or 1)) - 1
+        if 4 * width > len(H):
+            return np.linalg.solve(H, load)
+        band = np.zeros((2 * width + 1, len(H)), dtype=complex)
+        for d in range(-width, width + 1):
+            band[width - d, max(d, 0) : len(H) + min(d, 0)] = np.diagonal(H, d)
+        return la.solve_banded((width, width), band, load)
+
     def within(self, vectors: np.ndarray) -> np.ndarray:
         """Return harmonics (h, c) as a vector (h·k,) of H."""
         basis = self.model.moving_basis
@@ -132,7 +145,7 @@ class Stiffness:
                 slope = (H - earlier) / (speed - last)
                 last, earlier = speed, H
             try:
-                moved = np.linalg.solve(H, slope @ x)
+                moved = self._solve(H, slope @ x, speed)
             except np.linalg.LinAlgError:  # there already
                 return speed, x
             change = (np.vdot(x, x) / np.vdot(x, moved)).real
