@@ -102,6 +102,12 @@ def _scalar(value: object, name: str, needed: str) -> float:
         raise ValueError(told(name, needed, value)) from error
 
 
+def keep(item: object, **values: object) -> None:
+    """Keep checked fields in a frozen dataclass."""
+    for name, value in values.items():
+        object.__setattr__(item, name, value)
+
+
 def keep_numbers(item: object, units: Mapping[str, str], **bounds: float) -> None:
     """Check attributes of a frozen object, given with their units, and keep them as floats."""
     for name, unit in units.items():
@@ -195,13 +201,6 @@ def function(value: Callable, name: str) -> Callable:
     if not callable(value):
         raise TypeError(told(name, "a function", value))
     return value
-
-
-def executor(value: Any) -> Any:
-    """Return an executor with a ``submit`` method, or None."""
-    if value is None or (callable(getattr(value, "submit", None)) and not isinstance(value, type)):
-        return value
-    raise TypeError(told("executor", "an executor of concurrent.futures or alike, or None", value))
 
 
 def path(value: str | os.PathLike, name: str = "path") -> Path:

@@ -1,13 +1,11 @@
-"""Tables of results for other programs: CSV files, pandas and xarray, both optional."""
+"""Tables of results for other programs: CSV files, and pandas, which is optional."""
 
 from __future__ import annotations
 
 import csv
-import importlib
 import io
 from collections.abc import Mapping
 from os import PathLike
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -45,25 +43,11 @@ def data_frame(columns: Mapping[str, np.ndarray]) -> Any:
     ImportError
         Without pandas.
     """
-    return _optional("pandas", "to_dataframe").DataFrame(dict(columns))
-
-
-def data_set(values: Mapping[str, tuple[tuple[str, ...], np.ndarray]], attributes: Mapping) -> Any:
-    """Return arrays with the names of their dimensions as an ``xarray.Dataset``.
-
-    Raises
-    ------
-    ImportError
-        Without xarray.
-    """
-    return _optional("xarray", "to_xarray").Dataset(dict(values), attrs=dict(attributes))
-
-
-def _optional(name: str, method: str) -> ModuleType:
     try:
-        return importlib.import_module(name)
+        import pandas
     except ImportError as error:
         raise ImportError(
-            f'{method}: needs {name}, which is not installed: pip install "exudyn-rotor[{name}]"; '
-            "to_csv needs nothing more"
+            'to_dataframe: needs pandas, which is not installed: pip install "exudyn-rotor[pandas]"'
+            "; to_csv needs nothing more"
         ) from error
+    return pandas.DataFrame(dict(columns))

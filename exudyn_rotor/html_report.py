@@ -20,22 +20,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.descriptions import DESCRIBED, SUPPORTS, described, described_supports
-from exudyn_rotor.export import csv_text
-from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.model.rotor_train import RotorTrain
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.storage import write_text
 from exudyn_rotor.units import Units
 
 _SHARPNESS = 110  # dots per inch
-_KNOWN = (str, Axes, Figure, *SUPPORTS, *DESCRIBED)
-_HOW = (
-    "a rotor, a train of them, supports, a linear model, a result with table(), axes or a figure, "
-    "or text"
-)
 
 _PAGE = """<!DOCTYPE html>
 <html lang="en">
@@ -77,20 +66,17 @@ def report(
 ) -> None:
     """Write rotor and results to one HTML file, which needs nothing beside it.
 
-    Every result is shown by its table, its picture where ``plot()`` needs no arguments, and a link
-    that saves its columns as CSV.
+    Every result is shown by its table, and its picture where ``plot()`` needs no arguments.
 
     Parameters
     ----------
     path : str or path-like
         Ends with '.html'; a file of that name is replaced only by a complete one.
-    contents : sequence of objects, mapping of heading to object or objects, or sequence of both
-        In the order of the report. An object is a SolidRotor (its summary), a ReducedRotor (mass,
-        inertia, modes, interfaces), a RotorTrain, a support, a bearing or a sequence of them, a
-        Foundation, a linear model (supports, links, stiffening, free motions; of a scene its rotor
-        and supports), a result or anything else with ``table()``, matplotlib Axes or a Figure, or
-        text, a paragraph. A mapping gives headings; a result beside Axes under one heading is shown
-        with these in place of its own picture.
+    contents : object, mapping of heading to object or objects, or sequence of both
+        In the order of the report. An object is a result or anything else with ``table()``,
+        matplotlib Axes or a Figure, text, a paragraph, or a rotor, a train of rotors, a support, a
+        foundation or a linear model, shown by its lines of text. A mapping gives headings; a result
+        beside Axes under one heading is shown with these in place of its own picture.
     title : str, optional
     units : {'rpm', 'Hz', 'SI'}, optional
         Of speeds in tables and pictures; see :meth:`exudyn_rotor.units.Units.of`.
@@ -100,7 +86,7 @@ def report(
     Raises
     ------
     TypeError
-        If a content is none of these, or `path` is no path.
+        If `path` is no path.
     ValueError
         If `units` is unknown, the path ends otherwise, or there is no content.
     OSError
@@ -123,13 +109,9 @@ def report(
     checks.label(title, "title")
     Units.of(units)
     messages = [_message(one) for one in checks.items(raised, "raised", "warnings in a sequence")]
-    if isinstance(contents, str) and not contents.strip():
-        raise ValueError(f"contents: is empty text; give {_HOW}")
     sections = _sections(contents)
-    if not sections:
-        raise ValueError(f"contents: there are none; give {_HOW}")
     with rc_context({"font.size": rcParamsDefault["font.size"]}):  # plots of Exudyn change it
-        written = [(heading, _html(items, heading, units)) for heading, items in sections]
+        written = [(heading, _html(given, heading, units)) for heading, given in sections]
     if messages:
         boxes = (f'<p class="warning">{escape(text)}</p>' for text in dict.fromkeys(messages))
         written.append(("Warnings", "\n".join(boxes)))
@@ -143,66 +125,33 @@ def report(
     write_text(path, _PAGE.format(title=escape(title), day=day, made_by=made_by, body=body))
 
 
-# ------------------------------------------------------------------ what is given
-
-
 def _sections(contents: Any) -> list[tuple[str, list[Any]]]:
-    """Return headings with the objects under them, all checked."""
-    sections = []
-    for number, content in enumerate(contents if _several(contents) else [contents]):
+    """Return headings with the objects under them."""
+    sections: list[tuple[str, list[Any]]] = []
+    for content in _listed(contents):
         named = content if isinstance(content, Mapping) else {_heading(content): content}
         for heading, given in named.items():
-            checks.label(heading, "contents: heading")
-            where = f"contents[{number}]"
-            if isinstance(content, Mapping):
-                where += f"[{heading!r}]"
-            sections.append((heading, _items(given, where)))
+            sections.append((checks.label(heading, "contents: heading"), _listed(given)))
+    if not sections or not all(given for _, given in sections):
+        raise ValueError("contents: there are none; give results, pictures, rotors or text")
     return sections
 
 
-def _several(given: Any) -> bool:
-    return isinstance(given, list | tuple) or (isinstance(given, np.ndarray) and given.ndim > 0)
-
-
-def _items(given: Any, where: str) -> list[Any]:
-    """Return the objects of a sequence, and of sequences and arrays of axes in it."""
-    if _several(given):
-        if not len(given):
-            raise ValueError(f"{where}: there are none; give {_HOW}")
-        return [item for one in list(given) for item in _items(one, where)]
-    _check(given, where)
+def _listed(given: Any) -> list[Any]:
+    """Return the objects of a sequence, or of an array of axes."""
+    if isinstance(given, list | tuple | np.ndarray):
+        return [one for each in given for one in _listed(each)]
     return [given]
-
-
-def _check(content: Any, where: str) -> None:
-    table = None if isinstance(content, type) else getattr(content, "table", None)
-    if isinstance(content, exudyn.MainSystem):
-        raise TypeError(f"{where}: give a scene as linear_model(mbs, body=…), got a MainSystem")
-    if not isinstance(content, _KNOWN) and not callable(table):
-        raise TypeError(f"{where}: needs {_HOW}, got {checks.shown(content)}")
 
 
 def _heading(content: Any) -> str:
     """Return a heading for an object that is given without one."""
-    first = content[0] if isinstance(content, list | tuple) and content else content
-    for kinds, heading in _HEADINGS.items():
-        if isinstance(first, kinds):
-            return heading
-    if isinstance(first, str):
+    if isinstance(content, str):
         return "Remarks"
-    if isinstance(first, Axes | Figure | np.ndarray):
+    if isinstance(content, Axes | Figure):
         return "Picture"
-    words = "".join(f" {c.lower()}" if c.isupper() else c for c in type(first).__name__)
+    words = "".join(f" {c.lower()}" if c.isupper() else c for c in type(content).__name__)
     return words.strip().capitalize()
-
-
-_HEADINGS = {
-    SUPPORTS: "Supports",
-    (SolidRotor, ReducedRotor): "Rotor",
-    RotorTrain: "Rotors",
-    Foundation: "Foundation",
-    LinearModel: "Linear model",
-}
 
 
 def _message(warning: Any) -> str:
@@ -214,13 +163,9 @@ def _message(warning: Any) -> str:
     return str(warning)
 
 
-# ------------------------------------------------------------------ what is written
-
-
 def _html(items: list[Any], heading: str, units: str) -> str:
     """Return the objects under a heading as HTML."""
     pictured = any(isinstance(item, Axes | Figure) for item in items)
-    supports = [item for item in items if isinstance(item, SUPPORTS)]
     parts, figures = [], []
     for item in items:
         if isinstance(item, str):
@@ -230,29 +175,33 @@ def _html(items: list[Any], heading: str, units: str) -> str:
             if made not in figures:  # a Bode diagram has two axes
                 figures.append(made)
                 parts.append(_picture(made, heading))
-        elif isinstance(item, SUPPORTS):
-            if item is supports[0]:
-                parts.append(_pre(described_supports(supports)))
-        elif isinstance(item, DESCRIBED):
-            parts.append(_pre(described(item)))
+        elif callable(getattr(item, "table", None)):
+            if not pictured and _draws_alone(item):
+                made = np.ravel(_with_units(item.plot, units)())[0].figure
+                parts.append(_picture(made, heading))
+                pyplot.close(made)
+            parts.append(f"<pre>{escape(_with_units(item.table, units)())}</pre>")
         else:
-            parts.append(_result(item, heading, units, not pictured))
+            parts.append(f"<pre>{escape(_described(item))}</pre>")
     return "\n".join(parts)
 
 
-def _result(result: Any, heading: str, units: str, pictured: bool) -> str:
-    """Return table, picture and columns of a result."""
-    parts = [_pre(_with_units(result.table, units)())]
-    plot = getattr(result, "plot", None)
-    if pictured and callable(plot) and not _required(plot):
-        drawn = _with_units(plot, units)()
-        made = np.ravel(drawn)[0].figure
-        parts.insert(0, _picture(made, heading))
-        pyplot.close(made)
-    columns = getattr(result, "columns", None)
-    if callable(columns):
-        parts.append(_download(_with_units(columns, units)(), heading))
-    return "\n".join(parts)
+def _described(item: Any) -> str:
+    """Return what a rotor, a support or a model is, as lines of text."""
+    if isinstance(item, LinearModel):
+        supports = [repr(one) for each in item.supports.values() for one in each]
+        return "\n".join([repr(item), *supports])
+    summary = getattr(item, "summary", None)
+    return summary() if callable(summary) else repr(item)
+
+
+def _draws_alone(result: Any) -> bool:
+    """True where a result has a method ``plot()`` that needs no arguments."""
+    if not callable(getattr(result, "plot", None)):
+        return False
+    kinds = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
+    given = inspect.signature(result.plot).parameters.values()
+    return all(p.default is not p.empty or p.kind in kinds for p in given)
 
 
 def _with_units(method: Callable, units: str) -> Callable:
@@ -262,26 +211,8 @@ def _with_units(method: Callable, units: str) -> Callable:
     return lambda: method(units=units)
 
 
-def _required(method: Callable) -> bool:
-    """Return whether a method cannot be called without arguments."""
-    kinds = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
-    given = inspect.signature(method).parameters.values()
-    return any(p.default is p.empty and p.kind not in kinds for p in given)
-
-
-def _pre(text: str) -> str:
-    return f"<pre>{escape(text)}</pre>"
-
-
 def _picture(made: Figure, heading: str) -> str:
     content = io.BytesIO()
     made.savefig(content, format="png", dpi=_SHARPNESS)
     data = base64.b64encode(content.getvalue()).decode("ascii")
     return f'<img alt="{escape(heading)}" src="data:image/png;base64,{data}">'
-
-
-def _download(columns: Mapping[str, np.ndarray], heading: str) -> str:
-    """Return a link that saves columns as a CSV file."""
-    data = base64.b64encode(csv_text(columns).encode("utf-8")).decode("ascii")
-    name = escape("_".join(heading.lower().split()) + ".csv")
-    return f'<p><a download="{name}" href="data:text/csv;base64,{data}">{name}</a></p>'

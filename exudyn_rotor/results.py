@@ -170,6 +170,10 @@ class Result:
         """
         raise TypeError(f"columns: a {type(self).__name__} has none; give its class this method")
 
+    def table(self, *, units: str = "rpm") -> str:
+        """Return the table as text; `units` are those of :meth:`columns`."""
+        return "\n".join(text_table(self.columns(units)))
+
     def to_dataframe(self, units: str = "SI") -> Any:
         """Return the table as a ``pandas.DataFrame``; see :meth:`columns`.
 
@@ -193,27 +197,6 @@ class Result:
         checks.path(path)
         export.write_csv(path, self.columns(units))
 
-    def to_xarray(self) -> Any:
-        """Return all fields as an ``xarray.Dataset``: arrays in SI units, the rest as attributes.
-
-        Raises
-        ------
-        ImportError
-            Without xarray, which ``pip install "exudyn-rotor[xarray]"`` brings.
-        """
-        values = {item: getattr(self, item.name) for item in fields(self)}
-        shapes = {i.name: i.metadata.get("shape", ()) for i, v in values.items() if np.ndim(v)}
-        arrays, rest = {}, {}
-        for item, value in values.items():
-            if len(shapes.get(item.name, ())) == np.ndim(value) > 0:
-                named = [_dimension(word, item.name, shapes) for word in shapes[item.name]]
-                if len(set(named)) < len(named):  # a square matrix
-                    named = [f"{name}_{place}" for place, name in enumerate(named)]
-                arrays[item.name] = (tuple(named), np.array(value))
-            elif value is not None:
-                rest[item.name] = value
-        return export.data_set(arrays, rest)
-
     @classmethod
     def load(cls: type[Kind], path: str | PathLike) -> Kind:
         """Read a result of this class; see :func:`load_result`.
@@ -227,13 +210,6 @@ class Result:
         if not isinstance(result, cls):
             raise ValueError(f"{path}: holds a {type(result).__name__}, not a {cls.__name__}")
         return result
-
-
-def _dimension(word: int | str, name: str, shapes: Mapping[str, tuple]) -> str:
-    """Return the name of a dimension; that of a field only where the field runs along it."""
-    if not isinstance(word, str):
-        return f"{name}_{word}"
-    return word if shapes.get(word, (word,)) == (word,) else f"{word}_number"
 
 
 @cache

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
@@ -14,9 +15,8 @@ from exudyn_rotor.prestress.given_loads import Loads, Spring
 from exudyn_rotor.prestress.static_solution import static_prestress
 from exudyn_rotor.reduction.reduce import ModeSource, reduce_rotor
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.solid import fem_interface, ngsolve_model
+from exudyn_rotor.solid import fem_interface, matrices, ngsolve_model
 from exudyn_rotor.solid.carried_prestress import Prestress
-from exudyn_rotor.solid.damping import with_damping
 from exudyn_rotor.solid.meshes import mesh_model
 from exudyn_rotor.solid.model import FiniteElementModel, node_set
 from exudyn_rotor.solid.rotor import AxisLike, FiniteElementRotor
@@ -49,9 +49,6 @@ class SolidRotor(FiniteElementRotor):
     triangles : ndarray of int, shape (t, 3) or (t, 6)
         Surface for drawing, 6-node triangles where the mesh is quadratic: corners, then the mid
         nodes of the edges 0-1, 1-2, 2-0.
-    stress_recovery : callable or None
-        Maps displacement columns (3n, k) to nodal stress (n, 6, k) [Pa], components xx, yy, zz,
-        yz, xz, xy in mesh axes.
     point_masses : tuple of PointMass
         What :meth:`add_point_mass` placed, with the snapping distances.
     rigid_motions : int
@@ -61,11 +58,9 @@ class SolidRotor(FiniteElementRotor):
         What :meth:`prestress` assembles on; only of :meth:`from_ngsolve`.
     carried_prestress : Prestress or None
         Set by :meth:`with_prestress`.
-    mass_damping : scipy.sparse.csr_array or None
-        Damping in proportion to the mass [N s/m], of the motion beside the free rigid ones; set
-        by :meth:`with_damping`.
-    structural_damping : scipy.sparse.csr_array or None
-        H = Σ η K [N/m] over the materials, of loss factors η; set by :meth:`with_damping`.
+    mass_damping, structural_damping : float
+        Damping per mass [1/s] of the motion beside the free rigid ones, and loss factor η; set by
+        :meth:`with_damping`.
     discs : tuple of RigidDisc
         What :meth:`add_disc` placed.
 
@@ -413,7 +408,6 @@ class SolidRotor(FiniteElementRotor):
         mass: float = 0.0,
         stiffness: float = 0.0,
         loss: float = 0.0,
-        materials: Mapping[str, Mapping[str, float]] | None = None,
     ) -> SolidRotor:
         """Return the rotor with damping of its own material added to what it has.
 
@@ -438,14 +432,11 @@ class SolidRotor(FiniteElementRotor):
             inside the stiffness matrix as well.
         loss : float, optional
             Loss factor η of structural damping, of the whole stiffness as well.
-        materials : mapping, optional
-            Region name of the mesh → ``{'mass': 1/s, 'stiffness': s, 'loss': η}``, one of them or
-            more: added to the above in this region. Only of a rotor from :meth:`from_ngsolve`.
 
         Raises
         ------
         TypeError, ValueError
-            If a factor is no number, or negative, or a region is unknown.
+            If a factor is no number, or negative.
 
         Examples
         --------
@@ -458,7 +449,20 @@ class SolidRotor(FiniteElementRotor):
         >>> float(damped.damping[0, 0])
         10.0
         """
-        return with_damping(self, mass, stiffness, loss, materials)
+        mass = checks.number(mass, "mass", "1/s", least=0.0)
+        damping = checks.number(stiffness, "stiffness", "s", least=0.0) * self.stiffness
+        loss = checks.number(loss, "loss", least=0.0)
+        if self.damping is not None:
+            damping = self.damping + damping
+        if not self.rigid_motions:
+            damping, mass = damping + mass * self.mass, 0.0
+        damping = matrices.frozen(sp.csr_array(damping))
+        return replace(
+            self,
+            damping=damping if damping.nnz else None,
+            mass_damping=self.mass_damping + mass,
+            structural_damping=self.structural_damping + loss,
+        )
 
     def reduce(
         self,

@@ -211,17 +211,14 @@ def _replacing(target: Path) -> Iterator[BinaryIO]:
 def _check_format(source: Path, data: dict[str, np.ndarray], kind: str) -> None:
     """Refuse files of other origin, kind or version."""
     written = str(data.get("format", ""))
-    if not written.startswith(_PACKAGE):
-        raise ValueError(f"{source}: holds no {kind}, it was not written by {_PACKAGE}")
     if written == _format(kind):
         return
-    held = written.removeprefix(_PACKAGE).strip().rstrip("0123456789").strip()
-    if held != kind:
-        raise ValueError(f"{source}: holds no {kind}, but a {held}")
-    raise ValueError(
-        f"{source}: written by another version of {_PACKAGE} ({written!r}, needed is "
-        f"{_format(kind)!r}); make it anew"
-    )
+    if written.rstrip("0123456789 ") == _format(kind).rstrip("0123456789 "):
+        raise ValueError(
+            f"{source}: written by another version of {_PACKAGE} ({written!r}, needed is "
+            f"{_format(kind)!r}); make it anew"
+        )
+    raise ValueError(f"{source}: holds no {kind}, but {written or 'no format'!r}")
 
 
 def _format(kind: str) -> str:

@@ -37,8 +37,7 @@ def run(rotor, model, damping=200.0, **options):
             stiffness=[2e5] * 3,
             damping=[damping] * 3,
         )
-    whole = model is rotor
-    body.start_recording(*([STEP * np.arange(STEPS + 1)] if whole else []))
+    body.start_recording()
     mbs.Assemble()
     settings = recommended_settings(STEPS * STEP, STEP, body=body)
     settings.timeIntegration.newton.relativeTolerance = 1e-9

@@ -30,7 +30,6 @@ SCRIPTS = {
     "benchmarks": Script("references.benchmarks", "published and independently computed rotors"),
     "calculix": Script("references.calculix", "rotating discs of CalculiX's test suite"),
     "film": Script("references.film", "oil films of finite length"),
-    "branches": Script("branches", "nonlinear steady motion beside runs"),
     "nonlinear": Script("stiffening.nonlinear", "nonlinear solid, clamped blade"),
     "spun_up_blade": Script("stiffening.spun_up_blade", "blade spun up"),
     "blade": Script("stiffening.blade", "rotating beams"),

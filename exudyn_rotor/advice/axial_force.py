@@ -11,14 +11,13 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg as la
 
-from exudyn_rotor.advice.run_loads import external_load, instants, turned
+from exudyn_rotor.advice.run_loads import instants, interface_loads
 from exudyn_rotor.multibody.rotor.record import Record
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.fields import ModeKind
 from exudyn_rotor.theory.rotating_axes import axes_of
 
 _LOOKED_AT = 20  # instants
-_UNKNOWN = 1e-6  # of the largest: forces that the modes do not show
 _BENT = np.array([[36, 3, -36, 3], [3, 4, -3, -1], [-36, -3, 36, -3], [3, -1, -3, 4]]) / 30.0
 
 
@@ -27,37 +26,22 @@ def axial_share(body: RotorBody, record: Record, size: float) -> float | None:
 
     Less what the prestress of the rotor has of it. `size` [m] makes forces and moments comparable.
     """
-    source, T = body.selection.source, body.selection.T
+    source = body.selection.source
     if len(source.interfaces) < 2 or len(record.time) < 2:
         return None
-    axes, order = axes_of(source.axis), []
-    for one in source.interfaces.values():
-        motion = np.vstack([axes.T @ one.motion[:3], axes.T @ one.motion[3:]]) @ T
-        order.append((float(one.reference @ source.axis.direction), motion))
-    order.sort(key=lambda each: each[0])
-    places, motions = np.array([each[0] for each in order]), [each[1] for each in order]
-    forces = [_axial_forces(body, record, i, motions, size) for i in
-              instants(record, _LOOKED_AT)]  # fmt: skip
-    tension = -np.cumsum(forces, axis=1)[:, :-1]
-    shares = [_share(body, _stiffness(places, motions, each)) for each in tension]
-    return max(shares)
-
-
-def _axial_forces(
-    body: RotorBody, record: Record, index: int, motions: list[np.ndarray], size: float
-) -> np.ndarray:
-    """Return the axial forces at the interfaces (p,) at an instant [N]."""
-    motion, unit = body.motion, np.repeat([1.0, 1.0 / size], 3)
-    external = external_load(body, record, index)[1]
-    e = turned(body, record.q[index]) @ motion.invariants.direction
-    total = e @ (motion.free_directions @ external[motion.translations])
-    columns = np.hstack([(unit[:, None] * U).T for U in motions])
-    loads = external[motion.modes]
-    if body.formulation.translation_count == 3:
-        sums = np.tile([0.0, 0.0, 1.0, 0.0, 0.0, 0.0], len(motions))
-        columns, loads = np.vstack([columns, sums]), np.append(loads, total)
-    found = np.linalg.lstsq(columns, loads, rcond=_UNKNOWN)[0]
-    return found.reshape(-1, 6)[:, 2]
+    loads = interface_loads(body, record, instants(record, _LOOKED_AT), size)
+    if loads is None:
+        return None
+    axes, interfaces = axes_of(source.axis), list(source.interfaces.values())
+    places = np.array([one.reference @ source.axis.direction for one in interfaces])
+    order = np.argsort(places, kind="stable")
+    motions = [
+        np.vstack([axes.T @ part for part in np.split(interfaces[i].motion, 2)]) @ body.selection.T
+        for i in order
+    ]
+    forces = np.einsum("a,pas->sp", source.axis.direction, loads[order, :3])
+    tensions = -np.cumsum(forces, axis=1)[:, :-1]
+    return max(_share(body, _stiffness(places[order], motions, each)) for each in tensions)
 
 
 def _stiffness(places: np.ndarray, motions: list[np.ndarray], tension: np.ndarray) -> np.ndarray:

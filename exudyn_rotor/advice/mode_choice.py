@@ -10,74 +10,49 @@ is.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from exudyn_rotor.advice.candidate import Candidate, Hill
+from exudyn_rotor.advice.candidate import Candidate
 from exudyn_rotor.advice.request import Request
 
 GROWTH = 0.05  # per radian
 _FREQUENCIES = 9
-_SPEEDS = 9  # within a range, at which unbalance may meet a resonance
-_UNMOVED = 1e-6  # share of the largest response; the load is at a place that is held
 _ALIKE = 0.01  # relative distance of frequencies of a pair: both planes of bending go together
 
 
-@dataclass(frozen=True, eq=False)
-class Truncation:
-    """Flexible modes that stay.
+class Truncation(NamedTuple):
+    """Flexible modes that stay."""
 
-    Attributes
-    ----------
-    kept : ndarray of int
-        Flexible modes, counted from 0.
-    error : float
-        Largest relative change of the response by what was left out.
-    in_band : int
-        Number of modes kept because their frequency lies in the band.
-    missing : float or None
-        Relative change of the response by attachment modes beside all modes given; None where
-        these are not known.
-    """
-
-    kept: np.ndarray
-    error: float
-    in_band: int
-    missing: float | None
+    kept: np.ndarray  # counted from 0
+    error: float  # largest relative change of the response by what was left out
+    in_band: int  # modes kept because their frequency lies in the band
 
 
-@dataclass(frozen=True, eq=False)
-class Point:
-    """Compliance at one speed and frequency, where modes can be left out.
+class Response:
+    """Response at one speed and one exponent of the loads, with all modes and without some."""
 
-    Attributes
-    ----------
-    H : ndarray, shape (n, n)
-    rows : ndarray, shape (p, n)
-        Displacements that count.
-    loads : ndarray, shape (n, l)
-    places : ndarray of int, shape (modes, h)
-        Where each flexible mode stands, harmonic by harmonic.
-    response : ndarray, shape (p, l)
-        With all modes.
-    """
-
-    H: np.ndarray
-    rows: np.ndarray
-    loads: np.ndarray
-    places: np.ndarray
-    response: np.ndarray
+    def __init__(self, given: Candidate, speed: float, s: complex) -> None:
+        made = given.hill(speed)
+        count = len(made.M) // made.orders
+        places = given.flexible[:, None] + count * np.arange(made.orders)
+        used = np.flatnonzero(~np.isin(np.arange(len(made.M)) % count, given.held))
+        rows, loads = given.ends_of_harmonics(made)
+        self._rows, self._loads = rows[:, used], loads[used]
+        self._H = np.linalg.inv(made.stiffness(s)[np.ix_(used, used)])
+        self._places = np.searchsorted(used, places)
+        self._sizes = np.linalg.norm(self._rows @ (self._H @ self._loads), axis=0)
 
     def error_without(self, dropped: np.ndarray) -> float:
         """Return the largest relative change of the response to any load without some modes.
 
         Holding coordinates d still changes the compliance H by ``−H_d (H_dd)⁻¹ H_dᵀ``.
         """
-        d = self.places[dropped].ravel()
-        inner = np.linalg.solve(self.H[np.ix_(d, d)], self.H[d] @ self.loads)
-        change = self.rows @ (self.H[:, d] @ inner)
-        return largest_share(change, np.linalg.norm(self.response, axis=0))
+        d = self._places[dropped].ravel()
+        inner = np.linalg.solve(self._H[np.ix_(d, d)], self._H[d] @ self._loads)
+        change = self._rows @ (self._H[:, d] @ inner)
+        return largest_share(change, self._sizes)
 
 
 def choose_modes(given: Candidate, request: Request) -> Truncation:
@@ -87,33 +62,26 @@ def choose_modes(given: Candidate, request: Request) -> Truncation:
     the other, those first that change the response least.
     """
     frequencies = given.frequencies
-    plan = list(exponents(given, request))
-    points = [_point(given, *each) for each in plan]
-    missing = None
-    if given.attached is not None:
-        attached = [_point(given.attached, *each).response for each in plan]
-        missing = _missing([one.response for one in points], attached, given.supported)
-    groups = [g for g in _alike(frequencies) if g.size and frequencies[g].min() > request.highest]
+    responses = [Response(given, *each) for each in exponents(given, request)]
+    gaps = np.diff(frequencies) > _ALIKE * frequencies[1:]
+    pairs = np.split(np.arange(frequencies.size), np.flatnonzero(gaps) + 1)
+    pairs = [pair for pair in pairs if pair.size and frequencies[pair].min() > request.highest]
 
     def error_without(chosen: list[np.ndarray]) -> float:
-        return max(one.error_without(np.concatenate(chosen)) for one in points) if chosen else 0.0
+        return max(one.error_without(np.concatenate(chosen)) for one in responses)
 
-    scores = [error_without([group]) for group in groups]
-    ranked = [groups[i] for i in np.argsort(scores, kind="stable")]
-    low, high, error = 0, len(ranked), 0.0
-    while low < high:  # the error grows with the number left out
-        middle = (low + high + 1) // 2
-        change = error_without(ranked[:middle])
-        if change <= request.allowed:
-            low, error = middle, change
-        else:
-            high = middle - 1
-    dropped = np.concatenate(ranked[:low]) if low else np.zeros(0, dtype=int)
+    ranked = sorted(pairs, key=lambda pair: error_without([pair]))
+    dropped, error = 0, 0.0
+    for count in range(1, len(ranked) + 1):  # the error grows with the number left out
+        change = error_without(ranked[:count])
+        if change > request.allowed:
+            break
+        dropped, error = count, change
+    left_out = np.concatenate([np.zeros(0, dtype=int), *ranked[:dropped]])
     return Truncation(
-        kept=np.setdiff1d(np.arange(frequencies.size), dropped),
+        kept=np.setdiff1d(np.arange(frequencies.size), left_out),
         error=error,
         in_band=int(np.sum(frequencies <= request.highest)),
-        missing=missing,
     )
 
 
@@ -122,23 +90,19 @@ def exponents(
 ) -> Iterator[tuple[float, complex]]:
     """Yield speeds and exponents s of loads in the rotor frame to look at.
 
-    Over the band evenly and at the resonances in it; unbalance at more speeds. With `steady`, a
-    growth per radian, weight and unbalance alone at the speeds.
+    Over the band evenly and at the resonances in it. With `steady`, a growth per radian, weight and
+    unbalance alone.
     """
     for speed in request.speeds:
         highest = request.loads + speed
         if steady is None:
             frequencies, growth = np.linspace(0.0, highest, _FREQUENCIES), GROWTH
-            if given.supported:
-                own = np.unique(np.round(given.motions(speed)[0].imag, 6))
-                frequencies = [*frequencies, *own[(own > 0.0) & (own <= highest)]]
+            own = np.unique(np.round(given.motions(speed)[0].imag, 6))
+            frequencies = [*frequencies, *own[(own > 0.0) & (own <= highest)]]
         else:
             frequencies, growth = [0.0, speed] if speed else [], steady
         for nu in frequencies:
             yield float(speed), 1j * nu + growth * max(nu, speed, 0.1 * request.highest)
-    if given.supported and request.low < request.high:
-        for speed in np.linspace(request.low, request.high, _SPEEDS)[1:-1]:
-            yield float(speed), complex(GROWTH * speed)
 
 
 def largest_share(change: np.ndarray, sizes: np.ndarray, least: float = 0.0) -> float:
@@ -149,47 +113,3 @@ def largest_share(change: np.ndarray, sizes: np.ndarray, least: float = 0.0) -> 
     moved = sizes > least * sizes.max(initial=0.0)
     shares = np.linalg.norm(change, axis=0)[moved] / sizes[moved]
     return float(shares.max(initial=0.0))
-
-
-def ends(given: Candidate, made: Hill) -> tuple[np.ndarray, np.ndarray]:
-    """Return displacements that count (p, n) and load columns (n, l) over all harmonics."""
-    motion = given.motion()
-    # flexible modes alone do not feel the acceleration of the whole
-    columns = np.vstack([motion, given.inertia_loads()] if given.supported else [motion]).T
-    loads = np.zeros((len(made.M), columns.shape[1]))
-    start = made.count * (len(made.orders) // 2)
-    loads[start : start + made.count] = columns
-    return np.kron(np.eye(len(made.orders)), motion), loads
-
-
-def _point(given: Candidate, speed: float, s: complex) -> Point:
-    made = given.hill(speed)
-    places = given.flexible[:, None] + made.count * np.arange(len(made.orders))
-    # where it is not known what holds the rotor, its own flexibility alone counts
-    used = np.arange(len(made.M)) if given.supported else np.sort(places.ravel())
-    used = used[~np.isin(used % made.count, given.held)]
-    rows, loads = ends(given, made)
-    rows, loads = rows[:, used], loads[used]
-    H = np.linalg.inv((s**2 * made.M + s * made.D + made.K)[np.ix_(used, used)])
-    return Point(H, rows, loads, np.searchsorted(used, places), rows @ (H @ loads))
-
-
-def _missing(given: list[np.ndarray], attached: list[np.ndarray], supported: bool) -> float:
-    """Return the largest relative change of the response to any load by attachment modes.
-
-    Where it is not known what holds the rotor, relative to the response to the load that moves its
-    interfaces most: the flexible modes need not move them under every load.
-    """
-    worst = 0.0
-    for response, with_attachments in zip(given, attached, strict=True):
-        sizes = np.linalg.norm(with_attachments, axis=0)
-        if not supported:
-            sizes[:] = sizes.max(initial=0.0)
-        worst = max(worst, largest_share(with_attachments - response, sizes, _UNMOVED))
-    return worst
-
-
-def _alike(frequencies: np.ndarray) -> list[np.ndarray]:
-    """Split ascending frequencies into groups of nearly equal ones."""
-    gaps = np.diff(frequencies) > _ALIKE * frequencies[1:]
-    return np.split(np.arange(frequencies.size), np.flatnonzero(gaps) + 1)

@@ -6,26 +6,23 @@ import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-import exudyn
 import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.advice.candidate import Candidate, candidate
+from exudyn_rotor.advice.candidate import Candidate
 from exudyn_rotor.advice.mode_choice import GROWTH, Truncation, choose_modes
 from exudyn_rotor.advice.request import Request
 from exudyn_rotor.advice.step_size import Step, choose_step
 from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.reduction.truncation import keep_modes
-from exudyn_rotor.theory.formulation import ConstantSpeed, Formulation, PrescribedMotion
+from exudyn_rotor.reduction.selection import keep_modes
+from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.stiffening import LEVELS, estimated_error
 from exudyn_rotor.units import IN_HERTZ
 
 _NO_INERTIA = 1e-12  # share of all moments of inertia: masses on the axis alone
-_GAIN = 1.3  # in step size from which a frame that follows pays: its steps cost a tenth more
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,13 +32,11 @@ class Proposal:
     Attributes
     ----------
     translation : {'free', 'in-plane', 'none'}
-    spin : 'free', float or PrescribedMotion
+    spin : 'free' or float
         A number is a constant speed [rad/s].
     stiffening : {'tilt', 'full'}
     modes : tuple of int
         Flexible modes to keep, counted from 0; see :func:`exudyn_rotor.keep_modes`.
-    labels : tuple of str
-        Their names and frequencies.
     total : int
         Number of flexible modes that there were to choose from.
     error : float
@@ -56,17 +51,15 @@ class Proposal:
     Examples
     --------
     >>> from exudyn_rotor import Proposal
-    >>> modes, speeds = {"modes": (0, 1), "labels": ("a", "b"), "total": 2}, (20.0, 20.0)
-    >>> Proposal("none", 20.0, "tilt", **modes, error=0.0, step=1e-4, speeds=speeds,
-    ...          accuracy=1e-3, reasons=()).step
+    >>> numbers = {"error": 0.0, "step": 1e-4, "speeds": (20.0, 20.0), "accuracy": 1e-3}
+    >>> Proposal("none", 20.0, "tilt", modes=(0, 1), total=2, **numbers, reasons=()).step
     0.0001
     """
 
     translation: str
-    spin: str | float | PrescribedMotion
+    spin: str | float
     stiffening: str
     modes: tuple[int, ...]
-    labels: tuple[str, ...]
     total: int
     error: float
     step: float
@@ -75,14 +68,10 @@ class Proposal:
     reasons: tuple[str, ...]
 
     def __post_init__(self) -> None:
-        # the same rules as for add_rotor, where all of this goes
-        Formulation(self.translation, self.spin)
+        Formulation(self.translation, self.spin)  # the rules of add_rotor, where all of this goes
         checks.choice(self.stiffening, "stiffening", LEVELS)
         checks.count(self.total, "total")
         modes = checks.whole_numbers(self.modes, "modes", most=self.total - 1)
-        labels = checks.labels(self.labels, "labels")
-        if len(labels) != modes.size:
-            raise ValueError(f"labels: needs one per mode, {modes.size}, got {len(labels)}")
         low, high = checks.vector(self.speeds, "speeds", "rad/s", size=2).tolist()
         if not 0.0 <= low <= high:
             raise ValueError(f"speeds: needs 0 ≤ low ≤ high [rad/s], got {low}, {high}")
@@ -91,7 +80,6 @@ class Proposal:
         checks.tolerance(self.accuracy, "accuracy")
         for name, value in (
             ("modes", tuple(modes.tolist())),
-            ("labels", labels),
             ("speeds", (low, high)),
             ("reasons", checks.labels(self.reasons, "reasons")),
         ):
@@ -104,11 +92,8 @@ class Proposal:
 
     def options(self) -> dict:
         """Return the formulation as arguments of :func:`exudyn_rotor.add_rotor`."""
-        return {
-            "translation": self.translation,
-            "spin": self.spin,
-            "stiffening": self.stiffening,
-        }
+        names = ("translation", "spin", "stiffening")
+        return {name: getattr(self, name) for name in names}
 
     def truncated(self, reduced: ReducedRotor) -> ReducedRotor:
         """Return the rotor with the proposed modes.
@@ -129,17 +114,13 @@ class Proposal:
 
     def __str__(self) -> str:
         spin = f"{self.spin:.6g} rad/s" if isinstance(self.spin, float) else self.spin
-        spin = "prescribed θ(t)" if isinstance(spin, PrescribedMotion) else spin
-        modes = _ranges(self.modes)
-        if self.labels:
-            modes += f": {self.labels[0]} … {self.labels[-1]}"
         lines = [
             f"proposal for {self.speeds[0]:.6g} … {self.speeds[1]:.6g} rad/s, "
             f"accuracy {self.accuracy:g}",
             f"  translation   {self.translation}",
             f"  spin          {spin}",
             f"  stiffening    {self.stiffening}",
-            f"  modes         {self.count} of {self.total}: {modes}",
+            f"  modes         {self.count} of {self.total}",
             f"  step          {self.step:.3g} s",
             *(f"  - {reason}" for reason in self.reasons),
         ]
@@ -147,24 +128,19 @@ class Proposal:
 
 
 def propose(
-    target: ReducedRotor | exudyn.MainSystem,
+    reduced: ReducedRotor,
     *,
     speeds: ArrayLike,
     load_frequencies: ArrayLike | None = None,
-    supports: Sequence[Support] | Support | None = None,
-    interfaces: Sequence[str] | None = None,
+    supports: Sequence[Support] | Support = (),
     accuracy: float = 1e-3,
-    tilt: float | None = None,
-    spin: PrescribedMotion | None = None,
-    axial: bool | None = None,
-    body: RotorBody | None = None,
 ) -> Proposal:
     """Propose the smallest model whose error stays below an accuracy.
 
     Parameters
     ----------
-    target : ReducedRotor or exudyn.MainSystem
-        A rotor with more modes than will be needed, or an assembled scene with its `body`.
+    reduced : ReducedRotor
+        A rotor with more modes than will be needed.
     speeds : float or (low, high)
         Range of the spin speed, ≥ 0 [rad/s].
     load_frequencies : array_like, optional
@@ -172,21 +148,10 @@ def propose(
         the highest is taken to occur. None: weight, unbalance and bearings only, so everything up
         to the spin speed.
     supports : sequence of Support or bearings, optional
-        What holds the rotor; an empty list for a rotor that nothing holds. None: not known.
-    interfaces : sequence of str, optional
-        Where the rotor is loaded and looked at; all interfaces by default.
+        What holds the rotor beside its own stiffness; nothing by default.
     accuracy : float
         Relative error of steady motion, between 0 and 1; half of it for the modes, half for the
         step.
-    tilt : float, optional
-        Largest tilt that is expected [rad].
-    spin : PrescribedMotion, optional
-        θ(t), where it is known; only for a range of speeds.
-    axial : bool, optional
-        Whether anything acts along the axis. None: as the supports say, yes where they are not
-        known.
-    body : RotorBody, optional
-        The rotor in a scene.
 
     Returns
     -------
@@ -195,29 +160,26 @@ def propose(
     Raises
     ------
     TypeError, ValueError
-        For bad input, or a rotor whose spin cannot be free.
+        For bad input, a rotor without interfaces, or one whose spin cannot be free.
 
     Warns
     -----
     AssumptionWarning
-        Where no proposal meets the accuracy: the tilt is too large, modes are missing, or flexible
-        modes stiffen with the speed and the rotor was reduced without a prestress.
+        Where no proposal meets the accuracy: modes are missing, or flexible modes stiffen with the
+        speed and the rotor was reduced without a prestress.
 
     Notes
     -----
-    Formulation: a constant speed leaves the modes alone (Sect. 2.5), unless a frame that follows
-    allows much longer steps; else the frame carries the lateral translations (2.3), and the axial
-    one, too, where something acts along the axis (2.2). The axial motion is never left out: what
-    the frame does not carry is a rigid mode.
+    Formulation: a constant speed leaves the modes alone (Sect. 2.5); else the frame carries the
+    lateral translations (2.3), and the axial one, too, where supports act along the axis (2.2). The
+    axial motion is never left out: what the frame does not carry is a rigid mode.
 
     Modes: a load that is fixed in space at frequency f appears in the rotor frame at f ± Ω, so the
     band ends at f + Ω. Modes in the band stay; of the others those whose absence changes the
     response of the interfaces by less than half the accuracy leave, see
-    :mod:`exudyn_rotor.advice.mode_choice`. Without known supports the flexibility of the flexible
-    modes alone is the response. What static responses to loads at the interfaces add to the modes
-    given is in the reasons; above half the accuracy, or with all modes in the band, that warns.
-    Other nodes and the stress err by more; :func:`exudyn_rotor.check_run` with `solid` says by how
-    much.
+    :mod:`exudyn_rotor.advice.mode_choice`. All modes in the band is a warning: more may lie there.
+    What the modes given lack of static responses, the row ``residual`` of :func:`check_run` tells.
+    Other nodes and the stress err by more.
 
     Step: generalised alpha makes the period of a motion of frequency ω longer by ``(ωh)²/12`` of
     itself (0.0844 (ωh)² at Exudyn's spectral radius 0.9). Half the accuracy is allowed for that at
@@ -247,128 +209,78 @@ def propose(
     6
     """
     request = Request.of(speeds, load_frequencies, accuracy)
-    if tilt is not None:
-        tilt = checks.tolerance(tilt, "tilt")
-    given = candidate(target, body, supports, interfaces, axial, request.high)
-    spin = _spin(given, request, spin)
-    chosen = choose_modes(given, request)
-    translation, why, step = _translation(given, request, spin)
-    for message in _unmet(given, request, chosen, tilt):
+    checks.instance(reduced, "reduced", ReducedRotor)
+    if not reduced.interfaces:
+        raise ValueError(
+            "reduced: has no interfaces, so nothing says where it is loaded; add some with "
+            "rotor.with_interface"
+        )
+    given = Candidate.of(reduced, supports)
+    spin, translation, why = _formulation(given, request)
+    chosen, step = choose_modes(given, request), choose_step(given, request)
+    for message in _unmet(given, request):
         warnings.warn(message, AssumptionWarning, stacklevel=2)
-    hertz = IN_HERTZ * given.frequencies
     return Proposal(
         translation=translation,
         spin=spin,
         stiffening="full" if given.invariants.K2 is not None else "tilt",
         modes=chosen.kept,
-        labels=tuple(f"mode {i + 1} ({hertz[i]:.4g} Hz)" for i in chosen.kept),
-        total=hertz.size,
+        total=given.frequencies.size,
         error=chosen.error,
         step=step.size,
         speeds=(request.low, request.high),
         accuracy=request.accuracy,
-        reasons=(why, *_mode_reasons(given, request, chosen), _step_reason(request, step)),
+        reasons=(why, *_reasons(given, request, chosen, step)),
     )
 
 
-def _ranges(modes: Sequence[int]) -> str:
-    """Return mode numbers counted from 1 as '1–4, 7'."""
-    numbers = np.array(modes, dtype=int) + 1
-    runs = np.split(numbers, np.flatnonzero(np.diff(numbers) > 1) + 1)
-    shown = [f"{r[0]}–{r[-1]}" if len(r) > 1 else str(r[0]) for r in runs if len(r)]
-    return ", ".join(shown) or "none, the rotor is rigid"
-
-
-def _spin(given: Candidate, request: Request, spin: PrescribedMotion | None):
-    """Return what add_rotor takes as `spin`."""
-    if spin is not None:
-        if isinstance(spin, ConstantSpeed) or request.low == request.high:
-            raise ValueError("spin: one speed is a constant spin already; leave spin out")
-        return checks.instance(spin, "spin", PrescribedMotion)
+def _formulation(given: Candidate, request: Request) -> tuple[str | float, str, str]:
+    """Return spin and translation for add_rotor, and the reason."""
     if request.low == request.high:
-        return request.high
+        why = "one speed: all motion is in the modes, and the matrices are constant"
+        return request.high, "none", why
     inv = given.invariants
-    if given.grounded or inv.Theta <= _NO_INERTIA * np.trace(inv.J):
+    if given.reduced.grounded or inv.Theta <= _NO_INERTIA * np.trace(inv.J):
         raise ValueError(
-            "propose: this rotor's spin cannot be free (its stiffness holds it, or it has no "
-            "moment of inertia); give spin=PrescribedMotion.run_up(…), or one speed"
+            "speeds: this rotor's spin cannot be free (its stiffness holds it, or it has no "
+            "moment of inertia); give one speed here, and spin=PrescribedMotion.run_up(…) to "
+            "add_rotor"
         )
-    return "free"
+    if given.axial:
+        return "free", "free", "the speed varies, and something may act along the axis"
+    return "free", "in-plane", "the speed varies, and nothing acts along the axis"
 
 
-def _translation(given: Candidate, request: Request, spin) -> tuple[str, str, Step]:
-    """Return the translation, the reason for it, and the step that it takes."""
-    if given.grounded:
-        step = choose_step(given, request, follows=False)
-        return "none", "translation: the rotor's own stiffness matrix holds it", step
-    follows = choose_step(given, request, follows=True)
-    if not isinstance(spin, float):
-        if given.axial:
-            why = "the speed varies, and something may act along the axis: the frame follows"
-            return "free", why, follows
-        return "in-plane", "the speed varies, and nothing acts along the axis", follows
-    step = choose_step(given, request, follows=False)
-    if follows.size > _GAIN * step.size:
-        why = (
-            "slow motion in space is fast in the rotor frame: a frame that follows allows steps "
-            f"{follows.size / step.size:.2g} times as long"
-        )
-        return "free", why, follows
-    return "none", "one speed: all motion is in the modes, and the matrices are constant", step
-
-
-def _mode_reasons(given: Candidate, request: Request, chosen: Truncation) -> list[str]:
-    """Return why these modes, in sentences."""
-    held = "on its supports" if given.supported else "by its own flexibility, supports not known"
-    lines = [
+def _reasons(given: Candidate, request: Request, chosen: Truncation, step: Step) -> Iterator[str]:
+    """Yield why these modes and this step."""
+    yield (
         f"modes: {chosen.in_band} lie in the band up to (f + Ω)/2π = "
-        f"{IN_HERTZ * request.highest:.4g} Hz of the rotor frame",
+        f"{IN_HERTZ * request.highest:.4g} Hz of the rotor frame"
+    )
+    yield (
         f"modes: the {given.frequencies.size - chosen.kept.size} left out change the response "
-        f"of interfaces {held} by {chosen.error:.2g}, resonances damped by {GROWTH:.0%} at least",
-    ]
-    if chosen.missing is not None:
-        lines.append(
-            "modes: static responses to loads at the interfaces, which those given do not hold, "
-            f"change the largest of it by {chosen.missing:.2g}"
-        )
-    return lines
-
-
-def _step_reason(request: Request, step: Step) -> str:
-    """Return why this step."""
+        f"of interfaces by {chosen.error:.2g}, resonances damped by {GROWTH:.0%} at least"
+    )
     if np.isnan(step.speed):
-        return (
+        yield (
             f"step: ωh = {request.highest * step.size:.3g} at the end of the band, so periods are "
             f"too long by {request.allowed:g} of themselves there"
         )
-    return (
-        f"step: changes the response at {step.speed:.4g} rad/s, to a load at {step.frequency:.4g} "
-        f"rad/s in the rotor frame, by {request.allowed:g}, or the growth of a motion there by "
-        "half; a resonance is near, or a motion that is slow in space"
-    )
-
-
-def _unmet(
-    given: Candidate, request: Request, chosen: Truncation, tilt: float | None
-) -> Iterator[str]:
-    """Yield where the accuracy is not met, each with what to do."""
-    missing = chosen.missing if given.supported else None
-    if missing is not None and missing > request.allowed:
+    else:
         yield (
-            f"the {given.frequencies.size} flexible modes given miss {missing:.2g} of the "
-            f"response, above half the accuracy {request.accuracy:g}: reduce the rotor with more "
-            "modes, or with craig_bampton_modes, and ask again"
+            f"step: changes the response at {step.speed:.4g} rad/s, to a load at "
+            f"{step.frequency:.4g} rad/s in the rotor frame, by {request.allowed:g}, or the growth "
+            "of a motion there by half; a resonance is near, or a motion that is slow in space"
         )
+
+
+def _unmet(given: Candidate, request: Request) -> Iterator[str]:
+    """Yield where the accuracy is not met, each with what to do."""
     if given.frequencies.size and given.frequencies.max() < request.highest:
         yield (
             f"all {given.frequencies.size} flexible modes given lie in the band up to "
             f"{IN_HERTZ * request.highest:.4g} Hz of the rotor frame, and more may: reduce the "
             "rotor with more modes and ask again"
-        )
-    if tilt is not None and tilt**2 > request.accuracy:
-        yield (
-            f"a tilt of {tilt:.3g} rad makes an error of its square, {tilt**2:.2g}, above the "
-            f"accuracy {request.accuracy:g}: one fixed axis does not suffice, use Exudyn's 3D body"
         )
     softened = estimated_error(given.invariants, request.high)
     if softened > request.accuracy:

@@ -3,35 +3,127 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.advice.check_result import CheckRow, RunCheck
-from exudyn_rotor.advice.left_out import check_model
 from exudyn_rotor.advice.proposal import Proposal
-from exudyn_rotor.advice.run_measures import Measures
-from exudyn_rotor.advice.run_rows import ALWAYS, LIMITS, OF_MODES, rows_at_nodes
+from exudyn_rotor.advice.run_rows import ROWS, RecordedRun
 from exudyn_rotor.advice.warning import AssumptionWarning
-from exudyn_rotor.multibody.full.full_body import FullRotorBody, recorded_states
+from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.solid_rotor import SolidRotor
 
-_SAME = 1e-6  # relative difference of masses and moments of one rotor
+_ENOUGH = 20  # instants
+
+
+@dataclass(frozen=True)
+class CheckRow:
+    """One assumption.
+
+    Attributes
+    ----------
+    name : str
+    meaning : str
+        What the number is, with its unit.
+    value, limit : float
+    advice : str
+        What to do where the limit is exceeded.
+    """
+
+    name: str
+    meaning: str
+    value: float
+    limit: float
+    advice: str
+
+    @property
+    def ok(self) -> bool:
+        """True if the value is finite and not above the limit."""
+        return bool(np.isfinite(self.value) and self.value <= self.limit)
+
+    def __str__(self) -> str:
+        verdict = "ok" if self.ok else "FAILS"
+        return f"{self.name:15s} {self.value:9.2e}  {self.limit:9.2e}  {verdict:5s}  {self.meaning}"
+
+
+@dataclass(frozen=True)
+class RunCheck:
+    """What held in a run; made by :func:`exudyn_rotor.check_run`.
+
+    Attributes
+    ----------
+    rows : tuple of CheckRow
+    instants : int
+        How many instants were looked at; 1 if ``body.start_recording()`` was not called before the
+        run, so that only the end state is known.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import RunCheck
+    >>> from exudyn_rotor.advice.run_check import CheckRow
+    >>> row = CheckRow("tilt", "largest tilt [rad]", 0.02, 0.01, "use a smaller unbalance")
+    >>> check = RunCheck((row,), instants=100)
+    >>> check.ok, check.failed[0].name
+    (False, 'tilt')
+    """
+
+    rows: tuple[CheckRow, ...]
+    instants: int
+
+    def __post_init__(self) -> None:
+        rows = checks.instances(self.rows, "rows", CheckRow, "check_run makes them")
+        object.__setattr__(self, "rows", rows)
+        checks.count(self.instants, "instants", least=1)
+
+    @property
+    def complete(self) -> bool:
+        """True if enough instants are known to see the largest motion of a run."""
+        return self.instants >= _ENOUGH
+
+    @property
+    def ok(self) -> bool:
+        """True if no row fails."""
+        return not self.failed
+
+    @property
+    def failed(self) -> tuple[CheckRow, ...]:
+        """Rows that fail."""
+        return tuple(row for row in self.rows if not row.ok)
+
+    def __getitem__(self, name: str) -> CheckRow:
+        """Return a row by its name."""
+        for row in self.rows:
+            if row.name == name:
+                return row
+        raise KeyError(f"no check {name!r} here; there are: {', '.join(r.name for r in self.rows)}")
+
+    @property
+    def gap(self) -> str:
+        """What a record of few instants lacks; empty for a complete one."""
+        if self.complete:
+            return ""
+        known = "the end state is" if self.instants == 1 else f"{self.instants} instants are"
+        return (
+            f"only {known} known: call body.start_recording() before mbs.Assemble(), and lower "
+            "solution.sensors.writePeriod of the settings"
+        )
+
+    def __str__(self) -> str:
+        lines = ["check               value      limit  verdict"]
+        lines += [str(row) for row in self.rows]
+        lines += [f"  {row.name}: {row.advice}" for row in self.failed]
+        return "\n".join([*lines, *([f"  {self.gap}"] if self.gap else [])])
 
 
 def check_run(
     body: RotorBody | FullRotorBody,
     *,
     reduced: ReducedRotor | None = None,
-    solid: SolidRotor | None = None,
-    nodes: ArrayLike | None = None,
     proposal: Proposal | None = None,
     accuracy: float | None = None,
-    limits: Mapping[str, float] | None = None,
     warn: bool = True,
 ) -> RunCheck:
     """Check after a run whether the model's assumptions held.
@@ -40,23 +132,15 @@ def check_run(
     ----------
     body : RotorBody or FullRotorBody
         After the solution; ``body.start_recording()`` before ``mbs.Assemble()`` records the run at
-        the instants of ``solution.sensors.writePeriod``, that of a full body at instants that it is
-        given. Before a run this checks the initial state.
+        the instants of ``solution.sensors.writePeriod``. Before a run this checks the initial
+        state.
     reduced : ReducedRotor, optional
         The rotor; adds the check of yielding where it was reduced with a yield stress.
-    solid : SolidRotor, optional
-        The full model of `reduced`, which must be the rotor in the scene, with shapes. Adds the
-        errors at nodes: the static response of the full model to the loads at 60 instants. Takes a
-        factor of the stiffness and as many solutions.
-    nodes : array_like of int, optional
-        Nodes to look at in these, as of ``solid.nearest_node(…)``; all by default.
     proposal : Proposal, optional
         Adds the check of the speed range, and gives the accuracy.
     accuracy : float, optional
         Relative error of periods, and of motion that repeats itself; the proposal's, or 1e-3. Free
         vibrations go out of phase by more, see the notes.
-    limits : mapping of str to float, optional
-        Limits by name of a check in place of the defaults.
     warn : bool
         Whether there is an :class:`AssumptionWarning` for every row that fails, and for a run that
         was recorded at less than 20 instants.
@@ -73,15 +157,11 @@ def check_run(
     Notes
     -----
     Checks, with a for the accuracy; "size" is the rotor's radius of gyration. A full body has the
-    rows up to ``any angle``.
-
-    ``displacement`` and ``stress`` are the first correction of the modes' motion. They do not see
-    the error of the mesh, loads elsewhere than at interfaces and markers of ``body.add_marker``,
-    what a resonance makes of the modes' error, and how missing modes ring after a sudden start.
+    rows up to ``film``.
 
     No row adds up errors over a run. A free vibration, such as a sudden start leaves where damping
     is weak, goes out of phase in every period: by about 2π times the row ``step``, and by about π
-    times ``displacement``, for its frequency errs by half of that. Its instants then err by this
+    times ``residual``, for its frequency errs by half of that. Its instants then err by this
     phase times its amplitude; motion forced by the spin or by loads does not. To compare instants,
     begin in the steady state (``body.start_from(steady_state(body).state())``), wait for the start
     to die down, or ask for an accuracy better by 2π times the number of periods.
@@ -91,8 +171,6 @@ def check_run(
     ===================  =======  ==================================================================
     ``tilt``             √a       largest rigid tilt [rad]; terms of its second order are left out
     ``deflection``       √a       root mean square flexible displacement over the size, likewise
-    ``adrift``           1        the centre of mass off its place in the frame, over the size
-    ``locked``           1e-5     locked coordinates off their place [rad], [size]
     ``connections``      0        connectors, joints and loads that the rotor cannot carry:
                                   ``body.check_connections()`` names them
     ``step``             a        error by the step, 0.0844 h² times the accelerations of the
@@ -101,10 +179,6 @@ def check_run(
                                   amplitudes err by more, by the amplification
     ``film``             1        displacement of a journal at the end over that beyond which its
                                   film is too thin and the law goes on by its tangent
-    ``frozen spin``      a        angular momentum of the changing moment of inertia over the whole,
-                                  left out by ``spin_coupling='frozen'``; the error of spin speeds
-    ``any angle``        1e-3     after ``mbs.SolveStatic()`` of a rotor that spins: forces that
-                                  change with its angle, over the loads
     ``unresisted load``  0.01     what ``connections`` counts, as a share of the largest load
     ``stiffening``       a        stiffening that the level leaves out, as relative change of
                                   frequency of the recorded motion; estimated without a prestress
@@ -116,15 +190,8 @@ def check_run(
     ``axial force``      2a       axial force between interfaces over the load at which the shaft
                                   buckles, hinged where the force acts, less what the prestress
                                   holds; frequencies err by half of it
-    ``explicit``         1        explicit solvers: step over that at which undamped motion grows
-                                  (by e in the run, with Euler's method and the midpoint rule)
     ``yield``            1        static von Mises stress, by rotation and at rest, over the yield
                                   stress; the larger of those at rest and at the highest speed
-    ``displacement``     a        what the modes leave out at nodes, likewise, over the largest
-                                  displacement there; with `solid`
-    ``stress``           √a       von Mises stress of that, over the largest there, the static
-                                  stress by the spin added as by :class:`StressField`; with `solid`
-                                  and stress modes. Not the error of the mesh
     ``speed``            1 + a    highest speed over that of the proposal
     ===================  =======  ==================================================================
 
@@ -150,100 +217,46 @@ def check_run(
     """
     checks.instance(body, "body", (RotorBody, FullRotorBody), "add_rotor returns one")
     body.check_assembled()
-    if isinstance(body, FullRotorBody):
-        _check_no_modes(body, (reduced, solid, nodes))
     if reduced is not None:
-        _check_same(body, checks.instance(reduced, "reduced", ReducedRotor))
+        checks.instance(reduced, "reduced", ReducedRotor)
     if proposal is not None:
         checks.instance(proposal, "proposal", Proposal, "propose makes one")
     if accuracy is None:
         accuracy = proposal.accuracy if proposal is not None else 1e-3
+    checks.tolerance(accuracy, "accuracy")
     checks.flag(warn, "warn")
-    known = _limits(checks.tolerance(accuracy, "accuracy"), limits)
-    at_nodes = _nodes(body, reduced, solid, nodes)
-    record = recorded_states(body) if isinstance(body, FullRotorBody) else body.recorded()
-    if np.all(np.isfinite(record.q)) and np.all(np.isfinite(record.q_t)):
-        made = list(_rows(Measures(body, record, reduced), proposal))
-        if at_nodes is not None and len(record.time) > 1:
-            made += rows_at_nodes(Measures(body, record, reduced), solid, at_nodes)
-    else:
-        made = [("finite", "coordinates that are not finite", np.inf, "the solution failed")]
-    checked = tuple(CheckRow(name, what, v, known[name], then) for name, what, v, then in made)
-    result = RunCheck(checked, len(record.time))
-    for message in _messages(result, ran=record.time[-1] > 0.0) if warn else ():
+    record = body.recorded()
+    run = RecordedRun(body, record, reduced)
+    result = RunCheck(tuple(_rows(run, proposal, accuracy)), len(record.time))
+    told = [f"{r.name} {r.value:.3g} exceeds {r.limit:.3g} ({r.meaning}): {r.advice}"
+            for r in result.failed]  # fmt: skip
+    if result.gap and record.time[-1] > 0.0:
+        told.insert(0, result.gap)
+    for message in told if warn else ():
         warnings.warn(f"rotor {body.name!r}: {message}", AssumptionWarning, stacklevel=2)
     return result
 
 
-def _rows(measures: Measures, proposal: Proposal | None) -> Iterator[tuple[str, str, float, str]]:
-    """Yield name, meaning, value and advice of the rows that a run has."""
-    full = isinstance(measures.body, FullRotorBody)
-    for row in ALWAYS if full else (*ALWAYS, *OF_MODES):
-        value = row.measure(measures)
+def _rows(run: RecordedRun, proposal: Proposal | None, accuracy: float) -> Iterator[CheckRow]:
+    """Yield the rows that a run has."""
+    if not (np.all(np.isfinite(run.record.q)) and np.all(np.isfinite(run.record.q_t))):
+        what = "coordinates that are not finite"
+        yield CheckRow("finite", what, np.inf, 0.0, "the solution failed")
+        return
+    for row in ROWS:
+        if row.of_modes and isinstance(run.body, FullRotorBody):
+            continue
+        value = row.measure(run)
         if value is not None:
-            yield row.name, row.meaning, float(value), row.advice
+            limit = float(row.limit(accuracy))
+            yield CheckRow(row.name, row.meaning, float(value), limit, row.advice)
     if proposal is not None:
-        fastest, most = measures.fastest, proposal.speeds[1]
-        ratio = fastest / most if most else np.inf
-        yield (
+        most = proposal.speeds[1]
+        ratio = run.fastest / most if most else np.inf
+        yield CheckRow(
             "speed",
             "highest speed over that of the proposal",
-            ratio if fastest else 0.0,
-            f"{fastest:.6g} rad/s were reached; propose again with that",
+            ratio if run.fastest else 0.0,
+            1.0 + accuracy,
+            f"{run.fastest:.6g} rad/s were reached; propose again with that",
         )
-
-
-def _messages(result: RunCheck, ran: bool) -> Iterator[str]:
-    if ran and not result.complete:
-        yield result.gap()
-    for row in result.failed:
-        yield (f"{row.name} {row.value:.3g} exceeds {row.limit:.3g} ({row.meaning}): {row.advice}")
-
-
-def _check_no_modes(body: FullRotorBody, given: Sequence[object]) -> None:
-    """Refuse what is for the error of modes."""
-    if any(each is not None for each in given):
-        raise ValueError(
-            f"body: rotor {body.name!r} is a full body, without an error of modes; leave reduced, "
-            "solid and nodes out"
-        )
-
-
-def _check_same(body: RotorBody, reduced: ReducedRotor) -> None:
-    """Refuse another rotor; one with other modes of the same is all right."""
-    added, given = body.selection.source.invariants, reduced.invariants
-    change = np.abs(added.J - given.J).max() / np.abs(added.J).max()
-    if abs(added.mass - given.mass) > _SAME * added.mass or change > _SAME:
-        raise ValueError(
-            f"reduced: of {given.mass:.6g} kg is another rotor than the body's, "
-            f"{added.mass:.6g} kg or other moments of inertia; give the one that was added"
-        )
-
-
-def _nodes(
-    body: RotorBody, reduced: ReducedRotor | None, solid: SolidRotor | None, nodes: ArrayLike | None
-) -> np.ndarray | None:
-    """Return the nodes whose errors are asked for; None for none."""
-    if solid is None:
-        if nodes is not None:
-            raise ValueError("nodes: the error at nodes needs the full model; give solid, too")
-        return None
-    checks.instance(solid, "solid", SolidRotor, "the one that was reduced")
-    if reduced is None:
-        raise ValueError("solid: the error at nodes needs the modes; give reduced, too")
-    check_model(body, reduced, solid)
-    if nodes is None:
-        return np.arange(solid.node_count)
-    chosen = checks.whole_numbers(nodes, "nodes", most=solid.node_count - 1)
-    if chosen.size == 0:
-        raise ValueError("nodes: needs one or more, got none; leave it out for all")
-    return chosen
-
-
-def _limits(accuracy: float, limits: Mapping[str, float] | None) -> dict[str, float]:
-    known = {name: float(limit(accuracy)) for name, limit in LIMITS.items()}
-    if limits is not None:
-        checks.mapping(limits, "limits", "limit of a check", known)
-        for name, value in limits.items():
-            known[name] = checks.number(value, f"limits: {name!r}", least=0.0)
-    return known

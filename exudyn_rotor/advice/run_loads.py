@@ -1,28 +1,72 @@
-"""Loads of a run, from the record of its motion and the equations of the rotor."""
+"""Loads of a run, and the static response to them that the modes leave out.
+
+The loads on a rotor are what its equations leave over, ``f = M q̈ − Q(q, q̇)``. Forces and moments F
+at the places where something acts (:mod:`exudyn_rotor.multibody.load_places`) follow from them by
+``Uᵀ F = f`` with the motion U of these places, in the sense of least squares. They, and the
+centrifugal load of the rotor itself, deform it by more than the run shows: by what the response of
+attachment modes has beyond the response of the modes. The inertia of modes that are left out does
+not count: next to a resonance, and after a sudden start, their motion is larger.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
+from exudyn_rotor.multibody.load_places import load_places
 from exudyn_rotor.multibody.rotor.record import Record
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.nodal import skew
 
 _MOST = 400  # instants of a run that are looked at
+_STILL = 1e-5  # of the rotor's size: motion that counts as none
+_SEEN = 1e-3  # singular values below this share of the largest tell nothing about loads
 
 
-def instants(record: Record, most: int = _MOST) -> np.ndarray:
+def instants(record: Record, most: int) -> np.ndarray:
     """Return which instants to look at, evenly over the run; the first has no accelerations."""
     return np.unique(np.linspace(1, len(record.time) - 1, most).astype(int))
 
 
-def external_load(body: RotorBody, record: Record, index: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the inertia forces and the external load at an instant, each per coordinate."""
+def external_load(body: RotorBody, record: Record, index: int) -> np.ndarray:
+    """Return the external load at an instant per coordinate of the equations."""
     motion, place = body.motion, body.layout
     t = float(record.time[index])
     q, q_t, q_tt = (rows[index][place.unknowns] for rows in (record.q, record.q_t, record.q_tt))
-    inertia = motion.mass_matrix(t, q, q_t) @ q_tt
-    return inertia, inertia - motion.forces(t, q, q_t)
+    return motion.mass_matrix(t, q, q_t) @ q_tt - motion.forces(t, q, q_t)
+
+
+def interface_loads(
+    body: RotorBody, record: Record, picked: np.ndarray, size: float
+) -> np.ndarray | None:
+    """Return forces and moments about the interfaces' references, mesh axes, (p, 6, s).
+
+    Without the weight. Loads elsewhere do not count. `size` [m] makes forces and moments
+    comparable. None where the scene knows no interfaces.
+    """
+    interfaces = body.selection.source.interfaces
+    if not interfaces:
+        return None
+    names, total = list(interfaces), np.zeros((len(interfaces), 6, len(picked)))
+    places = load_places(body)
+    if not places:
+        return total
+    inv, e = body.motion.invariants, body.motion.invariants.direction
+    units = np.concatenate([np.repeat([1.0, size], 3)[: len(place.motion)] for place in places])
+    forces = np.hstack([np.eye(3, len(place.motion)) for place in places])
+    free = {0: np.zeros((3, 3)), 2: np.eye(3) - np.outer(e, e), 3: np.eye(3)}
+    frame = free[body.formulation.translation_count] @ forces / np.sqrt(inv.mass)
+    equations = np.vstack([np.vstack([place.motion for place in places]).T, frame])
+    loads = np.column_stack([_without_weight(body, record, index) for index in picked])
+    found = units[:, None] * (np.linalg.pinv(equations * units, rcond=_SEEN) @ loads)
+    ends = np.cumsum([len(place.motion) for place in places])
+    for place, values in zip(places, np.split(found, ends[:-1]), strict=True):
+        if place.interface is not None:
+            row = total[names.index(place.interface)]
+            row[: len(values)] += values
+            row[3:] += skew(place.point - interfaces[place.interface].reference) @ values[:3]
+    return total
 
 
 def turned(body: RotorBody, q: np.ndarray) -> np.ndarray:
@@ -31,24 +75,76 @@ def turned(body: RotorBody, q: np.ndarray) -> np.ndarray:
     return motion.orientation @ SpinAxis(motion.invariants.direction).rotation(q[body.locks.spin])
 
 
-def weight(body: RotorBody) -> np.ndarray:
-    """Return the weight that Exudyn applies, inertial axes [N]."""
-    if body.gravity_load is None:
-        return np.zeros(3)
-    gravity = body.mbs.GetLoadParameter(body.gravity_load, "loadVector")
-    return body.motion.invariants.mass * np.asarray(gravity)
+def _without_weight(body: RotorBody, record: Record, index: int) -> np.ndarray:
+    """Return loads on the modes and, over √m and in rotor axes, on the frame (m + 3,)."""
+    motion, weight = body.motion, np.zeros(3)
+    inv, external = motion.invariants, external_load(body, record, index)
+    if body.gravity_load is not None:
+        gravity = body.mbs.GetLoadParameter(body.gravity_load, "loadVector")
+        weight = inv.mass * np.asarray(gravity)
+    turn, N = turned(body, record.q[index]), motion.free_directions
+    on_modes = external[motion.modes] - inv.S.T @ turn.T @ weight / inv.mass
+    on_frame = turn.T @ N @ (external[motion.translations] - N.T @ weight)
+    return np.concatenate([on_modes, on_frame / np.sqrt(inv.mass)])
 
 
-def external_force(body: RotorBody, record: Record) -> float:
-    """Return the largest resultant of the loads on a reduced rotor in a run, by its equations [N].
+def residual_deflection(body: RotorBody, record: Record, size: float) -> float | None:
+    """Return the deflection at interfaces that the modes leave out, over their displacement.
 
-    Modes that do not move the centre of mass count by their share ``√m`` of a unit of modal mass.
+    Against the rotor's mean motion. Stiff supports let the interfaces move less than the rotor
+    bends; then over its bending there. Loads elsewhere, and on the spin of the frame, do not count.
+    `size` [m] makes forces and moments comparable. None where it is not known what the modes leave
+    out.
     """
-    if len(record.time) < 2:
-        return 0.0
-    motion, largest = body.motion, 0.0
-    for index in instants(record, 50):
-        external = external_load(body, record, index)[1]
-        modal = np.linalg.norm(external[motion.modes]) * np.sqrt(motion.invariants.mass)
-        largest = max(largest, modal, np.linalg.norm(external[motion.translations]))
-    return float(largest)
+    rotor, motion = body.selection.source, body.motion
+    if rotor.with_attachments is None or len(record.time) < 2:
+        return None if rotor.with_attachments is None else 0.0
+    picked = instants(record, _MOST)
+    loads = interface_loads(body, record, picked, size)
+    if loads is None:
+        return None
+    columns = body.selection.T @ record.q[picked][:, body.layout.unknowns][:, motion.modes].T
+    moved, flexible = _motion(rotor)
+    flexibility = _flexibility(rotor.with_attachments) - _flexibility(rotor)
+    stretch = _stretch(rotor.with_attachments, body) - _stretch(rotor, body)
+    missing = flexibility @ loads.reshape(-1, len(picked))
+    missing += np.outer(stretch, record.speed[picked] ** 2)
+    bent = moved @ np.where(flexible[:, None], columns, 0.0)
+    frame = np.column_stack([_of_frame(body, record.q[index]) for index in picked])
+    whole = moved @ columns + np.tile(frame, (len(rotor.interfaces), 1))
+    return _largest(missing) / max(_largest(whole), _largest(bent), _STILL * size)
+
+
+def _of_frame(body: RotorBody, q: np.ndarray) -> np.ndarray:
+    """Return how far the frame's axis has moved, in its own axes, without rotation (6,)."""
+    motion, turn = body.motion, turned(body, q)
+    # the frame may stand in a centre of mass off the axis, and that circles about it
+    arm = body.selection.origin - body.axis.project(body.selection.origin)
+    shift = motion.free_directions @ q[body.layout.unknowns][motion.translations]
+    return np.concatenate([turn.T @ (shift + motion.orientation @ arm) - arm, np.zeros(3)])
+
+
+def _largest(motion: np.ndarray) -> float:
+    """Return the largest displacement of all interfaces together, of motions (6p, s) [m]."""
+    displacements = motion.reshape(-1, 6, motion.shape[1])[:, :3]
+    return float(np.sqrt((displacements**2).sum(axis=(0, 1))).max())
+
+
+def _motion(rotor: ReducedRotor) -> tuple[np.ndarray, np.ndarray]:
+    """Return the motion of all interfaces (6p, k), and which columns are flexible."""
+    flexible = np.arange(rotor.size) >= len(rotor.rigid_kinds)
+    return np.vstack([one.motion for one in rotor.interfaces.values()]), flexible
+
+
+def _flexibility(rotor: ReducedRotor) -> np.ndarray:
+    """Return ``Σ φ φᵀ/ω²`` of the flexible modes at the interfaces, (6p, 6p)."""
+    motion, flexible = _motion(rotor)
+    scaled = motion[:, flexible] / rotor.frequencies[flexible]
+    return scaled @ scaled.T
+
+
+def _stretch(rotor: ReducedRotor, body: RotorBody) -> np.ndarray:
+    """Return the static motion of the interfaces by the centrifugal load per ω², (6p,)."""
+    motion, flexible = _motion(rotor)
+    h = rotor.invariants.moved(body.selection.origin - rotor.center_of_mass).h
+    return motion[:, flexible] @ (h[flexible] / rotor.frequencies[flexible] ** 2)

@@ -17,7 +17,7 @@ the first. The voltage that limits the rate of the current is left out, too.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,18 +26,15 @@ from scipy.optimize import brentq
 from exudyn_rotor import checks
 
 _LEAST_GAP = 0.05  # of the gap in the centre: the magnets do not come closer
-_PLACES = np.linspace(
-    0.0, 1.0 - _LEAST_GAP, 200
-)  # over the gap, where an equilibrium is looked for
+# over the gap, where an equilibrium is looked for
+_PLACES = np.linspace(0.0, 1.0 - _LEAST_GAP, 200)
 
 
-class _Law:
-    """What the force of an actuator is asked by."""
+class Actuator(ABC):
+    """Force of a control axis by the current and the place."""
 
-    @property
-    def law(self) -> Callable[[float, float], float]:
-        """For scenes: the force [N] by current and place, unchecked."""
-        return self._law
+    force_current: float
+    negative_stiffness: float
 
     def force(self, current: float, place: float) -> float:
         """Return the force along the control axis [N] by current [A] and place [m].
@@ -46,12 +43,38 @@ class _Law:
         ------
         TypeError, ValueError
         """
-        _check(current, place)
-        return self._law(current, place)
+        checks.number(current, "current", "A")
+        return self.law(current, checks.number(place, "place", "m"))
+
+    @abstractmethod
+    def law(self, current: float, place: float) -> float:
+        """For scenes: return the force [N] by current and place, unchecked."""
+
+    @abstractmethod
+    def slopes(self, current: float, place: float) -> tuple[float, float]:
+        """Return the derivatives of :meth:`law` by current [N/A] and place [N/m], unchecked."""
+
+    @abstractmethod
+    def _current_for(self, force: float, place: float) -> float:
+        """Return the current [A] that makes a force [N] at a place [m]."""
+
+    @abstractmethod
+    def _place_under(self, load: float, gain: float, offset: float) -> float:
+        """Return where ``F(−gain (x + offset), x) + load = 0`` [m], next to the centre."""
+
+    def _check_hold(self, gain: float) -> None:
+        """Refuse a gain that lets the negative stiffness pull the rotor away."""
+        held, pulled = self.force_current * gain, self.negative_stiffness
+        if held <= pulled:
+            raise ValueError(
+                f"controller: unstable: K_i P of {held:.4g} N/m is not above the negative "
+                f"stiffness K_s of {pulled:.4g} N/m, so that there is no equilibrium; give a "
+                "larger proportional gain"
+            )
 
 
 @dataclass(frozen=True)
-class LinearActuator(_Law):
+class LinearActuator(Actuator):
     """Actuator ``F = K_i i + K_s x`` (1) of a control axis.
 
     Parameters
@@ -79,46 +102,24 @@ class LinearActuator(_Law):
         checks.number(self.force_current, "force_current", "N/A", above=0.0)
         checks.number(self.negative_stiffness, "negative_stiffness", "N/m", least=0.0)
 
-    def _law(self, current: float, place: float) -> float:
+    def law(self, current: float, place: float) -> float:
+        """Return the force (1) [N]."""
         return self.force_current * current + self.negative_stiffness * place
 
     def slopes(self, current: float, place: float) -> tuple[float, float]:
-        """Return the derivatives of the force by current [N/A] and place [N/m].
-
-        Raises
-        ------
-        TypeError, ValueError
-        """
-        _check(current, place)
+        """Return K_i and K_s."""
         return self.force_current, self.negative_stiffness
 
-    def current_for(self, force: float, place: float) -> float:
-        """Return the current [A] that makes a force [N] at a place [m].
-
-        Raises
-        ------
-        TypeError, ValueError
-        """
-        checks.number(force, "force", "N")
-        checks.number(place, "place", "m")
+    def _current_for(self, force: float, place: float) -> float:
         return (force - self.negative_stiffness * place) / self.force_current
 
-    def place_under(self, load: float, gain: float, offset: float) -> float:
-        """Return where ``F(−gain (x + offset), x) + load = 0`` [m].
-
-        Raises
-        ------
-        ValueError
-            Where the gain does not hold against the negative stiffness.
-        """
-        _check_balance(load, gain, offset)
-        check_hold(self, gain)
+    def _place_under(self, load: float, gain: float, offset: float) -> float:
         held = self.force_current * gain
         return (load - held * offset) / (held - self.negative_stiffness)
 
 
 @dataclass(frozen=True)
-class SaturatingActuator(_Law):
+class SaturatingActuator(Actuator):
     """Two opposite magnets (2) of a control axis.
 
     ``F = k (I₊²/(s_0 − x)² − I₋²/(s_0 + x)²)``, ``I± = i_0 ± i`` between 0 and the limit.
@@ -173,60 +174,34 @@ class SaturatingActuator(_Law):
         """K_s in the centre [N/m]."""
         return 4.0 * self.constant * self.bias_current**2 / self.gap**3
 
-    def _law(self, current: float, place: float) -> float:
+    def law(self, current: float, place: float) -> float:
+        """Return the force (2) [N]."""
         (pull, near), (push, far) = self._magnets(current, place)
         return self.constant * ((pull / near) ** 2 - (push / far) ** 2)
 
     def slopes(self, current: float, place: float) -> tuple[float, float]:
-        """Return the derivatives of the force by current [N/A] and place [N/m].
+        """Return the derivatives of (2) by current [N/A] and place [N/m].
 
         That by the current is zero of a magnet without current, or at its limit.
-
-        Raises
-        ------
-        TypeError, ValueError
         """
-        _check(current, place)
         magnets = self._magnets(current, place)
-        by_current = [
-            current / gap**2 for current, gap in magnets if 0.0 < current < self.current_limit
-        ]
-        by_place = [current**2 / gap**3 for current, gap in magnets]
+        by_current = [i / gap**2 for i, gap in magnets if 0.0 < i < self.current_limit]
+        by_place = [i**2 / gap**3 for i, gap in magnets]
         return 2.0 * self.constant * sum(by_current), 2.0 * self.constant * sum(by_place)
 
-    def current_for(self, force: float, place: float) -> float:
-        """Return the current [A] that makes a force [N] at a place [m].
-
-        Raises
-        ------
-        TypeError, ValueError
-            For bad input, and a force beyond the limit of the current.
-        """
-        checks.number(force, "force", "N")
-        checks.number(place, "place", "m")
+    def _current_for(self, force: float, place: float) -> float:
         most = max(self.bias_current, self.current_limit - self.bias_current)
-        least, largest = self._law(-most, place), self._law(most, place)
+        least, largest = self.law(-most, place), self.law(most, place)
         if not least < force < largest:
             raise ValueError(
                 f"load: the magnets pull between {least:.4g} N and {largest:.4g} N at "
                 f"{place:g} m from the centre, not {force:.4g} N; give a larger current_limit"
             )
-        return brentq(lambda i: self._law(i, place) - force, -most, most, xtol=1e-15, rtol=1e-14)
+        return brentq(lambda i: self.law(i, place) - force, -most, most, xtol=1e-15, rtol=1e-14)
 
-    def place_under(self, load: float, gain: float, offset: float) -> float:
-        """Return where ``F(−gain (x + offset), x) + load = 0`` [m], next to the centre.
-
-        Raises
-        ------
-        TypeError, ValueError
-            For bad input, where the gain does not hold against the negative stiffness, and for a
-            load beyond what the magnets carry.
-        """
-        _check_balance(load, gain, offset)
-        check_hold(self, gain)
-
+    def _place_under(self, load: float, gain: float, offset: float) -> float:
         def left(place: float) -> float:
-            return self._law(-gain * (place + offset), place) + load
+            return self.law(-gain * (place + offset), place) + load
 
         side = 1.0 if left(0.0) >= 0.0 else -1.0
         places = side * self.gap * _PLACES
@@ -247,29 +222,4 @@ class SaturatingActuator(_Law):
         return (
             (min(max(bias + current, 0.0), limit), max(self.gap - place, least)),
             (min(max(bias - current, 0.0), limit), max(self.gap + place, least)),
-        )
-
-
-Actuator = LinearActuator | SaturatingActuator
-
-
-def _check(current: float, place: float) -> None:
-    checks.number(current, "current", "A")
-    checks.number(place, "place", "m")
-
-
-def _check_balance(load: float, gain: float, offset: float) -> None:
-    checks.number(load, "load", "N")
-    checks.number(gain, "gain", "A/m")
-    checks.number(offset, "offset", "m")
-
-
-def check_hold(actuator: Actuator, gain: float) -> None:
-    """Refuse a gain that lets the negative stiffness pull the rotor away."""
-    held, pulled = actuator.force_current * gain, actuator.negative_stiffness
-    if held <= pulled:
-        raise ValueError(
-            f"controller: unstable: K_i P of {held:.4g} N/m is not above the negative "
-            f"stiffness K_s of {pulled:.4g} N/m, so that there is no equilibrium; give a larger "
-            "proportional gain"
         )

@@ -34,7 +34,6 @@ from math import pi
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks
@@ -190,51 +189,31 @@ class AnnularSeal(Bearing):
         """Return the support for linear analyses, with the inertia of the leakage."""
         return replace(super().linearised(), mass=self.added_mass)
 
-    def coefficients(
-        self, speed: float, load: ArrayLike | None = None
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Return stiffness [N/m] and damping [N s/m], each (2, 2).
+    def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return stiffness and damping of (2), without its inertia."""
+        return tuple(X.copy() for X in _of_leakage(self, float(speed)))
 
-        Parameters
-        ----------
-        speed : float
-            Spin speed [rad/s].
-        load : array_like, shape (2,), optional
-            Of no influence.
-
-        Raises
-        ------
-        TypeError, ValueError
-        """
-        checks.number(speed, "speed", "rad/s")
-        self.equilibrium(speed, load)
-        return tuple(X.copy() for X in _matrices(self, float(speed)))
-
-    def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
-        """Return the centre, about which the seal is linear, shape (2,) [m].
-
-        Raises
-        ------
-        TypeError, ValueError
-        """
-        checks.number(speed, "speed", "rad/s")
-        if load is not None:
-            checks.vector(load, "load", "N", size=2)
-        return np.zeros(2)
-
-    def _gap(self, direction: np.ndarray | None = None) -> float:
+    def clearance_along(self, direction: np.ndarray | None = None) -> float:
+        """Return the clearance [m], which is the same in all directions."""
         return self.clearance
 
-    def _law(
+    def law(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
-        K, D = _matrices(self, speed)
+        """Return the force on the journal but for its inertia [N]."""
+        K, D = _of_leakage(self, speed)
         fx, fy = -K @ (x, y) - D @ (vx, vy)
         return float(fx), float(fy)
 
+    def slopes(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
+        return _of_leakage(self, speed)
+
 
 @lru_cache(maxsize=64)
-def _matrices(seal: AnnularSeal, speed: float) -> tuple[np.ndarray, np.ndarray]:
+def _of_leakage(seal: AnnularSeal, speed: float) -> tuple[np.ndarray, np.ndarray]:
     """Return stiffness and damping; one speed is asked for at many instants."""
     k, d, m = seal.terms(speed)
     turn, half = np.array([[0.0, 1.0], [-1.0, 0.0]]), 0.5 * speed

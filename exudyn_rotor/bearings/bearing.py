@@ -19,11 +19,8 @@ from exudyn_rotor.bearings.support import COEFFICIENTS, NoCoefficientsError, Sup
 
 _REMEMBERED = 1000  # coefficients of a bearing
 _DIFFERENCE, _STILL = 1e-6, 1e-6  # of the largest motion, which is at least that in SI units
-_HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a bearing holds count
+HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a bearing holds count
 
-Law = Callable[[float, float, float, float, float, float], tuple[float, float]]
-ClearanceAlong = Callable[..., float]  # by a direction (2,), which may be left out
-LawAlong = Callable[[np.ndarray, np.ndarray, float], tuple[np.ndarray, np.ndarray]]
 LawWithTorque = Callable[[float, float, float, float, float, float], tuple[float, float, float]]
 
 
@@ -61,9 +58,26 @@ class LoadedBearing(ABC):
             load = checks.read_only(checks.vector(self.load, "load", "N", size=2))
             object.__setattr__(self, "load", load)
 
-    @abstractmethod
     def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
-        """Return where the journal rests under a static load [N], the bearing's own by default."""
+        """Return where the journal rests under a static load [m], shape (2,).
+
+        Parameters
+        ----------
+        speed : float
+            Spin speed [rad/s].
+        load : array_like, shape (2,), optional
+            On the journal along (n1, n2) [N]; that of the bearing by default.
+
+        Raises
+        ------
+        TypeError, ValueError, ArithmeticError
+            For bad input, a missing load, and where there is no equilibrium, as in a film at rest.
+        """
+        return self._rest(checks.number(speed, "speed", "rad/s"), self._static_load(load))
+
+    def _rest(self, speed: float, load: np.ndarray) -> np.ndarray:
+        """Return where the journal rests [m]: the centre, of what carries nothing."""
+        return np.zeros(2)
 
     def table(self, speeds: ArrayLike, frequencies: ArrayLike) -> Support:
         """Return a support with the bearing's coefficients over speed and frequency, as tables.
@@ -119,6 +133,10 @@ class LoadedBearing(ABC):
 class Bearing(LoadedBearing):
     """A bearing whose force on the journal follows from its place, velocity and spin.
 
+    Scenes ask for :attr:`law` and :meth:`slopes` in every step, harmonic balance for
+    :meth:`law_along`, all without checks. Where the spin is free, scenes ask for `law_with_torque`:
+    the force, and the torque on the journal about the axis [N m]; None of bearings without one.
+
     Attributes
     ----------
     interface, load
@@ -126,41 +144,74 @@ class Bearing(LoadedBearing):
     """
 
     uses_angle: ClassVar[bool] = False  # whether the law depends on the spin angle
+    law_with_torque: ClassVar[LawWithTorque | None] = None
 
-    _tried: ClassVar[np.ndarray] = _HIGHER
+    _tried: ClassVar[np.ndarray] = HIGHER
     _linear: Equilibria[tuple[np.ndarray, ...]] = field(
         default_factory=lambda: Equilibria(_REMEMBERED), init=False, repr=False
     )
 
-    @property
-    def law(self) -> Law:
-        """For scenes: the force on the journal [N] by x, y, ẋ, ẏ, θ and Ω, anywhere, unchecked."""
-        return self._law
+    @abstractmethod
+    def law(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, float]:
+        """Return the force on the journal [N] by x, y, ẋ, ẏ, θ and Ω, anywhere, unchecked."""
 
-    @property
-    def law_with_torque(self) -> LawWithTorque | None:
-        """As :attr:`law`, with the torque on the journal about the axis [N m]; None without one.
+    def slopes(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
+        found = self.law_along(np.array([[x, y, vx, vy]]), np.array([angle]), speed)[1][0]
+        return found[:, :2], found[:, 2:]
 
-        Scenes need it where the spin is free.
-        """
-        return None
-
-    @property
-    def law_along(self) -> LawAlong:
-        """For harmonic balance: forces and their derivatives by motions (t, 4), unchecked.
+    def law_along(
+        self, motion: np.ndarray, angles: np.ndarray, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return forces and their derivatives by motions (t, 4); by differences in this class.
 
         Of displacements and velocities [m], [m/s], spin angles (t,) and the spin speed: forces
         (t, 2) [N], and minus their derivatives by the motion, (t, 2, 4).
         """
-        return self._along
+        sizes = np.abs(motion).max(axis=0)
+        steps = _DIFFERENCE * np.repeat([max(*sizes[:2], _STILL), max(*sizes[2:], _STILL)], 2)
+        force, slopes = np.empty((len(motion), 2)), np.empty((len(motion), 2, 4))
+        for row, (state, angle) in enumerate(zip(motion, angles.tolist(), strict=True)):
+            force[row] = self.law(*state.tolist(), angle, speed)
+            slopes[row] = differenced(self.law, state, steps, angle, speed)
+        return force, slopes
 
-    @property
-    def clearance_along(self) -> ClearanceAlong:
-        """For scenes: how far that way, of length 1 (2,), or at least, the journal may go [m].
+    def clearance_along(self, direction: np.ndarray | None = None) -> float:
+        """Return how far that way, of length 1 (2,), or at least, the journal may go [m].
 
-        Unchecked; infinity for a bearing without a clearance.
+        Infinity for a bearing without a clearance.
         """
-        return self._gap
+        return inf
+
+    def force(self, displacement: ArrayLike, velocity: ArrayLike, speed: float = 0.0) -> np.ndarray:
+        """Return the force on the journal [N], shape (2,).
+
+        Parameters
+        ----------
+        displacement, velocity : array_like, shape (2,)
+            Of the journal's centre from that of the bearing along (n1, n2) [m], [m/s].
+        speed : float, optional
+            Spin speed [rad/s].
+
+        Raises
+        ------
+        TypeError, ValueError
+            For bad input, and a displacement as large as the clearance.
+        """
+        place = checks.vector(displacement, "displacement", "m", size=2)
+        rate = checks.vector(velocity, "velocity", "m/s", size=2)
+        checks.number(speed, "speed", "rad/s")
+        distance = hypot(*place)
+        if distance and distance >= (gap := self.clearance_along(place / distance)):
+            raise ValueError(
+                f"displacement: needs less than the clearance of {gap:g} m, got {distance:g} m: "
+                "the journal would touch"
+            )
+        return np.array(self.law(*place.tolist(), *rate.tolist(), 0.0, speed))
 
     def film_use(self, displacement: ArrayLike) -> float | None:
         """Return a displacement over the way to the end of the film there; None without a film.
@@ -181,40 +232,18 @@ class Bearing(LoadedBearing):
         """Return how far that way, of length 1 (2,), the law is that of a film [m]."""
         return inf
 
-    def _gap(self, direction: np.ndarray | None = None) -> float:
-        """Return how far that way, of length 1 (2,), or at least, the journal may go [m]."""
-        return inf
-
-    @abstractmethod
-    def _law(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[float, float]:
-        """Return the force on the journal [N]."""
-
-    def _along(
-        self, motion: np.ndarray, angles: np.ndarray, speed: float
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """See :attr:`law_along`; by differences, unless a law knows better."""
-        law, sizes = self.law, np.abs(motion).max(axis=0)
-        steps = _DIFFERENCE * np.repeat([max(*sizes[:2], _STILL), max(*sizes[2:], _STILL)], 2)
-        force, slopes = np.empty((len(motion), 2)), np.empty((len(motion), 2, 4))
-        for row, (state, angle) in enumerate(zip(motion, angles.tolist(), strict=True)):
-            force[row] = law(*state.tolist(), angle, speed)
-            slopes[row] = differenced(law, state, steps, angle, speed)
-        return force, slopes
-
-    def slopes(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """For scenes: less the derivatives (2, 2) of :attr:`law` by place and by velocity."""
-        found = self._along(np.array([[x, y, vx, vy]]), np.array([angle]), speed)[1][0]
-        return found[:, :2], found[:, 2:]
-
-    @abstractmethod
     def coefficients(
         self, speed: float, load: ArrayLike | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return stiffness [N/m] and damping [N s/m], each (2, 2), about the equilibrium."""
+        """Return stiffness [N/m] and damping [N s/m] about the equilibrium, each (2, 2).
+
+        Parameters and errors are those of :meth:`equilibrium`.
+        """
+        return self._matrices(checks.number(speed, "speed", "rad/s"), self._static_load(load))
+
+    @abstractmethod
+    def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return stiffness and damping about the equilibrium, which the caller may change."""
 
     def linearised(self) -> Support:
         """Return the support for linear analyses: the coefficients under the load at every speed.
@@ -264,22 +293,10 @@ class Linearised:
         try:
             self._value(speed)
         except (ValueError, ArithmeticError) as error:
-            raise NoEquilibriumError(self._refusal(speed, str(error))) from error
-
-    def _refusal(self, speed: float, reason: str) -> str:
-        """Return why there is no equilibrium, and the lowest higher speed tried that has one."""
-        name = f"bearing at {self.bearing.interface!r}"
-        if speed == 0.0:
-            reason = f"{name}: at 0 rad/s its film carries nothing"
-        elif name not in reason:
-            reason = f"{name}: {reason}"
-        for tried in sorted(self.bearing._tried[self.bearing._tried > abs(speed)]):
-            try:
-                self._value(tried)
-            except (ValueError, ArithmeticError):
-                continue
-            return f"{reason}; of the higher speeds tried it carries from {tried:g} rad/s on"
-        return reason
+            name = f"bearing at {self.bearing.interface!r}"
+            reason = "at 0 rad/s its film carries nothing" if speed == 0.0 else str(error)
+            reason = reason if name in reason else f"{name}: {reason}"
+            raise NoEquilibriumError(reason) from error
 
 
 def bearing_of(support: object) -> Bearing | None:

@@ -20,10 +20,11 @@ from math import hypot, tanh
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing, LawWithTorque
+
+Numbers = float | np.ndarray
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -87,24 +88,11 @@ class ClearanceStop(Bearing):
         checks.keep_numbers(self, positive, above=0.0)
         checks.keep_numbers(self, {"damping": "N s/m", "friction": ""}, least=0.0)
 
-    def force(self, displacement: ArrayLike, velocity: ArrayLike, speed: float) -> np.ndarray:
-        """Return the force on the journal (1), (2) [N], shape (2,).
-
-        Parameters
-        ----------
-        displacement, velocity : array_like, shape (2,)
-            Of the journal's centre from that of the stop [m], [m/s].
-        speed : float
-            Spin speed [rad/s].
-
-        Raises
-        ------
-        TypeError, ValueError
-            For bad input.
-        """
-        place = checks.vector(displacement, "displacement", "m", size=2)
-        rate = checks.vector(velocity, "velocity", "m/s", size=2)
-        return np.array(self._law(*place, *rate, 0.0, checks.number(speed, "speed", "rad/s")))
+    def law(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, float]:
+        """Return the force on the journal (1), (2) [N]."""
+        return self._law_with_torque(x, y, vx, vy, angle, speed)[:2]
 
     @property
     def law_with_torque(self) -> LawWithTorque | None:
@@ -113,11 +101,6 @@ class ClearanceStop(Bearing):
         Scenes need it where the spin is free.
         """
         return self._law_with_torque if self.friction else None
-
-    def _law(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[float, float]:
-        return self._law_with_torque(x, y, vx, vy, angle, speed)[:2]
 
     def _law_with_torque(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
@@ -133,60 +116,58 @@ class ClearanceStop(Bearing):
         drag = self.friction * normal * tanh(sliding / self.slip_speed)
         return drag * ny - normal * nx, -drag * nx - normal * ny, -self.radius * drag
 
-    def _along(
+    def slopes(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
+        if hypot(x, y) <= self.clearance:
+            return np.zeros((2, 2)), np.zeros((2, 2))
+        found = np.reshape(self._contact(x, y, vx, vy, speed)[2:], (2, 4))
+        return found[:, :2], found[:, 2:]
+
+    def law_along(
         self, motion: np.ndarray, angles: np.ndarray, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:
-        forces, slopes = np.zeros((len(motion), 2)), np.zeros((len(motion), 2, 4))
-        e = np.hypot(*motion[:, :2].T)
-        touching = np.flatnonzero(e > self.clearance)
-        place, rate, e = motion[touching, :2], motion[touching, 2:], e[touching, None]
-        n = place / e
-        t = n[:, ::-1] * [-1.0, 1.0]
-        approach, along = ((rate * each).sum(axis=1, keepdims=True) for each in (n, t))
+        """Return forces (t, 2) and less their derivatives (t, 2, 4); see :class:`Bearing`."""
+        touching = np.hypot(*motion[:, :2].T) > self.clearance
+        found = np.zeros((len(motion), 10))
+        found[touching] = np.stack(self._contact(*motion[touching].T, speed), axis=-1)
+        return found[:, :2], found[:, 2:].reshape(-1, 2, 4)
+
+    def _contact(
+        self, x: Numbers, y: Numbers, vx: Numbers, vy: Numbers, speed: float
+    ) -> list[Numbers]:
+        """Return force and tangent of a stop that is touched, its rows by x, y, ẋ and ẏ.
+
+        With the directions n outwards and t = e × n, ``F = −N n − T t``.
+        """
+        e = np.hypot(x, y)
+        nx, ny = x / e, y / e
+        approach, along = vx * nx + vy * ny, vy * nx - vx * ny
         depth, harder = e - self.clearance, self.damping / self.clearance
         rigid = self.stiffness + harder * approach
         N = np.maximum(depth * rigid, 0.0)
         pushes = N > 0.0
-        N_q = pushes * (rigid * n + depth * harder * along / e * t)
-        N_v = pushes * depth * harder * n
+        # derivatives of N and T by motions along n and t, and by their rates
+        N_n, N_t, N_a = pushes * rigid, pushes * depth * harder * along / e, pushes * depth * harder
         share = np.tanh((self.radius * speed + along) / self.slip_speed)
-        steep = (1.0 - share**2) / self.slip_speed
-        T = self.friction * share * N
-        T_q = self.friction * (share * N_q - N * steep * approach / e * t)
-        T_v = self.friction * (share * N_v + N * steep * t)
-        forces[touching] = -N * n - T * t
-        across = (N * t - T * n)[:, :, None] * (t / e)[:, None]
-        n, t = n[:, :, None], t[:, :, None]
-        slopes[touching, :, :2] = n * N_q[:, None] + t * T_q[:, None] + across
-        slopes[touching, :, 2:] = n * N_v[:, None] + t * T_v[:, None]
-        return forces, slopes
+        steep = N * (1.0 - share**2) / self.slip_speed
+        T, T_n, T_a = (self.friction * share * X for X in (N, N_n, N_a))
+        T_t = self.friction * (share * N_t - steep * approach / e)
+        T_b = self.friction * steep
+        by_place = _in_axes(nx, ny, N_n, N_t - T / e, T_n, T_t + N / e)
+        by_rate = _in_axes(nx, ny, N_a, 0.0, T_a, T_b)
+        force = [T * ny - N * nx, -T * nx - N * ny]
+        return [*force, *by_place[:2], *by_rate[:2], *by_place[2:], *by_rate[2:]]
 
-    def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
-        """Return the centre, shape (2,): an open stop carries nothing.
-
-        Parameters
-        ----------
-        speed : float
-            Spin speed [rad/s], which plays no part.
-        load : array_like, shape (2,), optional
-            Of no influence.
-
-        Raises
-        ------
-        TypeError, ValueError
-            For bad input.
-        """
-        checks.number(speed, "speed", "rad/s")
-        if load is not None:
-            checks.vector(load, "load", "N", size=2)
-        return np.zeros(2)
-
-    def coefficients(
-        self, speed: float, load: ArrayLike | None = None
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Return stiffness and damping of the open stop: zeros, each (2, 2).
-
-        Parameters and errors are those of :meth:`equilibrium`.
-        """
-        self.equilibrium(speed, load)
+    def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return zeros, as of an open stop."""
         return np.zeros((2, 2)), np.zeros((2, 2))
+
+
+def _in_axes(
+    nx: Numbers, ny: Numbers, a: Numbers, b: Numbers, c: Numbers, d: Numbers
+) -> list[Numbers]:
+    """Return the entries of a matrix in (n1, n2) whose entries along n and t are a, b, c, d."""
+    p, q, r, s = nx * a - ny * c, nx * b - ny * d, ny * a + nx * c, ny * b + nx * d
+    return [nx * p - ny * q, ny * p + nx * q, nx * r - ny * s, ny * r + nx * s]

@@ -16,12 +16,10 @@ from scipy.interpolate import PchipInterpolator
 
 from exudyn_rotor import checks
 
-_KINDS = {"stiffness": "k", "damping": "c", "mass": "m"}
-_AXES = {
-    "speed": ("speed", "speeds", "rpm", "w", "omega"),
-    "frequency": ("frequency", "frequencies", "freq", "whirl"),
-}
-_TO_RADIANS = {"rad/s": 1.0, "rpm": np.pi / 30.0, "hz": 2.0 * np.pi, "": 1.0}
+_KINDS = {"k": "stiffness", "c": "damping", "d": "damping", "m": "mass"}
+_AXES = dict.fromkeys(("speed", "speeds", "rpm", "w", "omega"), "speeds")
+_AXES |= dict.fromkeys(("frequency", "frequencies", "freq", "whirl"), "frequencies")
+_TO_RADIANS = {"rad/s": 1.0, "rpm": np.pi / 30.0, "hz": 2.0 * np.pi}
 _LETTERS = "xyzabc"  # displacement along n1, n2, e, then rotation about them
 
 
@@ -134,42 +132,45 @@ def read_columns(source: str | Path | Any) -> dict[str, np.ndarray | None]:
 
     Raises
     ------
-    ValueError
+    TypeError, ValueError
         For columns that are missing or unknown, values that are no numbers, and rows that do not
         make a full grid of speeds and frequencies.
     """
-    columns = _columns(source)
     axes: dict[str, np.ndarray] = {}
-    entries: dict[str, dict[tuple[int, int], np.ndarray]] = {kind: {} for kind in _KINDS}
-    for header, values in columns.items():
+    entries: dict[tuple[str, int, int], np.ndarray] = {}
+    for header, values in _columns(source).items():
         name, unit = _name_and_unit(header)
-        axis = next((axis for axis, names in _AXES.items() if name in names), None)
-        if axis is not None:
+        entry = re.fullmatch(f"([{''.join(_KINDS)}])([{_LETTERS}])([{_LETTERS}])", name)
+        if name in _AXES:
             unit = unit or ("rpm" if name == "rpm" else "rad/s")
             if unit not in _TO_RADIANS:
                 raise ValueError(f"source: {header!r}: needs rad/s, rpm or Hz, got {unit!r}")
-            axes[axis] = values * _TO_RADIANS[unit]
-            continue
-        entry = _entry(name)
-        if entry is None:
+            axes[_AXES[name]] = values * _TO_RADIANS[unit]
+        elif entry:
+            kind, row, column = entry.groups()
+            entries[_KINDS[kind], _LETTERS.index(row), _LETTERS.index(column)] = values
+        else:
             raise ValueError(
                 f"source: {header!r} is neither speed, frequency, nor a coefficient as kxx, cxy or "
                 "myy; rename it or leave it out"
             )
-        entries[entry[0]][entry[1]] = values
     if not axes:
         raise ValueError("source: needs a column 'speed' or 'frequency'")
-    grid, places = _grid(axes)
-    size = 1 + max((max(place) for kind in entries.values() for place in kind), default=0)
+    names = [name for name in ("speeds", "frequencies") if name in axes]
+    points, places = zip(*(np.unique(axes[n], return_inverse=True) for n in names), strict=True)
+    lengths = tuple(map(len, points))
+    count = int(np.prod(lengths))
+    if len({*zip(*places, strict=True)}) != count or len(places[0]) != count:
+        raise ValueError(
+            f"source: needs one row for each pair of its {' and '.join(names)}, {count} in all, "
+            f"got {len(places[0])} rows"
+        )
+    size = 1 + max((max(place) for _, *place in entries), default=0)
     size = 2 if size <= 2 else 3 if size == 3 else 6
-    found: dict[str, np.ndarray | None] = {"speeds": None, "frequencies": None}
-    for axis, points in grid.items():
-        found["speeds" if axis == "speed" else "frequencies"] = points
-    shape = *(len(points) for points in grid.values()), size, size
-    for kind, given in entries.items():
-        found[kind] = np.zeros(shape) if given else None
-        for place, values in given.items():
-            found[kind][(*places, *place)] = values
+    found: dict[str, np.ndarray | None] = dict.fromkeys(("speeds", "frequencies"))
+    found |= dict(zip(names, points, strict=True))
+    for (kind, *place), values in entries.items():
+        found.setdefault(kind, np.zeros((*lengths, size, size)))[(*places, *place)] = values
     return found
 
 
@@ -178,11 +179,7 @@ def _columns(source: str | Path | Any) -> dict[str, np.ndarray]:
     if isinstance(source, str | os.PathLike):
         lines = Path(source).read_text(encoding="utf-8-sig").splitlines()
         lines = [line.strip() for line in lines if line.strip() and not line.startswith("#")]
-        if len(lines) < 2:
-            raise ValueError(
-                f"source: {str(source)!r} needs a line of headers, and lines of values"
-            )
-        split = next((c for c in ",;\t" if c in lines[0]), None)
+        split = next((c for c in ",;\t" if lines and c in lines[0]), None)
         rows = [[each.strip() for each in line.split(split)] for line in lines]
         uneven = [i for i, row in enumerate(rows) if len(row) != len(rows[0])]
         if uneven:
@@ -190,7 +187,7 @@ def _columns(source: str | Path | Any) -> dict[str, np.ndarray]:
                 f"source: line {uneven[0] + 1} of {str(source)!r} needs {len(rows[0])} values, "
                 f"got {len(rows[uneven[0]])}"
             )
-        source = dict(zip(rows[0], zip(*rows[1:], strict=True), strict=True))
+        source = dict(zip(rows[0], zip(*rows[1:], strict=True), strict=False)) if rows else {}
     elif not hasattr(source, "items"):
         raise TypeError(
             f"source: needs a path, a DataFrame or a mapping, got {checks.shown(source)}"
@@ -208,29 +205,5 @@ def _columns(source: str | Path | Any) -> dict[str, np.ndarray]:
 
 def _name_and_unit(header: str) -> tuple[str, str]:
     """Return a header without its unit in brackets, both in lower case."""
-    match = re.fullmatch(r"\s*([^\[(]*?)\s*(?:[\[(](.*)[\])])?\s*", header)
-    name, unit = match.groups() if match else (header, None)
-    return re.sub(r"[\s_]", "", name).lower(), (unit or "").strip().lower()
-
-
-def _entry(name: str) -> tuple[str, tuple[int, int]] | None:
-    """Return the kind and the place of an entry named as kxy; None for another name."""
-    letters = {letter: kind for kind, letter in _KINDS.items()} | {"d": "damping"}
-    if len(name) != 3 or name[0] not in letters or any(c not in _LETTERS for c in name[1:]):
-        return None
-    return letters[name[0]], (_LETTERS.index(name[1]), _LETTERS.index(name[2]))
-
-
-def _grid(axes: dict[str, np.ndarray]) -> tuple[dict[str, np.ndarray], tuple[np.ndarray, ...]]:
-    """Return the points of each axis, and where every row of a table stands among them."""
-    axes = {name: axes[name] for name in _AXES if name in axes}
-    found = [np.unique(values, return_inverse=True) for values in axes.values()]
-    points = dict(zip(axes, (each[0] for each in found), strict=True))
-    places = tuple(each[1] for each in found)
-    count = int(np.prod([len(each) for each in points.values()]))
-    if len(set(zip(*places, strict=True))) != count or len(places[0]) != count:
-        shown = " and ".join(f"{len(each)} of {name}" for name, each in points.items())
-        raise ValueError(
-            f"source: needs one row for each of {shown}, {count} in all, got {len(places[0])} rows"
-        )
-    return points, places
+    name, _, unit = header.replace("[", "(").partition("(")
+    return re.sub(r"[\s_]", "", name).lower(), unit.strip(" )]").lower()

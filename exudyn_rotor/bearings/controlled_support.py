@@ -1,8 +1,7 @@
-"""Linear supports with coordinates of their own: active bearings, films that remember, and pads."""
+"""Linear supports with coordinates of their own: active bearings and pads."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,24 +9,8 @@ import numpy as np
 from exudyn_rotor.bearings.support import Coefficient, Support
 
 
-class InPairs:
-    """Own coordinates that come in pairs, along the two directions across the axis."""
-
-    inertia: np.ndarray
-
-    @property
-    def size(self) -> int:
-        """Number of own coordinates."""
-        return 2 * len(self.inertia)
-
-    @property
-    def masses(self) -> np.ndarray:
-        """Inertia of every own coordinate, shape (2b,) [kg]."""
-        return np.repeat(self.inertia, 2)
-
-
 @dataclass(frozen=True, eq=False)
-class ControlledSupport(InPairs):
+class ControlledSupport:
     """Linear equations between a rotor and a controller, ``M p̈ + D ṗ + K p = 0``.
 
     The ports p are pairs along (n1, n2), which stand still: the displacement where the bearing
@@ -54,45 +37,14 @@ class ControlledSupport(InPairs):
     static_stiffness: np.ndarray
 
     @property
-    def direct_stiffness(self) -> np.ndarray:
-        """Stiffness that acts without the controller, shape (2, 2) [N/m]."""
-        return self.stiffness[:2, :2]
-
-
-@dataclass(frozen=True, eq=False)
-class FilmSupport(InPairs):
-    """A film whose voids remember, with what they remember as own coordinates.
-
-    The ports are those of :class:`ControlledSupport` without that of sensors: the journal's
-    displacement, then pairs of own coordinates, which stand still.
-
-    Attributes
-    ----------
-    interface : str
-        The journal.
-    inertia : ndarray, shape (b,)
-        Of each pair of own coordinates [kg].
-    matrices : callable
-        Damping and stiffness (2 + 2b, 2 + 2b) by the spin speed [rad/s]; a ValueError where the
-        journal has no equilibrium.
-    static_stiffness : Coefficient
-        Of unbalance, with which critical speeds are found [N/m].
-    """
-
-    interface: str
-    inertia: np.ndarray
-    matrices: Callable[[float], tuple[np.ndarray, np.ndarray]]
-    static_stiffness: Coefficient
+    def size(self) -> int:
+        """Number of own coordinates."""
+        return 2 * len(self.inertia)
 
     @property
-    def sensor(self) -> str:
-        """The journal's interface."""
-        return self.interface
-
-    @property
-    def direct_stiffness(self) -> float:
-        """None: all of it depends on the speed."""
-        return 0.0
+    def masses(self) -> np.ndarray:
+        """Inertia of every own coordinate, shape (2b,) [kg]."""
+        return np.repeat(self.inertia, 2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,19 +75,9 @@ class PadSupport:
     static_stiffness: Coefficient
 
     @property
-    def sensor(self) -> str:
-        """The journal's interface."""
-        return self.interface
-
-    @property
     def size(self) -> int:
         """Number of own coordinates."""
         return len(self.masses)
 
-    @property
-    def direct_stiffness(self) -> float:
-        """None: all of it acts on what the pads see."""
-        return 0.0
 
-
-Controlled = ControlledSupport | FilmSupport | PadSupport  # and SeriesSupport, of both kinds
+Controlled = ControlledSupport | PadSupport  # and SeriesSupport

@@ -20,13 +20,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.actuator import (
-    Actuator,
-    LinearActuator,
-    SaturatingActuator,
-    check_hold,
-)
-from exudyn_rotor.bearings.bearing import ClearanceAlong, LoadedBearing
+from exudyn_rotor.bearings.actuator import Actuator, SaturatingActuator
+from exudyn_rotor.bearings.bearing import LoadedBearing
 from exudyn_rotor.bearings.controlled_support import ControlledSupport
 from exudyn_rotor.bearings.pid_controller import PIDController
 
@@ -87,7 +82,7 @@ class MagneticBearing(LoadedBearing):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        checks.instance(self.actuator, "actuator", (LinearActuator, SaturatingActuator))
+        checks.instance(self.actuator, "actuator", Actuator, "LinearActuator is one")
         checks.instance(self.controller, "controller", PIDController)
         checks.keep_numbers(self, {"angle": "rad"})
         if self.sensor is not None:
@@ -116,45 +111,25 @@ class MagneticBearing(LoadedBearing):
         c, s = cos(self.angle), sin(self.angle)
         return np.array([[c, s], [-s, c]])
 
-    @property
-    def clearance_along(self) -> ClearanceAlong:
-        """For scenes: how far the journal may go in any direction [m], the air gap.
+    def clearance_along(self, direction: np.ndarray | None = None) -> float:
+        """Return how far the journal may go in any direction [m]: the air gap, or infinity."""
+        return self.actuator.gap if isinstance(self.actuator, SaturatingActuator) else inf
 
-        Infinity for linear actuators, which have none. As :attr:`Bearing.clearance_along`.
+    def _rest(self, speed: float, load: np.ndarray) -> np.ndarray:
+        """Return where the journal rests [m], as if the sensors were where the magnets are.
+
+        An integral brings it to where the sensors show zero.
         """
-        gap = self.actuator.gap if isinstance(self.actuator, SaturatingActuator) else inf
-        return lambda direction=None: gap
-
-    def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
-        """Return where the journal rests under a static load [m], shape (2,).
-
-        As if the sensors were where the magnets are. An integral brings the journal to where the
-        sensors show zero.
-
-        Parameters
-        ----------
-        speed : float
-            Spin speed [rad/s], which plays no part.
-        load : array_like, shape (2,), optional
-            On the journal [N]; that of the bearing, or none, by default.
-
-        Raises
-        ------
-        TypeError, ValueError
-            For bad input, a controller that does not hold against the negative stiffness, and a
-            load that the magnets do not carry.
-        """
-        checks.number(speed, "speed", "rad/s")
         return self.control_axes.T @ [place for place, _ in self._states(load)]
 
-    def _states(self, load: ArrayLike | None) -> list[tuple[float, float]]:
+    def _states(self, load: np.ndarray) -> list[tuple[float, float]]:
         """Return place [m] and current [A] of each control axis in the equilibrium."""
         axes, gain, actuator = self.control_axes, self.controller.proportional, self.actuator
-        check_hold(actuator, gain)
-        pairs = zip(axes @ self._static_load(load), axes @ self.sensor_offset, strict=True)
+        actuator._check_hold(gain)
+        pairs = zip(axes @ load, axes @ self.sensor_offset, strict=True)
         if self.controller.integral:
-            return [(-offset, actuator.current_for(-pull, -offset)) for pull, offset in pairs]
-        pairs = [(actuator.place_under(pull, gain, offset), offset) for pull, offset in pairs]
+            return [(-offset, actuator._current_for(-pull, -offset)) for pull, offset in pairs]
+        pairs = [(actuator._place_under(pull, gain, offset), offset) for pull, offset in pairs]
         return [(place, -gain * (place + offset)) for place, offset in pairs]
 
     def linearised(self) -> ControlledSupport:
@@ -168,8 +143,9 @@ class MagneticBearing(LoadedBearing):
             As :meth:`equilibrium`.
         """
         states = [(0.0, 0.0)] * 2
-        if np.any(self._static_load(None)) or np.any(self.sensor_offset):
-            states = self._states(None)
+        load = self._static_load(None)
+        if np.any(load) or np.any(self.sensor_offset):
+            states = self._states(load)
         slopes = np.array([self.actuator.slopes(i, x) for x, i in states])
         damping, stiffness = self.coupling(slopes)
         own, both = self.controller.realisation(), np.eye(2)

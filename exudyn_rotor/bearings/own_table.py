@@ -18,11 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.controlled_support import (
-    Controlled,
-    ControlledSupport,
-    PadSupport,
-)
+from exudyn_rotor.bearings.controlled_support import Controlled, PadSupport
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.calls import user_level
 
@@ -82,15 +78,10 @@ def _at_speed(
             held = left @ t - frequencies**2 * mass
             Z += each - left[:, :, None] * right[:, None] / held[:, None, None]
     else:
-        if isinstance(linear, ControlledSupport):
-            D, K = linear.damping, linear.stiffness
-            seen = np.kron([[1.0], [1.0]], np.eye(2))  # sensors move as the magnets do
-        else:
-            D, K = linear.matrices(speed)
-            seen = np.eye(2)
-        first = len(seen)
+        D, K = linear.damping, linear.stiffness
+        seen = np.kron([[1.0], [1.0]], np.eye(2))  # sensors move as the magnets do
         whole = K + 1j * nu * D
-        own = whole[:, first:, first:] - nu**2 * np.diag(linear.masses)
-        inner = np.linalg.solve(own, whole[:, first:, :first] @ seen)
-        Z = seen.T @ (whole[:, :first, :first] @ seen - whole[:, :first, first:] @ inner)
+        own = whole[:, 4:, 4:] - nu**2 * np.diag(linear.masses)
+        inner = np.linalg.solve(own, whole[:, 4:, :4] @ seen)
+        Z = seen.T @ (whole[:, :4, :4] @ seen - whole[:, :4, 4:] @ inner)
     return Z.real, Z.imag / nu, none

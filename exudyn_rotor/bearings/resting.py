@@ -17,14 +17,13 @@ from typing import ClassVar
 import numpy as np
 
 from exudyn_rotor.bearings.bearing import Bearing
-from exudyn_rotor.bearings.journal_bearing import JournalBearing, tangent_of
+from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.magnetic import MagneticBearing
-from exudyn_rotor.bearings.rolling import RollingBearing, contacts
+from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.short_journal import ShortJournalBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 
 _FILMS = JournalBearing | ShortJournalBearing | TiltingPadBearing
-_STEP = 1e-9  # of differences of a law [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,14 +103,9 @@ def resting(
         compliance = np.linalg.inv(_film_stiffness(bearing, speed, -force))
         rest = bearing.equilibrium(speed, -force)
         return Resting(np.eye(2), np.zeros((2, 2)), compliance, rest + compliance @ force)
-    law, still = bearing.law, (0.0, 0.0, 0.0, speed)
-    at = np.array(law(*place, *still)[:2])
-    if isinstance(bearing, RollingBearing):
-        tangent = contacts(bearing, place, 0.0)[2]
-    else:
-        steps = _STEP * np.eye(2)
-        ends = [np.array(law(*(place + step), *still)[:2]) for step in (*steps, *-steps)]
-        tangent = np.column_stack([ends[2] - ends[0], ends[3] - ends[1]]) / (2.0 * _STEP)
+    still = 0.0, 0.0, 0.0, speed
+    at = np.array(bearing.law(*place, *still))
+    tangent = bearing.slopes(*place, *still)[0]
     return Resting(tangent, np.zeros((2, 2)), np.eye(2), at + tangent @ place)
 
 
@@ -119,8 +113,6 @@ def _film_stiffness(bearing: Bearing, speed: float, load: np.ndarray) -> np.ndar
     """Return the stiffness (2, 2) of a film against slow changes of its load [N/m]."""
     if isinstance(bearing, TiltingPadBearing):
         return bearing._state(speed, load).impedance(0.0).real
-    if isinstance(bearing, JournalBearing):
-        return tangent_of(bearing._state(speed, load))[0]
     return bearing.coefficients(speed, load)[0]
 
 

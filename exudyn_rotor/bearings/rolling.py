@@ -32,7 +32,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, LawWithTorque
+from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.calls import kept
 from exudyn_rotor.solvers.line_search import step_share
 
@@ -158,28 +158,26 @@ class RollingBearing(Bearing):
         depth = np.maximum(x * c + y * s - self.clearance, 0.0)
         return self.stiffness * depth ** _EXPONENTS[self.elements]
 
-    def _law(
+    def law(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
-        return self._law_with_torque(x, y, vx, vy, angle, speed)[:2]
+        """Return the force on the inner ring [N]."""
+        return self.law_with_torque(x, y, vx, vy, angle, speed)[:2]
 
-    @property
-    def law_with_torque(self) -> LawWithTorque:
-        """As :attr:`law`, with the torque (3) on the inner ring [N m]."""
-        return self._law_with_torque
-
-    def _law_with_torque(
+    def law_with_torque(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float, float]:
+        """As :meth:`law`, with the torque (3) on the inner ring [N m]."""
         angles = self._angles(angle)
         c, s = np.cos(angles), np.sin(angles)
         loads, d = self._loads(x, y, c, s), self.damping
         px, py = float(loads @ c), float(loads @ s)
         return -px - d * vx, -py - d * vy, self.cage_ratio * (x * py - y * px)
 
-    def _along(
+    def law_along(
         self, motion: np.ndarray, angles: np.ndarray, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:
+        """Return forces (t, 2) and less their derivatives (t, 2, 4); see :class:`Bearing`."""
         _, force, stiffness = contacts(self, motion[:, :2], angles)
         damping = np.broadcast_to(self.damping * np.eye(2), stiffness.shape)
         return force - self.damping * motion[:, 2:], np.concatenate([stiffness, damping], axis=-1)
@@ -219,10 +217,10 @@ class RollingBearing(Bearing):
         soft = _SOFT * weight / depth * np.eye(2)  # against a single element's free direction
 
         def lacking(place: np.ndarray) -> np.ndarray:
-            return load + np.array(self._law(*place, 0.0, 0.0, angle, 0.0))
+            return load + np.array(self.law(*place, 0.0, 0.0, angle, 0.0))
 
         for _ in range(_MOST_ITERATIONS):
-            tangent = self._tangent(place, angle)
+            tangent = contacts(self, place, angle)[2]
             step = np.linalg.solve(tangent + soft, lacking(place))
 
             def slope(share: float, at: np.ndarray = place, step: np.ndarray = step) -> float:
@@ -240,19 +238,12 @@ class RollingBearing(Bearing):
             )
         return place
 
-    def _tangent(self, place: np.ndarray, angle: float) -> np.ndarray:
-        return contacts(self, place, angle)[2]
+    def _rest(self, speed: float, load: np.ndarray) -> np.ndarray:
+        return self.equilibrium(speed, load)
 
-    def coefficients(
-        self, speed: float, load: ArrayLike | None = None
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Return mean stiffness [N/m] over an element's passage, and damping [N s/m], (2, 2).
-
-        Parameters and errors are those of :meth:`equilibrium`.
-        """
-        checks.number(speed, "speed", "rad/s")
-        stiffness = _mean_stiffness(self, *self._static_load(load).tolist())
-        return stiffness.copy(), self.damping * np.eye(2)
+    def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the mean stiffness over an element's passage, and the damping."""
+        return _mean_stiffness(self, *load.tolist()).copy(), self.damping * np.eye(2)
 
 
 @kept
@@ -261,7 +252,7 @@ def _mean_stiffness(bearing: RollingBearing, *load: float) -> np.ndarray:
     passage = 2.0 * pi / (bearing.count * bearing.cage_ratio)
     angles = passage * np.arange(_CAGE_ANGLES) / _CAGE_ANGLES
     places = [bearing.equilibrium(0.0, load, angle) for angle in angles]
-    return np.mean([bearing._tangent(*each) for each in zip(places, angles, strict=True)], axis=0)
+    return contacts(bearing, np.array(places), angles)[2].mean(axis=0)
 
 
 def contacts(

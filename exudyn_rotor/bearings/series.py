@@ -18,23 +18,21 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, NoEquilibriumError
-from exudyn_rotor.bearings.controlled_support import InPairs
+from exudyn_rotor.bearings.bearing import HIGHER, Bearing, Linearised, NoEquilibriumError
 from exudyn_rotor.bearings.short_journal import ShortJournalBearing
-from exudyn_rotor.bearings.support import NoCoefficientsError, Support
+from exudyn_rotor.bearings.support import Support
 
 _EDGE = 1e-9  # of the speed: how near to still, and to the journal's speed, a ring is looked for
-_HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a ring holds count
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class SeriesSupport(InPairs):
+class SeriesSupport:
     """A bearing between the rotor and a ring of its own, and one on from the ring.
 
     As a rolling bearing in a squeeze film: the ring is the outer one. Linear analyses take the
@@ -87,19 +85,14 @@ class SeriesSupport(InPairs):
             _check_part(part, name, self.interface)
 
     @property
-    def inertia(self) -> np.ndarray:
-        """Mass of the ring, shape (1,) [kg]."""
-        return np.array([self.mass])
+    def size(self) -> int:
+        """Number of own coordinates: the ring's displacements."""
+        return 2
 
     @property
-    def sensor(self) -> str:
-        """The rotor's interface."""
-        return self.interface
-
-    @property
-    def direct_stiffness(self) -> float:
-        """None: all of it acts between rotor and ring."""
-        return 0.0
+    def masses(self) -> np.ndarray:
+        """Mass of the ring in both directions, shape (2,) [kg]."""
+        return np.full(2, self.mass)
 
     def linearised(self) -> SeriesSupport:
         """Return it with the coefficients of its bearings, for linear analyses.
@@ -199,6 +192,8 @@ class FloatingRingBearing:
     0.3281
     """
 
+    _tried: ClassVar[np.ndarray] = HIGHER
+
     interface: str
     inner: ShortJournalBearing
     outer: ShortJournalBearing
@@ -249,7 +244,7 @@ class FloatingRingBearing:
     def linearised(self) -> SeriesSupport:
         """Return both films about the equilibrium, and the ring, for linear analyses."""
         inner, outer = (
-            Support(self.interface, _OfFilm(self, outer, 0), _OfFilm(self, outer, 1))
+            Support(self.interface, _OfFilm(self, 0, outer), _OfFilm(self, 1, outer))
             for outer in (False, True)
         )
         return SeriesSupport(interface=self.interface, inner=inner, mass=self.mass, outer=outer)
@@ -295,20 +290,10 @@ def _root(left: Callable[[float], float], bearing: FloatingRingBearing) -> float
 
 
 @dataclass(frozen=True, eq=False)
-class _OfFilm:
-    """Stiffness (`index` 0) or damping (1) of a film of a floating ring, by the spin speed."""
+class _OfFilm(Linearised):
+    """Stiffness or damping of a film of a floating ring, by the spin speed."""
 
-    bearing: FloatingRingBearing
-    outer: bool
-    index: int
-
-    def __call__(self, speed: float) -> np.ndarray:
-        for tried in (speed, *_HIGHER):
-            try:
-                return self._value(tried)
-            except ValueError as error:
-                refused = error
-        raise refused
+    outer: bool = False
 
     def _value(self, speed: float) -> np.ndarray:
         ring = self.bearing.ring(speed).speed
@@ -316,10 +301,3 @@ class _OfFilm:
         if self.outer:
             film, whirl = self.bearing.outer, ring
         return film.coefficients(whirl, self.bearing.load)[self.index]
-
-    def check_range(self, speed: float) -> None:
-        """Refuse a speed at which there is no equilibrium."""
-        try:
-            self._value(speed)
-        except ValueError as error:
-            raise NoCoefficientsError(str(error)) from error

@@ -33,9 +33,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import atan, hypot, pi, sqrt
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing, by_tangent
@@ -43,7 +43,6 @@ from exudyn_rotor.bearings.bearing import Bearing, by_tangent
 _REST = 1e-6  # of Ω: the rate w of a journal at rest
 THINNEST = 1.0 - 0.01  # of the clearance: beyond, a film goes on by its tangent
 _STEP = 1e-6  # of the clearance, of that tangent
-Tangent = tuple[np.ndarray, np.ndarray]
 Numbers = float | np.ndarray
 
 
@@ -64,63 +63,57 @@ def film_force(x: float, y: float, vx: float, vy: float, speed: float) -> tuple[
 
 
 def film_tangent(
-    x: float, y: float, vx: float, vy: float, speed: float, rest: float = 0.0
-) -> np.ndarray:
-    """Return minus the derivatives (2) of :func:`film_force` by place and velocity, shape (2, 4).
+    x: Numbers, y: Numbers, vx: Numbers, vy: Numbers, speed: float, rest: float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return force (1), (…, 2), and minus its derivatives (2) by place and velocity, (…, 2, 4).
 
-    Up to the rate `rest` of w those of small motions, (3).
+    By numbers, or by arrays of one shape. Up to the rate `rest` of w the derivatives are those of
+    small motions, (3).
     """
-    # by numbers: a step of a scene asks for one state, for which arrays take ten times as long
     half = 0.5 * speed
     a, b = vx + half * y, vy - half * x
-    w = hypot(a, b)
-    if w <= rest or w == 0.0:
-        by_rate, by_place = damping_at_rest(x, y), np.zeros((2, 2))
-    else:
-        c, s = a / w, b / w
+    if isinstance(a, float):  # a step of a scene asks for one state: numbers are faster
+        w = hypot(a, b)
+        moves = w > max(rest, 0.0)
+        c, s = (a / w, b / w) if moves else (1.0, 0.0)
         u, v = x * c + y * s, y * c - x * s
         beta = 0.5 * pi + atan(u / sqrt(1.0 - u * u - v * v))
-        along, across, *slopes = _integrals(u, v, beta)
-        (p, q), (m, n) = slopes[:2], slopes[2:]
-        turn = np.array([[c, -s], [s, c]])
-        middle = [[along, p * v - q * u - across], [across, m * v - n * u + along]]
-        by_rate, by_place = turn @ np.array([middle, [[w * p, w * q], [w * m, w * n]]]) @ turn.T
-    swirl = half * np.column_stack([-by_rate[:, 1], by_rate[:, 0]])
-    return np.hstack([by_place + swirl, by_rate])
+    else:
+        w = np.hypot(a, b)
+        moves = w > max(rest, 0.0)
+        size = np.where(moves, w, 1.0)
+        c, s = np.where(moves, a / size, 1.0), np.where(moves, b / size, 0.0)
+        u, v = x * c + y * s, y * c - x * s
+        beta = 0.5 * pi + np.arctan(u / np.sqrt(1.0 - u * u - v * v))
+    along, across, p, q, m, n = _integrals(u, v, beta)
+    force = _in_axes([-w * (along * c - across * s), -w * (along * s + across * c)])
+    by_rate = _turned(c, s, along, p * v - q * u - across, across, m * v - n * u + along)
+    by_place = _turned(c, s, w * p, w * q, w * m, w * n)
+    if not np.all(moves):
+        still = damping_at_rest(x, y)
+        by_rate = [np.where(moves, one, other) for one, other in zip(by_rate, still, strict=True)]
+        by_place = [np.where(moves, one, 0.0) for one in by_place]
+    (a, b, c, d), (e, f, g, h) = by_rate, by_place
+    found = _in_axes([e - half * b, f + half * a, a, b, g - half * d, h + half * c, c, d])
+    return force, found.reshape(*found.shape[:-1], 2, 4)
 
 
-def film_along(
-    motion: np.ndarray, speed: float, rest: float = 0.0
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return forces (1) (t, 2) and :func:`film_tangent` (t, 2, 4) along a motion (t, 4)."""
-    x, y, vx, vy = motion.T
-    half = 0.5 * speed
-    a, b = vx + half * y, vy - half * x
-    w = np.hypot(a, b)
-    moves = w > rest
-    size = np.where(moves, w, 1.0)
-    turn = np.array([[a, -b], [b, a]]).transpose(2, 0, 1) / size[:, None, None]
-    u, v = np.einsum("ti,tij->jt", motion[:, :2], turn)
-    beta = 0.5 * pi + np.arctan(u / np.sqrt(1.0 - u * u - v * v))
-    along, across, *slopes = _integrals(u, v, beta)
-    values = np.stack([along, across], axis=-1)
-    slopes = np.array(slopes).T.reshape(-1, 2, 2)
-    by_angle = slopes @ np.stack([v, -u], -1)[..., None] + np.stack([-across, along], -1)[..., None]
-    back = turn.transpose(0, 2, 1)
-    by_rate = turn @ np.concatenate([values[..., None], by_angle], axis=-1) @ back
-    by_place = w[:, None, None] * turn @ slopes @ back
-    force = -w[:, None] * (turn @ values[..., None])[..., 0]
-    for still in np.flatnonzero(~moves):
-        by_rate[still], by_place[still] = damping_at_rest(x[still], y[still]), 0.0
-    swirl = by_rate @ np.array([[0.0, half], [-half, 0.0]])
-    return force, np.concatenate([by_place + swirl, by_rate], axis=-1)
+def _in_axes(numbers: list[Numbers]) -> np.ndarray:
+    return np.array(numbers) if isinstance(numbers[0], float) else np.stack(numbers, axis=-1)
 
 
-def damping_at_rest(x: float, y: float) -> np.ndarray:
-    """Return the damping (3) over ``μ R L³/c³``, for a place over the clearance, shape (2, 2)."""
+def _turned(c: Numbers, s: Numbers, a: Numbers, b: Numbers, d: Numbers, e: Numbers) -> list:
+    """Return the entries of ``R [[a, b], [d, e]] Rᵀ``, R the rotation by the angle of (c, s)."""
+    a, b, d, e = c * a - s * d, c * b - s * e, s * a + c * d, s * b + c * e
+    return [c * a - s * b, s * a + c * b, c * d - s * e, s * d + c * e]
+
+
+def damping_at_rest(x: Numbers, y: Numbers) -> list[Numbers]:
+    """Return the entries of (3) over ``μ R L³/c³``, for a place over the clearance, row by row."""
     s2 = 1.0 - x * x - y * y
-    place = np.array([x, y])
-    return 0.5 * pi * (s2 * np.eye(2) + 3.0 * np.outer(place, place)) / s2**2.5
+    size = 0.5 * pi / s2**2.5
+    beside = 3.0 * size * x * y
+    return [size * (s2 + 3.0 * x * x), beside, beside, size * (s2 + 3.0 * y * y)]
 
 
 def _integrals(u: Numbers, v: Numbers, beta: Numbers) -> tuple[Numbers, ...]:
@@ -158,6 +151,9 @@ class ShortFilmBearing(Bearing):
         Dynamic viscosity of the oil [Pa s].
     """
 
+    _turns: ClassVar[bool] = True  # whether the film turns with the journal
+    centring_stiffness: ClassVar[float] = 0.0
+
     radius: float
     length: float
     clearance: float
@@ -181,65 +177,53 @@ class ShortFilmBearing(Bearing):
     def _reach(self, direction: np.ndarray) -> float:
         return THINNEST * self.clearance
 
-    def _gap(self, direction: np.ndarray | None = None) -> float:
+    def clearance_along(self, direction: np.ndarray | None = None) -> float:
+        """Return the clearance [m], which is the same in all directions."""
         return self.clearance
 
-    def _checked_film(
-        self, displacement: ArrayLike, velocity: ArrayLike, speed: float
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Return a displacement [m] and the force of the film there [N]; refuse bad input."""
-        place = checks.vector(displacement, "displacement", "m", size=2)
-        rate = checks.vector(velocity, "velocity", "m/s", size=2)
-        checks.number(speed, "speed", "rad/s")
+    def law(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, float]:
+        """Return the force on the journal [N]; a film thinner than c/100 goes on by its tangent."""
+        size, k, whirl = self._size, self.centring_stiffness, speed if self._turns else 0.0
         c = self.clearance
-        if hypot(*place) >= c:
-            raise ValueError(
-                f"displacement: needs less than the clearance of {c:g} m, got "
-                f"{hypot(*place):g} m: the journal would touch"
-            )
-        return place, self._size * np.array(film_force(*(place / c), *(rate / c), speed))
-
-    def _film(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
-        """Return the force of the film [N]; one thinner than c/100 goes on by its tangent."""
-        c, size = self.clearance, self._size
-        x, y, vx, vy = x / c, y / c, vx / c, vy / c
-        if hypot(x, y) <= THINNEST:
-            fx, fy = film_force(x, y, vx, vy, speed)
+        a, b, va, vb = x / c, y / c, vx / c, vy / c
+        if hypot(a, b) <= THINNEST:
+            fx, fy = film_force(a, b, va, vb, whirl)
         else:
-            fx, fy = by_tangent(lambda a, b: film_force(a, b, vx, vy, speed), x, y, THINNEST, _STEP)
-        return size * fx, size * fy
+            fx, fy = by_tangent(lambda a, b: film_force(a, b, va, vb, whirl), a, b, THINNEST, _STEP)
+        return size * fx - k * x, size * fy - k * y
 
-    @property
-    def _film_turns(self) -> bool:
-        """Whether the film turns with the journal, as that of a damper does not."""
-        return True
+    def slopes(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
+        c = self.clearance
+        if hypot(x, y) > THINNEST * c:
+            return super().slopes(x, y, vx, vy, angle, speed)
+        whirl = speed if self._turns else 0.0
+        found = film_tangent(x / c, y / c, vx / c, vy / c, whirl, _REST * abs(speed))[1]
+        found *= self._size / c
+        found[0, 0] += self.centring_stiffness
+        found[1, 1] += self.centring_stiffness
+        return found[:, :2], found[:, 2:]
 
-    def _along(
+    def law_along(
         self, motion: np.ndarray, angles: np.ndarray, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:
+        """Return forces (t, 2) and less their derivatives (t, 2, 4); see :class:`Bearing`."""
         relative = motion / self.clearance
-        e = np.hypot(*relative[:, :2].T)
-        out = np.flatnonzero(e > THINNEST)
-        whirl, rest = speed if self._film_turns else 0.0, _REST * abs(speed)
-        if len(motion) == 1 and not out.size:
-            state = relative[0].tolist()
-            force = self._size * np.array([film_force(*state, whirl)])
-            return force, self._size / self.clearance * film_tangent(*state, whirl, rest)[None]
-        normal = relative[out, :2] / e[out, None]
-        relative[out, :2] = THINNEST * normal
-        force, slopes = film_along(relative, whirl, rest)
-        if out.size:  # by the tangent of the last step inside, as :func:`by_tangent`
-            inner = np.hstack([(THINNEST - _STEP) * normal, relative[out, 2:]])
-            ends = film_along(inner, whirl, rest)
-            rise, steeper = force[out] - ends[0], slopes[out] - ends[1]
-            steps = ((e[out] - THINNEST) / _STEP)[:, None]
-            force[out] += steps * rise
-            n, t = normal[:, :, None], (normal[:, ::-1] * [-1.0, 1.0])[:, :, None]
-            edge = THINNEST * slopes[out, :, :2]
-            around = edge + steps[..., None] * (
-                THINNEST * steeper[..., :2] + _STEP * ends[1][..., :2]
-            )
-            across = around @ t @ (t / e[out, None, None]).swapaxes(1, 2)
-            slopes[out, :, :2] = across - rise[:, :, None] / _STEP @ n.swapaxes(1, 2)
-            slopes[out, :, 2:] += steps[..., None] * steeper[..., 2:]
-        return self._size * force, self._size / self.clearance * slopes
+        inside = np.hypot(*relative[:, :2].T) <= THINNEST
+        whirl = speed if self._turns else 0.0
+        force, slopes = film_tangent(*relative[inside].T, whirl, _REST * abs(speed))
+        force, slopes = self._size * force, self._size / self.clearance * slopes
+        force -= self.centring_stiffness * motion[inside, :2]
+        slopes[:, :, :2] += self.centring_stiffness * np.eye(2)
+        if inside.all():
+            return force, slopes
+        forces, tangents = np.empty((len(motion), 2)), np.empty((len(motion), 2, 4))
+        forces[inside], tangents[inside] = force, slopes
+        forces[~inside], tangents[~inside] = super().law_along(
+            motion[~inside], angles[~inside], speed
+        )
+        return forces, tangents

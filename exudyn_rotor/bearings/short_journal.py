@@ -25,8 +25,12 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import LawWithTorque
-from exudyn_rotor.bearings.short_film import THINNEST, ShortFilmBearing
+from exudyn_rotor.bearings.short_film import (
+    THINNEST,
+    ShortFilmBearing,
+    film_force,
+    film_tangent,
+)
 
 _MOST = 1.0 - 1e-9  # eccentricity ratio of an equilibrium
 
@@ -71,37 +75,11 @@ class ShortJournalBearing(ShortFilmBearing):
      [-25.06   8.82]]
     """
 
-    def force(self, displacement: ArrayLike, velocity: ArrayLike, speed: float) -> np.ndarray:
-        """Return the force of the film on the journal [N], shape (2,).
-
-        Parameters
-        ----------
-        displacement, velocity : array_like, shape (2,)
-            Of the journal's centre from that of the bearing [m], [m/s].
-        speed : float
-            Spin speed [rad/s].
-
-        Raises
-        ------
-        TypeError, ValueError
-            For bad input, and a displacement as large as the clearance.
-        """
-        return self._checked_film(displacement, velocity, speed)[1]
-
-    def _law(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[float, float]:
-        return self._film(x, y, vx, vy, speed)
-
-    @property
-    def law_with_torque(self) -> LawWithTorque:
-        """As :attr:`law`, with the torque (3) on the journal [N m]."""
-        return self._law_with_torque
-
-    def _law_with_torque(
+    def law_with_torque(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float, float]:
-        fx, fy = self._film(x, y, vx, vy, speed)
+        """As :meth:`law`, with the torque (3) on the journal [N m]."""
+        fx, fy = self.law(x, y, vx, vy, angle, speed)
         ratio = min(hypot(x, y) / self.clearance, THINNEST)
         shear = 2.0 * pi * self.viscosity * self.radius**3 * self.length / self.clearance
         return fx, fy, -shear * speed / sqrt(1.0 - ratio**2) - 0.5 * (x * fy - y * fx)
@@ -124,11 +102,9 @@ class ShortJournalBearing(ShortFilmBearing):
                 f"speed: bearing at {self.interface!r}: needs one other than 0; without rotation "
                 f"the film does not carry the load of {weight:g} N"
             )
-        size = self._size * abs(speed)
 
         def carried(ratio: float) -> float:
-            radial, tangential = _at_rest(ratio)
-            return size * hypot(radial, tangential) - weight
+            return self._size * hypot(*film_force(ratio, 0.0, 0.0, 0.0, speed)) - weight
 
         if carried(_MOST) < 0.0:
             raise ValueError(
@@ -137,50 +113,21 @@ class ShortJournalBearing(ShortFilmBearing):
             )
         return float(brentq(carried, 0.0, _MOST, xtol=1e-15, rtol=1e-14))
 
-    def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
-        """Return where the journal rests under a static load, (2) [m], shape (2,).
-
-        Parameters
-        ----------
-        speed : float
-            Spin speed [rad/s].
-        load : array_like, shape (2,), optional
-            On the journal [N]; that of the bearing by default.
-
-        Raises
-        ------
-        TypeError, ValueError
-            As :meth:`eccentricity_ratio`.
-        """
+    def _rest(self, speed: float, load: np.ndarray) -> np.ndarray:
+        """Return where the film carries the load (2) [m]."""
         ratio = self.eccentricity_ratio(speed, load)
-        return self.clearance * ratio * self._direction(ratio, speed, self._static_load(load))
+        if ratio == 0.0:
+            return np.zeros(2)
+        # the journal on n1, turned until the force is minus the load
+        turn = -complex(*load) / complex(*film_force(ratio, 0.0, 0.0, 0.0, speed))
+        place = self.clearance * ratio * turn / abs(turn)
+        return np.array([place.real, place.imag])
 
-    def coefficients(
-        self, speed: float, load: ArrayLike | None = None
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Return stiffness [N/m] and damping [N s/m] about the equilibrium, each (2, 2).
-
-        The derivatives of (2) along the line of centres and across it, turned into (n1, n2).
-
-        Parameters and errors are those of :meth:`equilibrium`.
-        """
-        ratio = self.eccentricity_ratio(speed, load)
-        sense = -1.0 if speed < 0.0 else 1.0
-        s2 = 1.0 - ratio**2
-        s = sqrt(s2)
-        radial = 2.0 * ratio * (1.0 + ratio**2) / s2**3
-        K = [
-            [radial, 0.25 * pi / s**3],
-            [-0.25 * pi * (1.0 + 2.0 * ratio**2) / s**5, ratio / s2**2],
-        ]
-        D = [[0.5 * pi * (1.0 + 2.0 * ratio**2) / s**5, -2.0 * ratio / s2**2],
-             [-2.0 * ratio / s2**2, 0.5 * pi / s**3]]  # fmt: skip
-        load = self._static_load(load)
-        # in the middle, also under what rounding leaves of a load, all directions are alike
-        r = self._direction(ratio, speed, load) if ratio > 0.0 else np.array([1.0, 0.0])
-        turn = np.column_stack([r, sense * np.array([-r[1], r[0]])])
-        size = self._size / self.clearance
-        return size * abs(speed) * turn @ K @ turn.T, size * turn @ D @ turn.T
+    def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the derivatives of the film's force at rest."""
+        place = (self._rest(speed, load) / self.clearance).tolist()
+        found = self._size / self.clearance * film_tangent(*place, 0.0, 0.0, speed)[1]
+        return found[:, :2], found[:, 2:]
 
     def power_loss(self, speed: float, load: ArrayLike | None = None) -> float:
         """Return the friction (3) of the journal at rest under a static load, −T Ω [W].
@@ -188,22 +135,4 @@ class ShortJournalBearing(ShortFilmBearing):
         Parameters and errors are those of :meth:`equilibrium`.
         """
         place = self.equilibrium(speed, load).tolist()
-        return -speed * self._law_with_torque(*place, 0.0, 0.0, 0.0, speed)[2]
-
-    def _direction(self, ratio: float, speed: float, load: np.ndarray) -> np.ndarray:
-        """Return the unit vector from the bearing's centre to the journal's."""
-        radial, tangential = _at_rest(ratio)
-        if speed < 0.0:
-            tangential = -tangential
-        # the load is minus the force: (radial, −tangential) in the axes along and across
-        size = hypot(radial, tangential)
-        if size == 0.0:
-            return np.zeros(2)
-        c, s = radial / size, -tangential / size
-        return np.array([[c, s], [-s, c]]) @ load / hypot(*load)
-
-
-def _at_rest(ratio: float) -> tuple[float, float]:
-    """Return −F_r and F_t of (2) over ``μ Ω R L³/c²``."""
-    s2 = 1.0 - ratio**2
-    return ratio**2 / s2**2, 0.25 * pi * ratio / s2**1.5
+        return -speed * self.law_with_torque(*place, 0.0, 0.0, 0.0, speed)[2]

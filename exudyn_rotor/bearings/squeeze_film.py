@@ -26,14 +26,9 @@ from math import hypot, pi, sqrt
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.short_film import (
-    THINNEST,
-    ShortFilmBearing,
-    damping_at_rest,
-)
+from exudyn_rotor.bearings.short_film import ShortFilmBearing, damping_at_rest
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -80,6 +75,7 @@ class SqueezeFilmDamper(ShortFilmBearing):
     """
 
     _unloaded: ClassVar[bool] = True
+    _turns: ClassVar[bool] = False
 
     centring_stiffness: float = 0.0
     orbit: float = 0.0
@@ -94,93 +90,21 @@ class SqueezeFilmDamper(ShortFilmBearing):
         """Whether it takes a share of the rotor's weight: by its spring alone."""
         return self.centring_stiffness > 0.0
 
-    def force(self, displacement: ArrayLike, velocity: ArrayLike) -> np.ndarray:
-        """Return the force of film and spring on the journal [N], shape (2,).
-
-        Parameters
-        ----------
-        displacement, velocity : array_like, shape (2,)
-            Of the journal's centre from that of the damper [m], [m/s].
-
-        Raises
-        ------
-        TypeError, ValueError
-            For bad input, and a displacement as large as the clearance.
-        """
-        place, film = self._checked_film(displacement, velocity, 0.0)
-        return film - self.centring_stiffness * place
-
-    def _law(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[float, float]:
-        k = self.centring_stiffness
-        fx, fy = self._film(x, y, vx, vy, 0.0)
-        return fx - k * x, fy - k * y
-
-    @property
-    def _film_turns(self) -> bool:
-        return False
-
-    def _along(
-        self, motion: np.ndarray, angles: np.ndarray, speed: float
-    ) -> tuple[np.ndarray, np.ndarray]:
-        force, slopes = super()._along(motion, angles, speed)
-        slopes[:, :, :2] += self.centring_stiffness * np.eye(2)
-        return force - self.centring_stiffness * motion[:, :2], slopes
-
-    def law_of_small_motions(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[float, float]:
-        """Return the force on the journal [N] as :attr:`law`, of the film by the damping (2)."""
-        place, rate = np.array([x, y]), np.array([vx, vy])
-        ratio = place * min(1.0 / self.clearance, THINNEST / max(hypot(x, y), 1e-300))
-        damping = self._size / self.clearance * damping_at_rest(*ratio)
-        fx, fy = -self.centring_stiffness * place - damping @ rate
-        return float(fx), float(fy)
-
-    def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
-        """Return where the spring holds the journal under a static load [m], shape (2,).
-
-        Parameters
-        ----------
-        speed : float
-            Spin speed [rad/s], which plays no part.
-        load : array_like, shape (2,), optional
-            On the journal [N]; that of the damper, or none, by default.
-
-        Raises
-        ------
-        TypeError, ValueError
-            For bad input, and a load that the spring does not carry within the clearance.
-        """
-        checks.number(speed, "speed", "rad/s")
-        load = self._static_load(load)
-        if hypot(*load) >= self.centring_stiffness * self.clearance and np.any(load):
+    def _rest(self, speed: float, load: np.ndarray) -> np.ndarray:
+        """Return where the spring holds the journal [m]."""
+        if not np.any(load):
+            return np.zeros(2)
+        if hypot(*load) >= self.centring_stiffness * self.clearance:
             raise ValueError(
                 f"load: damper at {self.interface!r}: {hypot(*load):g} N presses the journal "
                 f"through the clearance of {self.clearance:g} m; a film carries no static load, "
                 "give a larger centring_stiffness"
             )
-        return load / self.centring_stiffness if np.any(load) else np.zeros(2)
+        return load / self.centring_stiffness
 
-    def coefficients(
-        self, speed: float, load: ArrayLike | None = None
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Return stiffness [N/m] and damping [N s/m] on the orbit (1) or at rest (2), each (2, 2).
-
-        Parameters
-        ----------
-        speed : float
-            Of the whirl, which is the spin speed [rad/s].
-        load : array_like, shape (2,), optional
-            On the journal [N]; that of the damper, or none, by default.
-
-        Raises
-        ------
-        TypeError, ValueError
-            As :meth:`equilibrium`.
-        """
-        return self.coefficients_at(self.equilibrium(speed, load), speed)
+    def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return stiffness and damping on the orbit (1), at the spin speed, or at rest (2)."""
+        return self.coefficients_at(self._rest(speed, load), speed)
 
     def coefficients_at(self, place: np.ndarray, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Return :meth:`coefficients` where the journal rests at a place (2,) [m]."""
@@ -190,10 +114,11 @@ class SqueezeFilmDamper(ShortFilmBearing):
                 f"place: damper at {self.interface!r}: the journal is {hypot(*place):g} m off its "
                 f"centre, outside the clearance of {self.clearance:g} m"
             )
-        size, stiffness = self._size / self.clearance, self.centring_stiffness
+        size, stiffness = self._size / self.clearance, self.centring_stiffness * np.eye(2)
         if self.orbit == 0.0:
-            return stiffness * np.eye(2), size * damping_at_rest(*(place / self.clearance))
+            damping = damping_at_rest(*(place / self.clearance))
+            return stiffness, size * np.reshape(damping, (2, 2))
         s2 = 1.0 - self.orbit**2
         film = 2.0 * size * abs(speed) * self.orbit / s2**2
         damping = 0.5 * pi * size / (s2 * sqrt(s2))
-        return (stiffness + film) * np.eye(2), damping * np.eye(2)
+        return stiffness + film * np.eye(2), damping * np.eye(2)

@@ -16,14 +16,13 @@ from exudyn_rotor.bearings.coefficient_table import (
     coefficient_tables,
     read_columns,
 )
-from exudyn_rotor.theory.rotating_axes import FRAMES, axial_skew, turned_harmonics
+from exudyn_rotor.theory.rotating_axes import FRAMES
 
 COEFFICIENTS = ("stiffness", "damping", "tilt_stiffness", "tilt_damping")
 _GIVEN = (*COEFFICIENTS, "mass")
 _SHAPES = ((), (2, 2), (3, 3))
 _WHOLE = (6, 6)  # of displacement and rotation
 _ROUNDING = 1e-6  # of the largest speed of a table: differences by the speed leave its end
-Harmonics = dict[int, np.ndarray]
 SpeedTable = tuple[ArrayLike, ArrayLike]
 Coefficient = float | ArrayLike | SpeedTable | CoefficientTable | Callable[[float], ArrayLike]
 
@@ -216,8 +215,7 @@ class Support:
         Rows: displacement along n1, n2, e, then rotation about them. A table keeps its last value
         beyond its end. The frequency is the size of the spin speed by default.
         """
-        checks.number(speed, "speed", "rad/s")
-        pair = speed, abs(speed) if frequency is None else frequency
+        pair = _pair(speed, frequency)
         # the last pair with its matrices as one object, as threads share supports
         at, found = self.__dict__.get("_found", (None, None))
         if found is None or (at != pair and self.varies):
@@ -233,34 +231,7 @@ class Support:
 
     def mass_matrix(self, speed: float, frequency: float | None = None) -> np.ndarray:
         """Return the mass that goes with the interface, (6, 6), as :meth:`matrices` does."""
-        return self._matrix("mass", speed, abs(speed) if frequency is None else frequency)
-
-    def terms(self, speed: float) -> tuple[Harmonics, Harmonics]:
-        """Return Fourier terms in θ of damping and stiffness seen from the rotor, each (6, 6).
-
-        Raises
-        ------
-        NoCoefficientsError
-            If the speed is beyond a table that may not be extrapolated, or a bearing has no
-            equilibrium there.
-        """
-        damping, stiffness, carried = self.parts(speed)
-        both = {n: speed * X for n, X in carried.items()}
-        for n, X in stiffness.items():
-            both[n] = both[n] + X if n in both else X
-        return damping, both
-
-    def parts(self, speed: float) -> tuple[Harmonics, Harmonics, Harmonics]:
-        """Return what :meth:`terms` does, without Ω: of damping, stiffness, and stiffness per Ω.
-
-        A support that stands still damps the inertial velocity: the rotor sees u_inertial =
-        R(θ) u, whose rate is R(u̇ + Ω ẽ u), so part of the damping becomes a stiffness.
-        """
-        self.check_range(speed)
-        stiffness, damping = self.matrices(speed)
-        if self.frame == "rotor":
-            return {0: damping}, {0: stiffness}, {}
-        return tuple(turned_harmonics(X) for X in (damping, stiffness, damping @ axial_skew(6)))
+        return self._matrix("mass", *_pair(speed, frequency))
 
     def undamped(self) -> Support:
         """Return the support without damping and without the skew part of its stiffness."""
@@ -337,8 +308,9 @@ class Support:
         checks.number(speed, "speed", "rad/s")
         for name in () if self.extrapolate else _GIVEN:
             value = getattr(self, name)
-            if hasattr(value, "check_range"):  # a bearing's
-                value.check_range(speed)
+            check = getattr(value, "check_range", None)  # a bearing's
+            if check is not None:
+                check(speed)
             speeds = value.speeds if isinstance(value, CoefficientTable) else None
             if speeds is None:
                 continue
@@ -361,25 +333,26 @@ class Support:
         return _in_six_axes(value)
 
 
+def _pair(speed: float, frequency: float | None) -> tuple[float, float]:
+    """Return a spin speed and a frequency, by default that of unbalance, checked."""
+    checks.number(speed, "speed", "rad/s")
+    if frequency is None:
+        return speed, abs(speed)
+    return speed, checks.number(frequency, "frequency", "rad/s")
+
+
 def _symmetric(value: Coefficient) -> Coefficient:
     """Return a coefficient without its skew part."""
-    if callable(value):
-        return _SymmetricPart(value)
-    return value.symmetric() if isinstance(value, CoefficientTable) else _symmetric_matrix(value)
+    if not callable(value):
+        return (
+            value.symmetric() if isinstance(value, CoefficientTable) else _symmetric_matrix(value)
+        )
 
+    def part(speed: float) -> float | np.ndarray:
+        return _symmetric_matrix(np.asarray(value(speed), dtype=float))
 
-@dataclass(frozen=True, eq=False)
-class _SymmetricPart:
-    """Symmetric part of a coefficient by the speed; of a bearing's, where that is."""
-
-    function: Callable[[float], ArrayLike]
-
-    def __call__(self, speed: float) -> float | np.ndarray:
-        return _symmetric_matrix(np.asarray(self.function(speed), dtype=float))
-
-    def check_range(self, speed: float) -> None:
-        if hasattr(self.function, "check_range"):
-            self.function.check_range(speed)
+    part.check_range = getattr(value, "check_range", None)  # a bearing's
+    return part
 
 
 def _symmetric_matrix(values: float | np.ndarray) -> float | np.ndarray:
@@ -394,8 +367,7 @@ def _kept(value: Coefficient, name: str, shapes: tuple) -> Coefficient:
     if callable(value) or isinstance(value, CoefficientTable):
         return value
     if not isinstance(value, tuple) or len(value) != 2:
-        other = "; a table over the speed is a tuple, (speeds, values)"
-        return _coefficient(value, name, other, shapes)
+        return _coefficient(value, name, "; a table over the speed is (speeds, values)", shapes)
     if all(isinstance(row, tuple) and len(row) == 2 for row in value):
         raise ValueError(
             f"{name}: {checks.shown(value)} may be a matrix or a table over the speed; write a "
@@ -405,15 +377,10 @@ def _kept(value: Coefficient, name: str, shapes: tuple) -> Coefficient:
     values = checks.array(value[1], f"{name}: the values of its table")
     if values.shape[:1] != speeds.shape or values.shape[1:] not in shapes:
         raise ValueError(
-            f"{name}: the values of its table need {len(speeds)} numbers, {_in_words(shapes)}, "
-            f"as many as speeds, got shape {values.shape}"
+            f"{name}: the values of its table need {len(speeds)} numbers, or matrices of "
+            f"{_rows(shapes)} rows, as many as speeds, got shape {values.shape}"
         )
     return CoefficientTable(speeds, None, values)
-
-
-def _in_words(shapes: tuple) -> str:
-    """Return the kinds of matrices among shapes."""
-    return f"2 × 2{', 3 × 3 or 6 × 6' if _WHOLE in shapes else ' or 3 × 3'} matrices"
 
 
 def _coefficient(
@@ -424,13 +391,18 @@ def _coefficient(
         return checks.number(value, name)
     try:
         array = checks.array(value, name)
-    except TypeError as error:  # of lists that are no array, the speeds and values of a table
+    except TypeError as error:
         raise TypeError(f"{error}{other}" if isinstance(value, list) else str(error)) from None
     if array.shape not in shapes:
         raise ValueError(
-            f"{name} needs a number or one of {_in_words(shapes)}, got shape {array.shape}{other}"
+            f"{name} needs a number or a matrix of {_rows(shapes)} rows, got shape "
+            f"{array.shape}{other}"
         )
     return array if array.ndim else float(array)
+
+
+def _rows(shapes: tuple) -> str:
+    return "2, 3 or 6" if _WHOLE in shapes else "2 or 3"
 
 
 def _in_six_axes(value: float | np.ndarray) -> np.ndarray:

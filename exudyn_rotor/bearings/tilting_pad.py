@@ -25,24 +25,25 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.optimize import brentq
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, Law, Linearised
+from exudyn_rotor.bearings.bearing import Bearing, Linearised
 from exudyn_rotor.bearings.controlled_support import PadSupport
 from exudyn_rotor.bearings.film.equilibria import Equilibria
-from exudyn_rotor.bearings.film.film import OilFilm
+from exudyn_rotor.bearings.film.film import FilmState, OilFilm
 from exudyn_rotor.bearings.film.pads import direction
-from exudyn_rotor.bearings.film.state import FilmState
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
-from exudyn_rotor.bearings.pad_tilt import shift_of_pad, stiffness_unit
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.calls import user_level
 
-_STEPS, _SHORTER, _VAIN = 60, 8, 12  # of Newton's method, halvings of one, steps in vain
-_TOGETHER, _NARROWER = 15, 0.6  # steps of journal and tilts together, what of a film one may close
-_LOOSE, _FIRM = 1e-6, 1e5  # of μ Ω L (R/c)³: no stiffness; condition of one that holds all ways
-_HELD = 1e-6  # of its stiffness: what goes where no pad holds the journal
-_CLOSE, _STILL = 1e-9, 1e-11  # of the load and of the clearance: it stops there
+_STARTS = (0.3, 0.6, 0.1, 0.8, 0.01, 1e-3)  # places at which a search begins, over the clearance
+_STEPS, _NARROWER = 30, 0.6  # of Newton's method, what of a film one step may close
+_LOOSE, _FIRM = 1e-9, 1e-5  # of μ Ω L (R/c)³: no stiffness of a pad; of the largest: none at all
+_HELD = 1e-6  # of its stiffness: what holds the tilt of a pad that carries nothing
+_STILL, _CLOSE = 1e-11, 1e-6  # of the clearance: it stops there; of the load: what may be left
+_TILTS = 26  # tried, between those at which an edge is as thin as the grid resolves
+_SMALL, _ROOT = 1e-9, 1e-13  # of the largest moment: none; of the radius: error of s
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -73,7 +74,7 @@ class TiltingPadBearing(Bearing):
     Raises
     ------
     TypeError, ValueError
-        For bad input, and films without a gap between pads, or that conserve mass.
+        For bad input, and films without a gap between pads.
 
     Examples
     --------
@@ -105,24 +106,13 @@ class TiltingPadBearing(Bearing):
         checks.number(self.pivot, "pivot", below=1.0)
         if self.pad_inertia is not None:
             checks.keep_numbers(self, {"pad_inertia": "kg m²"}, above=0.0)
-        if self.film.pads[0].closed or self.film.cavitation == "mass-conserving":
-            raise ValueError(
-                f"film: bearing at {self.interface!r}: needs pads with gaps between them, and "
-                "another cavitation than 'mass-conserving'"
-            )
+        if self.film.pads[0].closed:
+            raise ValueError(f"film: bearing at {self.interface!r}: needs pads with gaps between")
 
-    def check_coordinates(self) -> None:
-        """Refuse a scene pads without inertia, whose tilts are no coordinates.
-
-        Raises
-        ------
-        ValueError
-        """
-        if self.pad_inertia is None:
-            _ = self.law
-
-    @property
-    def _law(self) -> Law:
+    def law(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, float]:
+        """Refuse: the force depends on the pads' tilts, too."""
         raise ValueError(
             f"bearing at {self.interface!r}: tilting pads have no force by place and velocity "
             "alone; give pad_inertia, and their tilts become coordinates, or give the scene its "
@@ -146,24 +136,8 @@ class TiltingPadBearing(Bearing):
         films = [replace(self.film, pads=[pad]) for pad in self.film.pads]
         return [JournalBearing(interface=self.interface, film=film) for film in films]
 
-    def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
-        """Return where the journal rests under a static load [m], shape (2,).
-
-        Parameters
-        ----------
-        speed : float
-            Spin speed [rad/s], not 0.
-        load : array_like, shape (2,), optional
-            On the journal [N]; that of the bearing by default.
-
-        Raises
-        ------
-        TypeError, ValueError
-            For bad input, a missing load, no speed, and a load that presses a film below what the
-            grid resolves.
-        ArithmeticError
-            If no equilibrium is found.
-        """
+    def _rest(self, speed: float, load: np.ndarray) -> np.ndarray:
+        """Return where the pads carry the load [m]."""
         return self._state(speed, load).place.copy()
 
     def tilts(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
@@ -171,27 +145,13 @@ class TiltingPadBearing(Bearing):
 
         Parameters and errors are those of :meth:`equilibrium`.
         """
-        return -self._state(speed, load).shifts / self.film.radius
+        return -self._state(speed, self._static_load(load)).shifts / self.film.radius
 
-    def coefficients(
-        self, speed: float, load: ArrayLike | None = None
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Return stiffness [N/m] and damping [N s/m] of (2) about the equilibrium, each (2, 2).
-
-        Parameters and errors are those of :meth:`equilibrium`.
-        """
-        whirl = self.whirl_ratio * abs(checks.number(speed, "speed", "rad/s"))
+    def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return stiffness and damping of (2)."""
+        whirl = self.whirl_ratio * abs(speed)
         Z = self._state(speed, load).impedance(whirl)
         return Z.real, Z.imag / whirl
-
-    def film_coefficients(
-        self, speed: float, load: ArrayLike | None = None
-    ) -> list[tuple[np.ndarray, np.ndarray] | None]:
-        """Return stiffness and damping of each pad's film, (2, 2); None for absent pads.
-
-        Parameters and errors are those of :meth:`equilibrium`.
-        """
-        return self._state(speed, load).coefficients
 
     def linearised(self) -> Support | PadSupport:
         """Return the support for linear analyses: the coefficients under the load at every speed.
@@ -241,9 +201,9 @@ class TiltingPadBearing(Bearing):
         ]
         return *np.moveaxis(np.array(films), 1, 0), whole
 
-    def _state(self, speed: float, load: ArrayLike | None) -> _Pads:
+    def _state(self, speed: float, load: np.ndarray) -> _Pads:
         """Return the pads in equilibrium."""
-        return self._equilibria.at(speed, self._static_load(load), self._solved)
+        return self._equilibria.at(speed, load, self._solved)
 
     def _solved(self, speed: float, load: np.ndarray) -> _Pads:
         size = float(np.linalg.norm(load))
@@ -256,27 +216,68 @@ class TiltingPadBearing(Bearing):
         found = beside and beside.together(speed, load)
         if found is not None:
             return found
-        pads, far = _Pads.of(self, speed), 0.2 * self.film.clearance
-        state, best, vain = pads.at(1.5 * far * load / size), np.inf, 0
-        found = state.together(speed, load)
-        if found is not None:
-            return found
-        for _ in range(_STEPS):
-            left = state.force + load
-            if np.linalg.norm(left) < _CLOSE * size:
-                return state
-            vain = 0 if np.linalg.norm(left) < best else vain + 1
-            best = min(best, np.linalg.norm(left))
-            if vain == _VAIN:
-                break
-            stiffness = state.impedance(0.0).real
-            held = stiffness + _HELD * max(np.trace(stiffness), size / far) * np.eye(2)
-            move = np.linalg.solve(held, left)
-            state = state.after(move * min(1.0, far / np.linalg.norm(move)), load)
-        raise ArithmeticError(
+        refused: Exception = ArithmeticError(
             f"bearing at {self.interface!r}: no equilibrium of the pads found under {size:g} N at "
-            f"{speed:g} rad/s: {np.linalg.norm(left) / size:.1e} of the load is left"
+            f"{speed:g} rad/s"
         )
+        for ratio in _STARTS:
+            try:
+                start = _Pads.of(self, speed, ratio * self.film.clearance * load / size)
+            except ValueError as error:  # a pad is pressed too thin there
+                refused = error
+                continue
+            found = start.together(speed, load)
+            if found is not None:
+                return found
+        raise refused
+
+
+def _stiffness_unit(film: OilFilm, speed: float) -> float:
+    """Return ``μ Ω L (R/c)³`` [N/m]."""
+    return film.viscosity * abs(speed) * film.length * (film.radius / film.clearance) ** 3
+
+
+def _shift_of_pad(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float) -> float:
+    """Return s [m] of a pad whose film has no part along t; NaN where no tilt makes it carry.
+
+    Over all tilts: where the moment about the pivot rises through zero. A ValueError says that the
+    film is pressed thinner than its grid resolves.
+    """
+    pressed = ValueError(
+        f"load: presses the film of a pad below {film.thinnest:.3g} m, which its grid does not "
+        "resolve; give more nodes, or a smaller load"
+    )
+    u = film.grid.u.reshape(-1, 2)
+    room, lever = film.grid.offset.ravel() - u @ place - film.thinnest, u @ t
+    low = np.max(-room[lever > 0.0] / lever[lever > 0.0], initial=-np.inf)
+    high = np.min(-room[lever < 0.0] / lever[lever < 0.0], initial=np.inf)
+    if not low < high:
+        raise pressed
+    last = None
+
+    def at(s: float) -> FilmState:
+        nonlocal last
+        empty = last and last.solution.empty
+        last = film.solved(place - s * t, np.zeros(2), speed, empty)
+        return last
+
+    def moment(s: float) -> float:
+        return float(t @ at(s).force)
+
+    # beside that of a film whose edges are equally thick, next to which a light pad is
+    even = float((place - film.pads[0].center) @ t)
+    tried = np.linspace(low, high, _TILTS)
+    tried = np.sort(np.append(tried, even)) if low < even < high else tried
+    found = np.array([moment(s) for s in tried])
+    small = _SMALL * np.abs(found).max()
+    rises = np.flatnonzero((found[:-1] < -small) & (found[1:] > small))
+    if not len(rises):
+        thin_end = found[0] if speed > 0.0 else -found[-1]  # the film narrows most there
+        if thin_end > small:
+            raise pressed
+        return np.nan
+    s = brentq(moment, tried[rises[0]], tried[rises[0] + 1], xtol=_ROOT * film.radius)
+    return s if t @ at(s).tangent[0] @ t > 0.0 else np.nan  # where no pressure is left
 
 
 @dataclass(frozen=True, eq=False)
@@ -291,47 +292,16 @@ class _Pads:
     states: list[FilmState | None]
 
     @classmethod
-    def of(cls, bearing: TiltingPadBearing, speed: float) -> _Pads:
-        """Return pads with films of their own, before they are at a place."""
-        films = [each.film for each in bearing.pad_bearings]
-        none = np.full(len(films), np.nan)
-        return cls(films, bearing.tangents, speed, np.zeros(2), none, [])
-
-    def at(self, place: np.ndarray) -> _Pads:
-        """Return the pads with the journal at a place [m]."""
-        pairs = list(zip(self.films, self.tangents, strict=True))
-        shifts = np.array(
-            [
-                shift_of_pad(film, place, t, self.speed, last)
-                for (film, t), last in zip(pairs, self.shifts, strict=True)
-            ]
-        )
-        still = np.zeros(2)
+    def of(cls, bearing: TiltingPadBearing, speed: float, place: np.ndarray) -> _Pads:
+        """Return pads with films of their own, the journal at a place [m]."""
+        films, tangents = [each.film for each in bearing.pad_bearings], bearing.tangents
+        pairs = list(zip(films, tangents, strict=True))
+        shifts = [_shift_of_pad(film, place, t, speed) for film, t in pairs]
         states = [
-            None if np.isnan(s) else film.state(place - s * t, still, self.speed)
+            None if np.isnan(s) else film.solved(place - s * t, np.zeros(2), speed)
             for (film, t), s in zip(pairs, shifts, strict=True)
         ]
-        return replace(self, place=place, shifts=shifts, states=states)
-
-    def after(self, move: np.ndarray, load: np.ndarray) -> _Pads:
-        """Return the pads after a move, shortened until it does not overshoot.
-
-        A pad's force goes through its pivot, and with the tilt of (1) depends on the place along
-        that line alone. So force and load are the slope of a potential, with one minimum where
-        each pad carries the more the closer the journal is.
-        """
-        ahead, found = (self.force + load) @ move, None
-        for _ in range(_SHORTER):
-            try:
-                found = self.at(self.place + move)
-                if (found.force + load) @ move > -0.5 * ahead:
-                    return found
-            except ValueError as error:
-                refused = error
-            move, ahead = 0.5 * move, 0.5 * ahead
-        if found is None:
-            raise refused
-        return found
+        return cls(films, tangents, speed, place, np.array(shifts), states)
 
     def together(self, speed: float, load: np.ndarray) -> _Pads | None:
         """Return the equilibrium at a speed, by Newton's method for journal and tilts at once.
@@ -340,13 +310,13 @@ class _Pads:
         """
         place, shifts, states, still = self.place, self.shifts, list(self.states), np.zeros(2)
         films, present = self.films, [pad for pad, state in enumerate(states) if state is not None]
-        units = [stiffness_unit(film, speed) for film in films]
+        units = [_stiffness_unit(film, speed) for film in films]
         small = _STILL * min(film.clearance for film in films)
-        for _ in range(_TOGETHER):
+        for _ in range(_STEPS):
             left, total, moved = load.copy(), np.zeros((2, 2)), np.full((len(states), 3), np.nan)
             for pad in present:
                 film, t, empty = films[pad], self.tangents[pad], states[pad].solution.empty
-                states[pad] = film.law(place - shifts[pad] * t, still, speed, empty)
+                states[pad] = film.solved(place - shifts[pad] * t, still, speed, empty)
                 force, stiffness = states[pad].force, states[pad].tangent[0]
                 rise, lever = t @ stiffness @ t, stiffness @ t
                 if not rise > _LOOSE * units[pad]:
@@ -354,11 +324,11 @@ class _Pads:
                 moved[pad] = *(t @ stiffness / rise), t @ force / rise
                 left += force - lever * moved[pad, 2]
                 total += stiffness - np.outer(lever, moved[pad, :2])
-            if not np.linalg.cond(total) < _FIRM:
-                return None
-            move = np.linalg.solve(total, left)
+            move = np.linalg.lstsq(total, left, rcond=_FIRM)[0]  # where two pads hold one way alone
             tilting = moved[:, :2] @ move - moved[:, 2]
             if np.nanmax(np.abs([*move, *tilting])) < small:
+                if np.linalg.norm(left) > _CLOSE * np.linalg.norm(load):
+                    return None
                 break
             seen = move - tilting[:, None] * self.tangents
             share = min(1.0, _NARROWER / max(states[pad].closing(seen[pad]) for pad in present))
@@ -367,16 +337,9 @@ class _Pads:
             return None
         for film, t, state in zip(films, self.tangents, states, strict=True):
             thin = state is not None and state.solution.equation.heights.min() < film.thinnest
-            if thin or (
-                state is None and not np.isnan(shift_of_pad(film, place, t, speed, np.nan))
-            ):
+            if thin or (state is None and not np.isnan(_shift_of_pad(film, place, t, speed))):
                 return None
         return replace(self, speed=speed, place=place, shifts=shifts, states=states)
-
-    @property
-    def force(self) -> np.ndarray:
-        """Force on the journal [N], shape (2,)."""
-        return sum((state.force for state in self.states if state is not None), start=np.zeros(2))
 
     @cached_property
     def coefficients(self) -> list[tuple[np.ndarray, np.ndarray] | None]:

@@ -2,19 +2,54 @@
 
 from __future__ import annotations
 
+import time
+from dataclasses import dataclass
 from pathlib import Path
 
+import exudyn
 import numpy as np
+from exudyn.FEM import FEMinterface
+from exudyn.interactive import ShowImage
+from exudyn.itemInterface import SensorMarker, SensorNode
+from exudyn.rigidBodyUtilities import RotationMatrixX, RotationMatrixZ
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.demo import scene
-from exudyn_rotor.demo.simulation import Run, simulate
 
 MODES = 12
 END_TIME = 0.5  # s
 STEP = 1e-4  # s
+MAGNIFICATION = 300.0  # of the picture's deformation
 # largest element [m], and the radius of curves over the length of the elements there
 FINE_MESH, QUICK_MESH = (0.0145, 2.0), (0.05, 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One simulated variant.
+
+    Attributes
+    ----------
+    label : str
+    seconds : float
+        Wall-clock time of the time integration.
+    time : ndarray, shape (s,)
+        [s].
+    orbit : ndarray, shape (s, 2)
+        Horizontal and vertical displacement of the right journal, inertial axes [m].
+    speed : ndarray, shape (s,)
+        Spin speed [rad/s].
+    """
+
+    label: str
+    seconds: float
+    time: np.ndarray
+    orbit: np.ndarray
+    speed: np.ndarray
+
+    def deviation(self, reference: Run) -> np.ndarray:
+        """Return the distance of the orbits at equal times, shape (s,) [m]."""
+        return np.linalg.norm(self.orbit - reference.orbit, axis=1)
 
 
 def run_demo(folder: str | Path, *, quick: bool = False) -> list[Run]:
@@ -51,56 +86,100 @@ def run_demo(folder: str | Path, *, quick: bool = False) -> list[Run]:
         "fixed axis, translation none": scene.add_fixed_axis_rotor("none"),
     }
     pictures = {"fixed axis, translation free": target / "rotor.png"}
-    runs = [
-        simulate(label, add, fem, end_time, STEP, pictures.get(label))
-        for label, add in variants.items()
-    ]
-    print(table(runs))
-    draw_comparison(runs, target)
+    runs = []
+    print(f"{'':34}{'seconds':>9}{'ratio':>7}{'deviation':>11}")
+    for label, add in variants.items():
+        runs.append(_simulated(label, add, fem, end_time, pictures.get(label)))
+        print(_line(runs[-1], runs[0]), flush=True)
+    amplitude = 1e6 * np.abs(runs[0].orbit).max()
+    print(
+        f"spin speed {runs[0].speed[0]:.0f} → {runs[0].speed[-1]:.0f} rad/s, largest journal "
+        f"displacement {amplitude:.0f} µm;\n"
+        "deviation: largest distance of the orbits at equal times over that displacement"
+    )
+    _draw_comparison(runs[0], runs[2], target)
     print(f"pictures: {', '.join(sorted(path.name for path in target.glob('*.png')))} in {target}")
     return runs
 
 
-def table(runs: list[Run]) -> str:
-    """Return the comparison as text; the first run is the reference."""
-    reference = runs[0]
-    amplitude = np.abs(reference.orbit).max()
-    lines = [
-        "",
-        f"{'':34}{'unknowns':>9}{'locked':>8}{'constr.':>9}{'seconds':>9}{'ratio':>7}{'deviation':>11}",
-    ]
-    for run in runs:
-        deviation = run.deviation(reference).max() / amplitude
-        lines.append(
-            f"{run.label:34}{run.unknowns:9d}{run.locked:8d}{run.constraints:9d}"
-            f"{run.seconds:9.2f}{reference.seconds / run.seconds:7.1f}{deviation:11.1e}"
-        )
-    lines += [
-        "",
-        f"spin speed {reference.speed[0]:.0f} → {reference.speed[-1]:.0f} rad/s, largest journal "
-        f"displacement {1e6 * amplitude:.0f} µm;",
-        "deviation: largest distance of the orbits at equal times over that displacement",
-        "",
-    ]
-    return "\n".join(lines)
+def _line(run: Run, reference: Run) -> str:
+    """Return a line of the table."""
+    deviation = run.deviation(reference).max() / np.abs(reference.orbit).max()
+    ratio = reference.seconds / run.seconds
+    return f"{run.label:34}{run.seconds:9.2f}{ratio:7.1f}{deviation:11.1e}"
 
 
-def draw_comparison(runs: list[Run], folder: Path) -> None:
+def _draw_comparison(reference: Run, fixed: Run, folder: Path) -> None:
     """Write orbits and time histories of the 3D body and the fixed-axis rotor."""
-    reference, fixed = runs[0], runs[2]
-    made, axes = plotting.figure(size=(6.0, 5.5))
-    plotting.plot_orbits(axes, {run.label: run.orbit for run in (reference, fixed)})
+    made, ax = plotting.figure(size=(6.0, 5.5))
+    plotting.plot_orbits(ax, {run.label: run.orbit for run in (reference, fixed)})
     plotting.save(made, folder / "orbits.png")
-
     made, (above, below) = plotting.figure(2, 1, size=(9.0, 6.0), sharex=True)
-    plotting.plot_histories(
-        above, reference.time, {run.label: run.orbit[:, 1] for run in (reference, fixed)}
-    )
+    for run, color, line in zip((reference, fixed), plotting.COLORS, plotting.LINES, strict=False):
+        above.plot(run.time, 1e6 * run.orbit[:, 1], line, color=color, lw=1.0, label=run.label)
     above.set_ylabel("right journal, vertical [µm]")
-    after_start = slice(1, None)  # all runs start from the same state
-    plotting.plot_deviation(
-        below,
-        reference.time[after_start],
-        {run.label: run.deviation(reference)[after_start] for run in runs[2:]},
-    )
+    plotting.legend_above(above)
+    below.semilogy(fixed.time[1:], 1e6 * fixed.deviation(reference)[1:], lw=1.0)
+    below.set_ylabel("deviation [µm]")
+    below.set_xlabel("time [s]")
     plotting.save(made, folder / "displacement.png")
+
+
+def _simulated(
+    label: str,
+    add_rotor: scene.AddRotor,
+    fem: FEMinterface,
+    end_time: float,
+    picture: Path | None,
+) -> Run:
+    """Build the scene, run it up through the critical speed, and return what was measured."""
+    SC = exudyn.SystemContainer()
+    mbs = SC.AddSystem()
+    rotor = add_rotor(mbs, fem)
+    scene.add_foundation(mbs, rotor)
+    kinds = exudyn.OutputVariableType
+    stored = {"storeInternal": True, "writeToFile": False}
+    marker, node = rotor["rotor:right"], rotor["FFRFReducedOrderObjectDict"]["nRigidBody"]
+    journal = mbs.AddSensor(
+        SensorMarker(markerNumber=marker, outputVariableType=kinds.Displacement, **stored)
+    )
+    spin = mbs.AddSensor(
+        SensorNode(nodeNumber=node, outputVariableType=kinds.AngularVelocity, **stored)
+    )
+    mbs.Assemble()
+    settings = exudyn.SimulationSettings()
+    settings.timeIntegration.numberOfSteps = round(end_time / STEP)
+    settings.timeIntegration.endTime = end_time
+    settings.timeIntegration.verboseMode = 0
+    settings.timeIntegration.newton.useModifiedNewton = True
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = 2.0 * STEP
+    start = time.perf_counter()
+    mbs.SolveDynamic(settings)
+    seconds = time.perf_counter() - start
+    if picture is not None:
+        _draw_rotor(SC, picture)
+    displacement, velocity = (mbs.GetSensorStoredData(sensor) for sensor in (journal, spin))
+    return Run(label, seconds, displacement[:, 0], displacement[:, 2:4], velocity[:, 1])
+
+
+def _draw_rotor(SC: exudyn.SystemContainer, path: Path) -> None:
+    """Draw the scene with the rotor's deformation, magnified."""
+    from matplotlib import pyplot
+
+    settings = SC.visualizationSettings
+    settings.view0.scene.drawCoordinateSystem = 0
+    settings.general.showSolverInformation = False
+    settings.general.showSolutionInformation = False
+    settings.view0.window.showComputationInfo = False
+    settings.view0.scene.showFaceEdges = False
+    settings.view0.scene.showMeshEdges = False
+    for group in (settings.connectors, settings.markers, settings.loads, settings.sensors):
+        group.show = False
+    settings.bodies.deformationScaleFactor = MAGNIFICATION
+    settings.contour.outputVariable = exudyn.OutputVariableType.DisplacementLocal
+    settings.contour.outputVariableComponent = -1
+    settings.nodes.show = False
+    view = RotationMatrixZ(-0.6) @ RotationMatrixX(1.25)
+    image = ShowImage(SC, size=(1400, 900), modelRotation=view, show=False)
+    pyplot.imsave(path, image, format="png")

@@ -18,7 +18,7 @@ from exudyn.rigidBodyUtilities import InertiaCuboid
 from netgen import occ
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor.marker_body import virtual_nodes
+from exudyn_rotor.multibody.rotor.markers import virtual_nodes
 from exudyn_rotor.solid_rotor import SolidRotor
 
 AddRotor = Callable[[exudyn.MainSystem, FEMinterface], dict]
@@ -81,7 +81,7 @@ def add_3d_rotor_with_virtual_nodes(
     modes, places = body.modeBasis, {}
     for name, interface in model.interfaces.items():
         motion = interface.mean_motion(model.node_count) @ modes
-        points, columns = virtual_nodes(interface.reference, interface.radius, motion, model.axis)
+        points, columns = virtual_nodes(interface.reference, interface.radius, motion)
         if markers == "position":
             points, columns = interface.reference[None, :], motion[:3]
         places[name] = list(range(len(body.xRef) // 3, len(body.xRef) // 3 + len(points)))

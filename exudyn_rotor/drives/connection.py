@@ -3,31 +3,8 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
-
-from exudyn_rotor import checks
-
-
-class Law(NamedTuple):
-    """The functions of a connection by motion x and rate ẋ, unchecked, for every time step.
-
-    `forces` (12,), `tangent`: −∂f/∂x and −∂f/∂ẋ for Newton's method, `transmitted` load,
-    `energy` that is stored (of x alone), `loss` of power by damping. `check_places` refuses rotors
-    that are mounted otherwise than needed, by the second's place from the first and its axis;
-    `second_axis` is the axis that it needs, where the second is a shaft.
-    """
-
-    forces: Callable[[np.ndarray, np.ndarray], np.ndarray]
-    tangent: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
-    transmitted: Callable[[np.ndarray, np.ndarray], float]
-    energy: Callable[[np.ndarray], float]
-    loss: Callable[[np.ndarray, np.ndarray], float]
-    check_places: Callable[[np.ndarray, np.ndarray], None]
-    second_axis: np.ndarray
 
 
 class Connection(ABC):
@@ -36,80 +13,38 @@ class Connection(ABC):
     A motion x has twelve rows: of the first interface the displacement along (n1, n2, e) [m] and
     the rotation about them [rad], then the same of the second, all in the axes
     :attr:`SpinAxis.plane` of the first rotor, which stand still. The rotations about e are spin and
-    twist together, without bound. Forces [N] and moments [N m] have the same rows.
+    twist together, without bound. Forces [N] and moments [N m] have the same rows. Scenes ask in
+    every step: arrays x and ẋ (12,) are not checked.
     """
 
     @property
-    def law(self) -> Law:
-        """For scenes: forces, tangent, transmitted load, energy and loss, unchecked."""
-        return Law(
-            self._forces,
-            self._tangent,
-            self._transmitted,
-            self._energy,
-            self._loss,
-            self._check_places,
-            self.second_axis,
-        )
-
-    def forces(self, motion: ArrayLike, rate: ArrayLike) -> np.ndarray:
-        """Return forces and moments on both interfaces, shape (12,).
-
-        Parameters
-        ----------
-        motion, rate : array_like, shape (12,)
-            Displacements [m] and rotations [rad] in the rows of this class, and their rates.
-
-        Raises
-        ------
-        TypeError, ValueError
-            For bad input.
-        """
-        return self._forces(*_checked(motion, rate))
-
-    def transmitted(self, motion: ArrayLike, rate: ArrayLike) -> float:
-        """Return what is transmitted: force of a mesh [N], torque on the second rotor [N m].
-
-        Parameters
-        ----------
-        motion, rate : array_like, shape (12,)
-            As for `forces`.
-
-        Raises
-        ------
-        TypeError, ValueError
-            For bad input.
-        """
-        return self._transmitted(*_checked(motion, rate))
-
-    @property
-    def second_axis(self) -> np.ndarray:
-        """Axis of the second rotor, shape (3,), in the axes (n1, n2, e) of the first."""
-        return np.array([0.0, 0.0, 1.0])
-
-    @property
     def mean_speed_ratio(self) -> float:
-        """Speed of the second rotor, about :attr:`second_axis`, over that of the first."""
+        """Speed of the second rotor over that of the first, about the axis of the first."""
         return 1.0
 
     @abstractmethod
-    def _forces(self, x: np.ndarray, x_t: np.ndarray) -> np.ndarray: ...
+    def forces(self, x: np.ndarray, x_t: np.ndarray) -> np.ndarray:
+        """Return forces and moments on both interfaces, shape (12,)."""
 
     @abstractmethod
-    def _tangent(self, x: np.ndarray, x_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]: ...
+    def tangent(self, x: np.ndarray, x_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return −∂f/∂x and −∂f/∂ẋ for Newton's method, each (12, 12)."""
 
     @abstractmethod
-    def _transmitted(self, x: np.ndarray, x_t: np.ndarray) -> float: ...
+    def transmitted(self, x: np.ndarray, x_t: np.ndarray) -> float:
+        """Return what is transmitted: force of a mesh [N], torque on the second rotor [N m]."""
 
     @abstractmethod
-    def _energy(self, x: np.ndarray) -> float: ...
+    def energy(self, x: np.ndarray) -> float:
+        """Return the elastic energy [J]."""
 
     @abstractmethod
-    def _loss(self, x: np.ndarray, x_t: np.ndarray) -> float: ...
+    def loss(self, x: np.ndarray, x_t: np.ndarray) -> float:
+        """Return the power lost by damping [W]."""
 
     @abstractmethod
-    def _check_places(self, apart: np.ndarray, axis: np.ndarray) -> None: ...
+    def check_places(self, apart: np.ndarray, axis: np.ndarray) -> None:
+        """Refuse a second rotor that is mounted otherwise than needed.
 
-
-def _checked(motion: ArrayLike, rate: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    return checks.vector(motion, "motion", size=12), checks.vector(rate, "rate", size=12)
+        By its place from the first one [m] and its axis, each (3,), in axes of the first rotor.
+        """

@@ -121,43 +121,42 @@ class FlexibleCoupling(Connection):
         by_motion[:, 5] -= R.T @ axial_skew(6) @ apart
         return R.T @ apart - self._turning, by_motion
 
-    def _forces(self, x: np.ndarray, x_t: np.ndarray) -> np.ndarray:
+    def forces(self, x: np.ndarray, x_t: np.ndarray) -> np.ndarray:
+        """Return forces and moments on both interfaces, shape (12,)."""
         xi, B = self._deformation(x)
         return -B.T @ (self._K * xi + self._D * (B @ x_t))
 
-    def _tangent(self, x: np.ndarray, x_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Leave out how the axes turn with the first shaft."""
+    def tangent(self, x: np.ndarray, x_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return −∂f/∂x and −∂f/∂ẋ but for how the axes turn with the first shaft."""
         _, B = self._deformation(x)
         return B.T @ (self._K[:, None] * B), B.T @ (self._D[:, None] * B)
 
-    def _transmitted(self, x: np.ndarray, x_t: np.ndarray) -> float:
-        return float(self._forces(x, x_t)[11])
+    def transmitted(self, x: np.ndarray, x_t: np.ndarray) -> float:
+        """Return the torque on the second rotor [N m]."""
+        return float(self.forces(x, x_t)[11])
 
-    def _energy(self, x: np.ndarray) -> float:
+    def energy(self, x: np.ndarray) -> float:
+        """Return the elastic energy [J]."""
         xi, _ = self._deformation(x)
         return float(0.5 * xi @ (self._K * xi))
 
-    def _loss(self, x: np.ndarray, x_t: np.ndarray) -> float:
+    def loss(self, x: np.ndarray, x_t: np.ndarray) -> float:
+        """Return the power lost by damping [W]."""
         rate = self._deformation(x)[1] @ x_t
         return float(rate @ (self._D * rate))
 
-    def _check_places(self, apart: np.ndarray, axis: np.ndarray) -> None:
-        check_same_place(apart)
+    def check_places(self, apart: np.ndarray, axis: np.ndarray) -> None:
+        """Refuse rotors that are not on one axis, at one place."""
+        if np.linalg.norm(apart) > SAME_PLACE:
+            raise ValueError(
+                f"other: its interface is {np.linalg.norm(apart):.4g} m from that of the first "
+                "rotor; couplings need both at one place (a small offset is misalignment=…)"
+            )
         if np.hypot(axis[0], axis[1]) > _SAME_AXIS:
             raise ValueError(
                 "other: a flexible coupling needs both rotors on one axis, and the second is "
-                f"{np.hypot(axis[0], axis[1]):.3g} rad off; a small angle is misalignment=…, a "
-                "large one a CardanJoint"
+                f"{np.hypot(axis[0], axis[1]):.3g} rad off; a small angle is misalignment=…"
             )
-
-
-def check_same_place(apart: np.ndarray) -> None:
-    """Refuse ends of shafts that are apart, by a ValueError."""
-    if np.linalg.norm(apart) > SAME_PLACE:
-        raise ValueError(
-            f"other: the interface of the second rotor is {np.linalg.norm(apart):.4g} m from that "
-            "of the first; couplings need both at one place (a small offset is misalignment=…)"
-        )
 
 
 def _pair(value: ArrayLike, name: str, unit: str) -> np.ndarray:

@@ -19,17 +19,12 @@ _ROUNDING = 1e-6  # of the largest speed of a table: differences by the speed le
 class Drive(ABC):
     """A torque about the spin axis by spin speed and time."""
 
-    _is_formula: ClassVar[bool] = True  # made of + − · / and powers alone, and without the time
+    # made of + − · / and powers alone, without the time: `law` takes symbols, Exudyn evaluates it
+    is_formula: ClassVar[bool] = True
 
-    @property
-    def is_formula(self) -> bool:
-        """Whether `law` takes symbols, too, and no time: Exudyn evaluates such a drive itself."""
-        return self._is_formula
-
-    @property
-    def law(self) -> Callable[[float, float], float]:
-        """For scenes: the torque [N m] by spin speed [rad/s] and time [s], unchecked."""
-        return self._torque
+    @abstractmethod
+    def law(self, speed: float, time: float) -> float:
+        """For scenes: return the torque [N m] by spin speed [rad/s] and time [s], unchecked."""
 
     def torque(self, speed: float, time: float = 0.0) -> float:
         """Return the torque about e on the rotor [N m].
@@ -48,11 +43,8 @@ class Drive(ABC):
             function returns something else than a number.
         """
         return float(
-            self._torque(checks.number(speed, "speed", "rad/s"), checks.number(time, "time", "s"))
+            self.law(checks.number(speed, "speed", "rad/s"), checks.number(time, "time", "s"))
         )
-
-    @abstractmethod
-    def _torque(self, speed: float, time: float) -> float: ...
 
     def _refuse_zero(self, name: str, unit: str) -> None:
         if getattr(self, name) == 0.0:
@@ -85,7 +77,7 @@ class TorqueCurve(Drive):
     9.0
     """
 
-    _is_formula = False
+    is_formula = False
 
     curve: tuple[ArrayLike, ArrayLike] | Callable[[float, float], float]
     extrapolate: bool = False
@@ -102,7 +94,8 @@ class TorqueCurve(Drive):
         torques = checks.vector(table[1], "curve: its torques", "N m", size=len(speeds))
         object.__setattr__(self, "curve", (speeds, torques))
 
-    def _torque(self, speed: float, time: float) -> float:
+    def law(self, speed: float, time: float) -> float:
+        """Return the torque [N m]."""
         if callable(self.curve):
             return checks.number(self.curve(speed, time), "curve: its torque", "N m")
         speeds, torques = self.curve
@@ -157,7 +150,8 @@ class Drag(Drive):
         if not (self.constant or self.linear or self.quadratic):
             raise ValueError("drag: needs constant, linear or quadratic above zero, got none")
 
-    def _torque(self, speed: float, time: float) -> float:
+    def law(self, speed: float, time: float) -> float:
+        """Return the torque [N m]."""
         square = speed * speed
         dry = self.constant * speed / (square + self.smooth_speed**2) ** 0.5
         return -(dry + self.linear * speed + self.quadratic * speed * square**0.5)

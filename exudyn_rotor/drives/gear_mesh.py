@@ -206,7 +206,8 @@ class GearMesh(Connection):
             if depth > 0.0:
                 yield v, depth, rate, max(0.0, k * depth + self.damping * rate)
 
-    def _forces(self, x: np.ndarray, x_t: np.ndarray) -> np.ndarray:
+    def forces(self, x: np.ndarray, x_t: np.ndarray) -> np.ndarray:
+        """Return forces and moments on both interfaces, shape (12,)."""
         k, slope = self._stiffness_at(x)
         total = np.zeros(12)
         for v, depth, _, push in self._contacts(x, x_t, k):
@@ -214,30 +215,32 @@ class GearMesh(Connection):
             total[ABOUT_AXIS] -= 0.5 * slope * depth**2
         return total
 
-    def _tangent(self, x: np.ndarray, x_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Leave out how the stiffness varies: it is small beside the stiffness itself."""
+    def tangent(self, x: np.ndarray, x_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return −∂f/∂x and −∂f/∂ẋ but for how the stiffness varies, which is small beside it."""
         k, _ = self._stiffness_at(x)
         each, always = self._contacts(x, x_t, k), self.backlash is None
         touching = (v for v, *_, push in each if always or push)
         both = sum((np.outer(v, v) for v in touching), np.zeros((12, 12)))
         return k * both, self.damping * both
 
-    def _transmitted(self, x: np.ndarray, x_t: np.ndarray) -> float:
+    def transmitted(self, x: np.ndarray, x_t: np.ndarray) -> float:
         """Return the force along the line of action, negative on the other flank."""
         k, _ = self._stiffness_at(x)
         each = self._contacts(x, x_t, k)
         return sum((push if v is self.direction else -push for v, _, _, push in each), start=0.0)
 
-    def _energy(self, x: np.ndarray) -> float:
+    def energy(self, x: np.ndarray) -> float:
+        """Return the elastic energy [J]."""
         k, _ = self._stiffness_at(x)
         return sum((0.5 * k * d**2 for _, d, *_ in self._contacts(x, 0.0 * x, k)), start=0.0)
 
-    def _loss(self, x: np.ndarray, x_t: np.ndarray) -> float:
+    def loss(self, x: np.ndarray, x_t: np.ndarray) -> float:
+        """Return the power lost by damping [W]."""
         k, _ = self._stiffness_at(x)
         each = self._contacts(x, x_t, k)
         return sum(((push - k * depth) * rate for _, depth, rate, push in each), start=0.0)
 
-    def _check_places(self, apart: np.ndarray, axis: np.ndarray) -> None:
+    def check_places(self, apart: np.ndarray, axis: np.ndarray) -> None:
         """Refuse axes that are not parallel, or elsewhere than the gears say."""
         if np.hypot(axis[0], axis[1]) > _SAME_PLACE:
             raise ValueError("other: gears need parallel axes, and those of the rotors are skew")

@@ -59,7 +59,8 @@ class InductionMotor(Drive):
         checks.keep_numbers(self, {"synchronous_speed": "rad/s"})
         self._refuse_zero("synchronous_speed", "rad/s")
 
-    def _torque(self, speed: float, time: float) -> float:
+    def law(self, speed: float, time: float) -> float:
+        """Return the torque [N m]."""
         sense = 1.0 if self.synchronous_speed > 0.0 else -1.0
         slip, most = 1.0 - speed / self.synchronous_speed, self.breakdown_slip
         return 2.0 * sense * self.breakdown_torque * most * slip / (slip * slip + most**2)
@@ -96,7 +97,8 @@ class DirectCurrentMotor(Drive):
         checks.keep_numbers(self, {"no_load_speed": "rad/s"})
         self._refuse_zero("no_load_speed", "rad/s")
 
-    def _torque(self, speed: float, time: float) -> float:
+    def law(self, speed: float, time: float) -> float:
+        """Return the torque [N m]."""
         sense = 1.0 if self.no_load_speed > 0.0 else -1.0
         return sense * self.stall_torque * (1.0 - speed / self.no_load_speed)
 
@@ -133,7 +135,8 @@ class LimitedPower(Drive):
         checks.keep_numbers(self, {"stall_torque": "N m"})
         self._refuse_zero("stall_torque", "N m")
 
-    def _torque(self, speed: float, time: float) -> float:
+    def law(self, speed: float, time: float) -> float:
+        """Return the torque [N m]."""
         sense = 1.0 if self.stall_torque > 0.0 else -1.0
         corner, forward = sense * self.power / self.stall_torque, sense * speed
         beyond = forward - corner

@@ -7,10 +7,10 @@ API 617 asks for the same.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,10 +18,13 @@ from scipy.optimize import brentq
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
-from exudyn_rotor.calls import user_level
-from exudyn_rotor.evaluation.coupled_modes import ROUNDING, Coupled, Modes
+from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.linear.modal.whirl import Content, damping_of
+from exudyn_rotor.linear.model.build import linear_model
+from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.over import motions_over
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.results import Result, numbers, storable
+from exudyn_rotor.results import Result, numbers, storable, text_table
 from exudyn_rotor.theory.stiffening import CHOICES
 from exudyn_rotor.units import Units
 
@@ -32,6 +35,10 @@ MACHINES = {"centrifugal": 3.0, "axial": 1.5}  # factor of the anticipated cross
 _MULTIPLES = np.linspace(0.0, 10.0, 11)  # of the anticipated cross-coupling
 _LEAST_DECREMENT = 0.1  # log decrement, API 617
 _LEAST_RATIO, _LARGE_RATIO = 2.0, 10.0  # of Q₀ to Q_A
+_ROUNDING = 1e-9  # growth over the frequency that is none
+_STILL = 1e-3  # of the speed: a frequency below is that of a motion that does not whirl
+_RESONANT = np.sqrt(0.5)  # damping ratio above which a mode has no resonance
+_FED = 1e-6  # share of the power to a mode that is none: orbits in planes, nodes
 
 
 def anticipated_cross_coupling(
@@ -119,10 +126,10 @@ class StabilityLevelOne(Result):
     True
     >>> print(result.table())
     log decrement of the first forward mode at 2864.79 rpm
-         Q [N/m]   Q/QA  log decrement  frequency [Hz]
-               0   0.00         0.3000         15.7563
-           1e+05   1.00         0.2000         15.7563
-           2e+05   2.00         0.1000         15.7563
+    cross-coupling [N/m]  log decrement  frequency [Hz]
+                       0            0.3         15.7563
+                  100000            0.2         15.7563
+                  200000            0.1         15.7563
     Q0 = 3e+05 N/m = 3 QA, log decrement at QA 0.2
     level II is required: Q0/QA is below 10, and critical speed ratio or gas density are not given
     """
@@ -194,13 +201,8 @@ class StabilityLevelOne(Result):
         lines = [
             "log decrement of the first forward mode at "
             f"{shown.speeds(self.speed):.6g} {shown.speed}",
-            f"     Q [N/m]   Q/QA  log decrement  {'frequency [' + shown.frequency + ']':>14}",
+            *text_table(self.columns(units)),
         ]
-        for applied, decrement, frequency in zip(
-            self.applied, self.log_decrement, shown.frequencies(self.frequencies), strict=True
-        ):
-            ratio = applied / self.anticipated
-            lines.append(f"{applied:12.5g}  {ratio:5.2f}  {decrement:13.4f}  {frequency:14.6g}")
         limit = f"above {self.applied[-1] / self.anticipated:.3g} QA"
         if self.threshold is not None:
             ratio = self.threshold / self.anticipated
@@ -260,11 +262,11 @@ def stability_level_one(
 ) -> StabilityLevelOne:
     """Compute the log decrement of the first forward mode from no cross-coupling to 10 Q_A.
 
-    The mode is the lowest lateral one that the cross-coupling makes less stable, followed from
-    none to all of it: work on an orbit has the sign of its sense. Where it feeds none, as at nodes
-    of all, it is the lowest one. Modes of a damping ratio above
-    0.7, which have no resonance, are passed over where there is another. Cross-coupling Q gives the
-    forces ``(−Q u_n2, Q u_n1)``, which feed forward whirl.
+    Cross-coupling Q gives the forces ``(−Q u_n2, Q u_n1)``, which feed forward whirl. The mode is
+    the lowest lateral one that whirls forward where they act; where none does, as all move in
+    planes, it is the lowest one. Modes of a damping ratio above 0.7, which have no resonance, are
+    passed over where there is another. Where higher forward modes become unstable first, the lowest
+    unstable one counts.
 
     Parameters
     ----------
@@ -293,11 +295,6 @@ def stability_level_one(
     TypeError, ValueError
         If an argument is of another kind or out of range, an interface is unknown or given twice,
         there are no supports, or the rotor has no lateral mode.
-
-    Warns
-    -----
-    UserWarning
-        If another lateral mode is unstable where the first forward mode is stable.
 
     Examples
     --------
@@ -331,42 +328,119 @@ def stability_level_one(
         checks.number(critical_speed_ratio, "critical_speed_ratio", above=0.0)
     if gas_density is not None:
         checks.number(gas_density, "gas_density", "kg/m³", above=0.0)
-    coupled = Coupled(target, speed, dict(zip(names, amounts, strict=True)), supports, stiffening)
-    followed = coupled.over(_MULTIPLES)
+    coupled = _Coupled(target, speed, dict(zip(names, amounts, strict=True)), supports, stiffening)
     total, threshold = float(amounts.sum()), None
-    _warn_of_others(followed, total)
-    decrement = np.array([modes.decrements[mode] for modes, mode in followed])
-    frequencies = np.array([modes.named.inertial[mode] for modes, mode in followed])
-    if np.any(decrement <= 0.0):
-        end = int(np.argmax(decrement <= 0.0))
-        threshold = 0.0
-        if end > 0:
-
-            def between(multiple: float) -> float:
-                modes, mode = coupled.followed(*followed[end], multiple)
-                return -float(modes.growth[mode])
-
-            threshold = total * brentq(between, *_MULTIPLES[end - 1 : end + 1])
+    found = [coupled.first_forward(multiple) for multiple in _MULTIPLES]
+    decrement = np.array([modes.decrements[mode] for modes, mode in found])
+    frequencies = np.array([modes.frequencies[mode] for modes, mode in found])
+    unstable = np.flatnonzero(decrement <= 0.0)
+    if unstable.size:
+        threshold = total * coupled.limit(
+            _MULTIPLES[max(unstable[0] - 1, 0)], _MULTIPLES[unstable[0]]
+        )
     return StabilityLevelOne(
         total * _MULTIPLES, decrement, frequencies, total, speed, machine, threshold,
         critical_speed_ratio, gas_density,
     )  # fmt: skip
 
 
-def _warn_of_others(followed: list[tuple[Modes, int]], total: float) -> None:
-    """Warn of lateral modes that are unstable where the one followed is stable."""
-    for modes, mode in followed:
-        if modes.decrements[mode] <= 0.0:
-            return
-        decrements = np.where(modes.lateral, np.nan_to_num(modes.decrements), np.inf)
-        lowest = int(np.argmin(decrements))
-        if decrements[lowest] < -ROUNDING:
-            hertz = modes.named.inertial[lowest] / (2.0 * np.pi)
-            warnings.warn(
-                f"another mode, at {hertz:.4g} Hz, is unstable from Q = "
-                f"{modes.multiple * total:.4g} N/m at the latest, where the first forward mode is "
-                "stable; stability finds the limit of all modes",
-                UserWarning,
-                stacklevel=user_level(),
-            )
-            return
+class _Modes(NamedTuple):
+    """Modes (m,) under one multiple of the anticipated cross-coupling.
+
+    `fed` is the power that a cross-coupling feeds to each, per size of the mode: positive where it
+    whirls forward.
+    """
+
+    multiple: float
+    growth: np.ndarray
+    frequencies: np.ndarray
+    lateral: np.ndarray
+    fed: np.ndarray
+
+    @property
+    def decrements(self) -> np.ndarray:
+        """Logarithmic decrements; infinite where a mode decays or grows without oscillating."""
+        found = damping_of(self.growth, self.frequencies)[1]
+        return np.where(np.isnan(found), np.copysign(np.inf, -self.growth), found)
+
+
+@dataclass(frozen=True, eq=False)
+class _Coupled:
+    """The rotor on its supports, under multiples of the anticipated cross-coupling.
+
+    Attributes
+    ----------
+    target : ReducedRotor
+    speed : float
+        [rad/s]
+    amounts : dict of str to float
+        Anticipated cross-coupling at interfaces [N/m].
+    supports : tuple of Support or bearings
+    stiffening : str
+    """
+
+    target: ReducedRotor
+    speed: float
+    amounts: dict[str, float]
+    supports: tuple[Given, ...]
+    stiffening: str
+
+    @cached_property
+    def _content(self) -> Content:
+        return Content.of(self._model(0.0))
+
+    def _model(self, multiple: float) -> LinearModel:
+        coupled = [
+            Support(name, [[0.0, multiple * q], [-multiple * q, 0.0]])
+            for name, q in self.amounts.items()
+        ]
+        supports = (*self.supports, *coupled)
+        return linear_model(self.target, supports=supports, stiffening=self.stiffening)
+
+    def modes(self, multiple: float) -> _Modes:
+        """Return all modes under a multiple of the anticipated cross-coupling."""
+        model = self._model(multiple)
+        named = self._content.named(motions_over(model, [self.speed], held=True)).rows(0)
+        motions, fed = named.motions, 0.0
+        for name, amount in self.amounts.items():
+            orbits: dict[int, np.ndarray] = {}
+            for m, U in model.seen(name, self.speed).items():
+                for n, X in zip(motions.orders.tolist(), motions.vectors, strict=True):
+                    orbits[m + n] = orbits.get(m + n, 0.0) + U[:2] @ X
+            for n, (a, b) in orbits.items():
+                rates = motions.values.imag + n * self.speed
+                fed = fed - amount * rates * (a.conj() * b).imag
+        lateral = (named.diameters == 1) & np.isfinite(motions.values)
+        return _Modes(multiple, motions.values.real, named.inertial, lateral, fed)
+
+    def first_forward(self, multiple: float) -> tuple[_Modes, int]:
+        """Return the modes under a multiple, and which is the first forward one.
+
+        Raises
+        ------
+        ValueError
+            Where no mode is lateral.
+        """
+        modes = self.modes(multiple)
+        if not np.any(modes.lateral):
+            raise ValueError(f"target: has no lateral mode at {self.speed:g} rad/s")
+        most = modes.fed[modes.lateral].max()
+        forward = modes.lateral & (modes.fed > max(_FED * most, 0.0))
+        ratios = damping_of(modes.growth, modes.frequencies)[0]
+        swings = (ratios < _RESONANT) & (modes.frequencies > _STILL * self.speed)
+        forward_ones = forward & swings
+        unstable = forward_ones & (modes.growth > _ROUNDING * modes.frequencies)
+        for chosen in (unstable, forward_ones, modes.lateral & swings):
+            if np.any(chosen):
+                return modes, int(np.argmin(np.where(chosen, modes.frequencies, np.inf)))
+        chosen = forward if np.any(forward) else modes.lateral
+        return modes, int(np.argmax(np.where(chosen, modes.growth, -np.inf)))
+
+    def limit(self, below: float, above: float) -> float:
+        """Return the multiple between two at which the first forward mode becomes unstable."""
+
+        def growth(multiple: float) -> float:
+            modes, mode = self.first_forward(multiple)
+            return float(modes.growth[mode])
+
+        return brentq(growth, below, above) if growth(below) < 0.0 else below

@@ -81,26 +81,22 @@ def standard_unbalances(
     places = checks.items([at] if isinstance(at, str) else at, "at", "places of the rotor")
     if len(places) != count:
         raise ValueError(f"at: the mode {mode!r} takes {count} place(s), got {checks.shown(at)}")
+    if count == 2 and places[0] == places[1]:
+        raise ValueError(f"at: the mode {mode!r} takes two places, got {places[0]!r} twice")
     weights = np.atleast_1d(checks.array(masses, "masses", "kg"))
-    fits = weights.ndim == 1 and (weights.size == 2 or weights.size == count)
-    if not fits or np.any(weights <= 0.0):
-        raise ValueError(
-            f"masses: needs {'one or two' if count == 1 else 'two'} positive masses [kg], got "
-            + checks.shown(masses)
-        )
+    if weights.shape not in ((2,), (count,)) or np.any(weights <= 0.0):
+        wanted = "one or two" if count == 1 else "two"
+        raise ValueError(f"masses: needs {wanted} positive masses [kg], got {checks.shown(masses)}")
     speed = checks.number(speed, "speed", "rad/s", above=0.0)
     multiple = checks.number(multiple, "multiple", above=0.0)
     angle = checks.number(angle, "angle", "rad")
     if count == 1:
         weights = weights.sum(keepdims=True)
     amounts = multiple * _RESIDUAL * weights / min(speed, _FASTEST)
-    placed = tuple(
+    return tuple(
         Unbalance(place, float(amount), angle + np.pi * number)
         for number, (place, amount) in enumerate(zip(places, amounts, strict=True))
     )
-    if len({one.at for one in placed}) < count:
-        raise ValueError(f"at: the mode {mode!r} takes two places, got {places[0]!r} twice")
-    return placed
 
 
 def bearing_masses(rotor: ReducedRotor | SolidRotor, bearings: Sequence[str]) -> np.ndarray:
@@ -135,13 +131,12 @@ def bearing_masses(rotor: ReducedRotor | SolidRotor, bearings: Sequence[str]) ->
     array([1., 3.])
     """
     checks.instance(rotor, "rotor", (ReducedRotor, SolidRotor))
-    names = checks.labels(bearings, "bearings", rotor.interfaces)
+    names = checks.different(checks.labels(bearings, "bearings", rotor.interfaces), "bearings")
     if len(names) != 2:
         raise ValueError(f"bearings: needs two interfaces, got {checks.shown(bearings)}")
     mass = rotor.invariants.mass if isinstance(rotor, ReducedRotor) else rotor.total_mass
     left, right = (rotor.interfaces[name].reference @ rotor.axis.direction for name in names)
-    center = rotor.center_of_mass @ rotor.axis.direction
     if left == right:
         raise ValueError(f"bearings: {names[0]!r} and {names[1]!r} are at one place of the axis")
-    share = (center - left) / (right - left)
+    share = (rotor.center_of_mass @ rotor.axis.direction - left) / (right - left)
     return mass * np.array([1.0 - share, share])

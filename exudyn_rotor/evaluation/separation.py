@@ -25,7 +25,7 @@ from exudyn_rotor.linear.response.response import (
     resolved_peak,
     warn_of_coarse_peaks,
 )
-from exudyn_rotor.results import Result, numbers, storable, words
+from exudyn_rotor.results import Result, numbers, storable, text_table, words
 from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:
@@ -76,8 +76,8 @@ class SeparationMargins(Result):
     ...     ("left",), [200.0, 300.0, 500.0], [[1e-6, 1e-5, 2e-6]])
     >>> print(result.table(units="SI"))
     operating range 400 to 500 rad/s
-      peak [rad/s]  size [µm]      AF   N1, N2 [rad/s]     margin  required  verdict  place
-             300.0         10    15.0     290.0, 310.0     25.0 %    15.7 %  ok       left
+    place  peak [rad/s]  size [m]  N1 [rad/s]  N2 [rad/s]    AF  margin  required  accepted
+    left            300     1e-05         290         310    15    0.25     0.157       yes
     """
 
     places: tuple[str, ...] = words("peaks")
@@ -114,7 +114,7 @@ class SeparationMargins(Result):
             "size [m]": self.sizes,
             f"N1 [{shown.speed}]": shown.speeds(self.half_power[:, 0]),
             f"N2 [{shown.speed}]": shown.speeds(self.half_power[:, 1]),
-            "amplification factor": self.amplification,
+            "AF": self.amplification,
             "margin": self.actual,
             "required": self.required,
             "accepted": self.accepted,
@@ -124,25 +124,12 @@ class SeparationMargins(Result):
         """Return the peaks as lines of text; `units` are 'rpm', 'Hz' or 'SI', rad/s."""
         shown = Units.of(units)
         low, high = shown.speeds(self.operating_range)
-        head = f"  {'peak [' + shown.speed + ']':>12}  size [µm]      AF"
-        lines = [
-            f"operating range {low:.6g} to {high:.6g} {shown.speed}",
-            f"{head}  {'N1, N2 [' + shown.speed + ']':>15}     margin  required  verdict  place",
-        ]
-        for i, place in enumerate(self.places):
-            sides = ", ".join(f"{speed:.1f}" for speed in shown.speeds(self.half_power[i]))
-            verdict = "ok" if self.accepted[i] else "fails"
-            lines.append(
-                f"  {shown.speeds(self.peaks[i]):12.1f}  {1e6 * self.sizes[i]:9.4g}"
-                f"  {self.amplification[i]:6.1f}  {sides:>15}  {100.0 * self.actual[i]:7.1f} %"
-                f"  {100.0 * self.required[i]:6.1f} %  {verdict:7}  {place}"
-            )
-        if not self.places:
-            lines.append("  no peak")
+        lines = [f"operating range {low:.6g} to {high:.6g} {shown.speed}"]
+        lines += text_table(self.columns(units)) if self.places else ["no peak"]
         if np.any(np.isnan(self.half_power)):
             lines.append(
-                "nan: no fall to 0.707 of the peak before the valley to the next peak or the end; "
-                "AF is by the other side"
+                "-: no fall to 0.707 of the peak before the valley to the next peak or the end; "
+                "the factor is by the other side"
             )
         return "\n".join(lines)
 
@@ -168,18 +155,16 @@ class SeparationMargins(Result):
         return ax
 
     def _annotate(self, ax: Axes, shown: Units) -> None:
-        """Write amplification factors; peaks at nearly one speed have one label, at the largest."""
-        known = np.flatnonzero(~np.isnan(self.amplification))
-        known = known[np.argsort(self.peaks[known], kind="stable")]
-        apart = np.diff(self.peaks[known]) > _ONE_LABEL * np.ptp(self.speeds)
-        labels = []
-        for group in np.split(known, np.flatnonzero(apart) + 1) if known.size else ():
-            factors = sorted({f"{factor:.1f}" for factor in self.amplification[group]}, key=float)
-            top = group[np.argmax(self.sizes[group])]
-            place = shown.speeds(self.peaks[top]), 1e6 * self.sizes[top]
-            text = "AF " + "–".join([factors[0], *factors[1:][-1:]])
+        """Write amplification factors; of peaks at nearly one speed at the largest alone."""
+        labels, labelled = [], []
+        for i in np.argsort(self.sizes)[::-1]:
+            near = np.abs(self.peaks[labelled] - self.peaks[i]) < _ONE_LABEL * np.ptp(self.speeds)
+            if np.isnan(self.amplification[i]) or np.any(near):
+                continue
+            labelled.append(i)
+            place = shown.speeds(self.peaks[i]), 1e6 * self.sizes[i]
             given = {"textcoords": "offset points", "xytext": (4, 3), "fontsize": 8}
-            labels.append(ax.annotate(text, place, **given))
+            labels.append(ax.annotate(f"AF {self.amplification[i]:.1f}", place, **given))
         plotting.keep_apart(labels)
 
 
@@ -246,27 +231,35 @@ def separation_margins(
     names = response.places
     if places is not None:
         names = checks.different(checks.labels(places, "places", response.places), "places")
-    speeds, entries, coarse = response.speeds, [], []
+    speeds, peaks, coarse = response.speeds, [], []
     _warn_of_speeds_left_out(speeds, limits)
     curves = np.array([response.semi_axes(name)[0] for name in names]).reshape(-1, len(speeds))
-    for name, curve in zip(names, curves, strict=True):
-        curve = np.nan_to_num(curve)
+    for name, curve in zip(names, np.nan_to_num(curves), strict=True):
         rows, _ = find_peaks(curve, prominence=_RIPPLE * curve.max(initial=0.0))
-        for row, section in zip(rows, _flanks(curve, rows), strict=True):
+        valleys = [first + int(np.argmin(curve[first:last])) for first, last in pairwise(rows)]
+        ends = zip(rows, [0, *valleys], [*valleys, len(curve) - 1], strict=False)
+        for row, start, end in ends:
             place, size, is_near = resolved_peak(speeds, curve, row)
-            entries.append((name, place, size, _half_powers(speeds, curve, row, size, section)))
-            if not is_near:
-                coarse.append((name, float(speeds[row])))
+            below, above = slice(start, row + 2), slice(row - 1, end + 1)
+            sides = (
+                _half_power(speeds[below][::-1], curve[below][::-1], size),
+                _half_power(speeds[above], curve[above], size),
+            )
+            peaks.append((name, place, size, sides))
+            coarse += [] if is_near else [(name, float(speeds[row]))]
     warn_of_coarse_peaks(coarse, response.refined)
-    entries.sort(key=lambda entry: entry[1])
-    peaks = np.array([entry[1] for entry in entries])
-    factors = np.array([_amplification(entry[1], entry[3]) for entry in entries])
-    required, actual = _margins(peaks, factors, *limits)
+    peaks.sort(key=lambda peak: peak[1])
+    at, half_power = np.array([peak[1] for peak in peaks]), [peak[3] for peak in peaks]
+    factors = np.array([_amplification(*peak[1::2]) for peak in peaks])
+    low, high = limits
+    above = at > high
+    required = np.where(above, required_margin(factors, True), required_margin(factors, False))
+    actual = np.maximum(np.where(above, at / high - 1.0, 1.0 - at / max(low, 1e-300)), 0.0)
     return SeparationMargins(
-        places=tuple(entry[0] for entry in entries),
-        peaks=peaks,
-        sizes=np.array([entry[2] for entry in entries]),
-        half_power=np.array([entry[3] for entry in entries]).reshape(-1, 2),
+        places=tuple(peak[0] for peak in peaks),
+        peaks=at,
+        sizes=np.array([peak[2] for peak in peaks]),
+        half_power=np.reshape(half_power, (-1, 2)),
         amplification=factors,
         required=required,
         actual=actual,
@@ -298,36 +291,6 @@ def required_margin(amplification: ArrayLike, above: bool) -> np.ndarray:
     below, beyond = _LARGEST
     margin = np.minimum(0.10 + margin, beyond) if above else np.minimum(margin, below)
     return np.where(sharp, margin, 0.0)
-
-
-def _margins(
-    peaks: np.ndarray, factors: np.ndarray, low: float, high: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the margins required and the actual ones, each (p,)."""
-    above = peaks > high
-    required = np.where(above, required_margin(factors, True), required_margin(factors, False))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        actual = np.where(above, peaks / high - 1.0, np.where(peaks < low, 1.0 - peaks / low, 0.0))
-    return required, actual
-
-
-def _flanks(curve: np.ndarray, rows: np.ndarray) -> list[slice]:
-    """Return the section of a curve that belongs to each peak: from valley to valley."""
-    if not len(rows):
-        return []
-    valleys = [first + int(np.argmin(curve[first:last])) for first, last in pairwise(rows)]
-    return [slice(a, b + 1) for a, b in zip([0, *valleys], [*valleys, len(curve) - 1], strict=True)]
-
-
-def _half_powers(
-    speeds: np.ndarray, curve: np.ndarray, row: int, size: float, section: slice
-) -> tuple[float, float]:
-    """Return the half-power speeds of the maximum at a row on its own flanks."""
-    lower, upper = slice(section.start, row + 2), slice(row - 1, section.stop)
-    return (
-        _half_power(speeds[lower][::-1], curve[lower][::-1], size),
-        _half_power(speeds[upper], curve[upper], size),
-    )
 
 
 def _half_power(speeds: np.ndarray, curve: np.ndarray, size: float) -> float:

@@ -183,25 +183,16 @@ class Foundation:
             See :class:`Foundation`.
         """
         omega = checks.vector(frequencies, "frequencies", "rad/s", size=None)
-        zeta, m = (
-            np.broadcast_to(given, omega.shape)
-            if given.ndim == 0
-            else checks.vector(given, name, size=len(omega))
-            for given, name in (
-                (checks.array(damping_ratios, "damping_ratios"), "damping_ratios"),
-                (checks.array(masses, "masses"), "masses"),
-            )
-        )
+        zeta = _per_mode(damping_ratios, "damping_ratios", len(omega))
+        m = _per_mode(masses, "masses", len(omega))
         for values, name, good in (
-            (omega, "frequencies", np.all(omega > 0.0)),
-            (zeta, "damping_ratios", np.all((zeta >= 0.0) & (zeta <= 1.0))),
-            (m, "masses", np.all(m > 0.0)),
+            (omega, "frequencies", omega > 0.0),
+            (zeta, "damping_ratios", (zeta >= 0.0) & (zeta <= 1.0)),
+            (m, "masses", m > 0.0),
         ):
-            if not good:
-                raise ValueError(
-                    f"{name}: needs numbers {'from 0 to 1' if values is zeta else '> 0'}, got "
-                    f"{checks.shown(values)}"
-                )
+            if not np.all(good):
+                needed = "from 0 to 1" if values is zeta else "> 0"
+                raise ValueError(f"{name}: needs numbers {needed}, got {checks.shown(values)}")
         matrices = m, 2.0 * zeta * omega * m, omega**2 * m
         known = {} if places is None else places
         return cls(*map(np.diag, matrices), points, known, participation)
@@ -344,6 +335,11 @@ class Foundation:
                 f"at {np.round(place, 9).tolist()}"
             )
         return self.points[name]
+
+
+def _per_mode(given: ArrayLike, name: str, count: int) -> np.ndarray:
+    values = checks.array(given, name)
+    return np.full(count, values) if values.ndim == 0 else checks.vector(given, name, size=count)
 
 
 def _of_rigid(arm: np.ndarray) -> np.ndarray:

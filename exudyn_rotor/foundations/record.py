@@ -75,8 +75,8 @@ class BaseRecord:
     def from_csv(cls, path: str | PathLike, unit: str) -> BaseRecord:
         """Read lines of time [s] and three accelerations, parted by comma, semicolon or space.
 
-        In lines with semicolons a comma is that of decimals. Lines that begin with ``#``, and one
-        line of names at the beginning, are left out; names do not begin with a number.
+        In lines with semicolons a comma is that of decimals. Lines that begin with ``#``, and lines
+        of names at the beginning, are left out.
 
         Parameters
         ----------
@@ -85,25 +85,25 @@ class BaseRecord:
             Of the accelerations.
         """
         factor = UNITS[checks.choice(unit, "unit", UNITS)]
+        rows = []
         # Excel marks UTF-8; names may be in another encoding
         with open(checks.path(path), encoding="utf-8-sig", errors="replace") as file:
-            lines = [line.split("#")[0] for line in file]
-        filled = [(n, line) for n, line in enumerate(lines, 1) if line.strip()]
-        rows = []
-        for index, (number, line) in enumerate(filled):
-            words = line.replace(",", ".").split(";") if ";" in line else line.split(",")
-            words = words if len(words) > 1 else line.split()
-            try:
-                rows.append([float(word) for word in words])
-            except ValueError as error:
-                if index > 0 or _is_number(words[0]):
-                    raise ValueError(f"{path}, line {number}: {error}") from error
-                continue
-            if len(rows[-1]) != 4:
-                raise ValueError(
-                    f"{path}, line {number}: needs time and three accelerations, got "
-                    f"{len(rows[-1])} numbers"
-                )
+            for number, line in enumerate(file, 1):
+                line = line.split("#")[0].strip()
+                words = line.replace(",", ".").split(";") if ";" in line else line.split(",")
+                words = words if len(words) > 1 else line.split()
+                try:
+                    row = [float(word) for word in words]
+                except ValueError as error:
+                    if rows or words[0].strip()[:1] in "+-.0123456789":
+                        raise ValueError(f"{path}, line {number}: {error}") from error
+                    continue  # names
+                if words and len(row) != 4:
+                    raise ValueError(
+                        f"{path}, line {number}: needs time and three accelerations, got "
+                        f"{len(row)} numbers"
+                    )
+                rows += [row] if row else []
         table = np.array(rows).reshape(-1, 4)
         return cls(table[:, 0], factor * table[:, 1:])
 
@@ -129,10 +129,6 @@ class BaseRecord:
     def end_velocity(self) -> np.ndarray:
         """Velocity of the ground at the end, from rest, shape (3,) [m/s]."""
         return np.trapezoid(self.accelerations, self.times, axis=0)
-
-    def at(self, time: ArrayLike) -> np.ndarray:
-        """Return the acceleration at one time or several [s], shape (…, 3)."""
-        return _at(self, checks.array(time, "time", "s"))
 
     def with_baseline(self) -> BaseRecord:
         """Return the record less a constant and a slope, with which the ground ends at rest.
@@ -165,22 +161,6 @@ class BaseRecord:
         velocity = v[index] + s * a[index] + s**2 / 2.0 * slope
         place = u[index] + s * v[index] + s**2 / 2.0 * a[index] + s**3 / 6.0 * slope
         return velocity, place + past * velocity
-
-
-def _is_number(word: str) -> bool:
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True
-
-
-def _at(record: BaseRecord, time: np.ndarray) -> np.ndarray:
-    columns = [
-        np.interp(time, record.times, column, left=0.0, right=0.0)
-        for column in record.accelerations.T
-    ]
-    return np.stack(columns, axis=-1)
 
 
 def _mean_steps(record: BaseRecord) -> np.ndarray:

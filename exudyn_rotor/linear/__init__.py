@@ -1,6 +1,5 @@
 """Linear analyses of a rotor on supports, or of a scene with a rotor in it.
 
-Folders import one way: ``periodic`` (linear equations with periodic coefficients and how they are
-solved; knows nothing of rotors) < ``models`` (what is analysed) < ``modal``, ``response``,
-``stability`` (the analyses).
+Folders import one way: ``solve`` (how linear equations are solved; knows nothing of rotors) and
+``model`` (what is analysed) < ``modal``, ``response``, ``static``, ``stability`` (the analyses).
 """

@@ -101,10 +101,13 @@ def at_angle(terms: Terms, theta: float) -> np.ndarray:
     return sum(X * np.exp(1j * n * theta) for n, X in terms.items()).real
 
 
-def add(terms: dict[int, np.ndarray], more: Terms, factor: float = 1.0) -> None:
-    """Add Fourier terms to others; the term 0 is real."""
+def add(
+    terms: dict[int, np.ndarray], more: Terms, factor: float | np.ndarray | None = None
+) -> None:
+    """Add Fourier terms, or a multiple of them, to others; the term 0 is real."""
     for n, X in more.items():
-        terms[n] = terms.get(n, 0.0) + factor * (X.real if n == 0 else X)
+        part = X.real if n == 0 else X
+        terms[n] = terms.get(n, 0.0) + (part if factor is None else factor * part)
 
 
 def turned(motion: Terms, turns: int) -> dict[int, np.ndarray]:
@@ -155,43 +158,28 @@ def congruent(U: Terms, X: np.ndarray, V: Terms | None = None) -> dict[int, np.n
     With V = U the symmetric and the skew part of X stay exactly that: the rounding of a stiff
     support would else be a circulatory force. Of a stack X (s, p, p), with s matrices each.
     """
-    if X.ndim == 3:
-        return _by_entries(U, X, V)
-    result: dict[int, np.ndarray] = {}
     if V is not None:
-        for a, left in U.items():
-            for b, right in V.items():
-                add(result, {a + b: left.T @ X @ right})
-        return result
+        return _products(U, X, V, -np.inf)
+    result: dict[int, np.ndarray] = {}
+    acting = np.any(X, axis=(*range(X.ndim - 2), -1)) | np.any(X, axis=(*range(X.ndim - 2), -2))
+    U, X = {n: Y[acting] for n, Y in U.items()}, X[..., acting, :][..., acting]
     for sign in (1.0, -1.0):
-        part = 0.5 * (X + sign * np.swapaxes(X, -1, -2))
+        part = 0.5 * (X + sign * _transposed(X))
         if np.any(part):
-            for n, Y in congruent(U, part, U).items():
-                add(result, {n: 0.5 * (Y + sign * np.swapaxes(Y, -1, -2))})
+            for n, Y in _products(U, part, U, 0).items():
+                Y = 0.5 * (Y + sign * _transposed(Y))
+                add(result, {n: Y, -n: Y.conj()} if n else {0: Y})
     return result
 
 
-def _by_entries(U: Terms, X: np.ndarray, V: Terms | None) -> dict[int, np.ndarray]:
-    """Return what :func:`congruent` does of a stack, entry by entry: a support has few."""
+def _products(U: Terms, X: np.ndarray, V: Terms, least: float) -> dict[int, np.ndarray]:
+    """Return the Fourier terms of ``Uᵀ(θ) X V(θ)`` from the order `least` on."""
     result: dict[int, np.ndarray] = {}
-    right = U if V is None else V
-    orders = {a + b for a in U for b in right if a + b >= 0}
-    for i, j in zip(*np.nonzero(np.any(X, axis=0)), strict=True):
-        here, mirrored = X[:, i, j], X[:, j, i]
-        if V is None and i > j and np.any(mirrored):
-            continue  # comes with its mirror image
-        parts = [(here, 0.0)]
-        if V is None:
-            both = 1.0 if i != j else 0.5
-            parts = [(0.5 * both * (here + sign * mirrored), sign) for sign in (1.0, -1.0)]
-        for n in orders:
-            E = sum(np.outer(U[a][i], right[n - a][j]) for a in U if n - a in right)
-            E = E if n else E.real
-            for values, sign in parts:
-                if np.any(values):
-                    part = values[:, None, None] * (E + sign * E.T if sign else E)
-                    result[n] = result[n] + part if n in result else part
-    return result | {-n: Y.conj() for n, Y in result.items() if n}
+    for a, left in U.items():
+        for b, right in V.items():
+            if a + b >= least:
+                add(result, {a + b: left.T @ X @ right})
+    return result
 
 
 def joined(systems: Sequence[PeriodicSystem]) -> PeriodicSystem:

@@ -38,16 +38,9 @@ def motions_over(
 ) -> Motions:
     """Return the motions of a model at speeds [rad/s]; NaN where it has no equations.
 
-    Parameters
-    ----------
-    model : LinearModel
-    speeds : sequence of float
-    held : bool, optional
-        Whether a spin that nothing holds follows θ = Ωt and is no motion.
-    method, tolerance, least_stable
-        See :func:`motions_of`.
-    progress : bool, optional
-        Show a progress bar with the `label`.
+    Where a spin that nothing holds is `held`, it follows θ = Ωt and is no motion. The `method`,
+    `tolerance` and `least_stable` are those of :func:`motions_of`; the bar of progress has the
+    `label`.
     """
     with tqdm(total=len(speeds), desc=label or None, disable=not progress) as bar:
         given = {"held": held, "least_stable": least_stable, "told": bar.update}
@@ -94,23 +87,11 @@ def forced_over(
     held: np.ndarray | None = None,
     **options: Any,
 ) -> dict[int, np.ndarray]:
-    """Return the harmonics (s, k) of steady motions under loads of frequencies (s,), at one speed.
+    """Return the harmonics (s, k) of steady motions under loads of frequencies (s,) [rad/s].
 
-    Each harmonic has the coefficients of its own frequency.
-
-    Parameters
-    ----------
-    model : LinearModel
-    speed : float
-        Spin speed [rad/s].
-    loads : mapping of int to ndarray, shape (k,)
-        At the frequencies plus multiples of the speed.
-    frequencies : ndarray, shape (s,)
-        [rad/s]
-    held : ndarray, optional
-        :attr:`LinearModel.held_basis`, of motions in which it is solved.
-    **options
-        Of :func:`forced_motions`.
+    At one speed [rad/s], in motions of a basis `held` where one is given. The harmonic n of the
+    loads, (k,), has the frequencies plus n times the speed, and the coefficients of these. The
+    `options` are those of :func:`forced_motions`.
     """
     options |= {"held": held}
     if not model.over_frequency:
@@ -139,19 +120,6 @@ def _warn_of_lost(found: Motions) -> None:
         UserWarning,
         stacklevel=user_level(),
     )
-
-
-def warn_of_refused(refused: Sequence[tuple[str, Exception]], count: int) -> None:
-    """Warn of points without values; raise the first error where all of `count` have none."""
-    if len(refused) == count:
-        raise refused[0][1]
-    if refused:
-        shown = ", ".join(point for point, _ in refused[:5]) + (" …" if len(refused) > 5 else "")
-        warnings.warn(
-            f"no values at {shown}, which are NaN: {refused[0][1]}",
-            UserWarning,
-            stacklevel=user_level(),
-        )
 
 
 @dataclass(frozen=True, eq=False)

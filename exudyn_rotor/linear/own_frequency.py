@@ -19,7 +19,7 @@ import numpy as np
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.linear.equations import PeriodicSystem, joined
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.solve.motions import Motions, motions_of
+from exudyn_rotor.linear.solve.motions import Motions, joined_motions, motions_of
 
 _TOLERANCE, _ENOUGH = 1e-10, 1e-6  # of a frequency: what is aimed at, and what counts as found
 _STILL = 1e-6  # of the largest motion of a support: none
@@ -32,17 +32,9 @@ def own_motions(model: LinearModel, stack: PeriodicSystem) -> Motions:
     In the motions of :attr:`LinearModel.moving_basis`. A motion that is not found is NaN, with one
     warning for all.
     """
-    basis = model.moving_basis
-    found, lost = [], 0
-    for place, known in enumerate(stack.known):
-        if known:
-            found.append(_at_speed(model, float(stack.speed[place]), basis))
-            lost += int(np.sum(np.isnan(found[-1].values)))
-        else:
-            found.append(None)
-    solved = next(one for one in found if one is not None)
-    missing = _without_values(solved)
-    parts = [missing if one is None else one for one in found]
+    speeds, known = stack.speed, np.flatnonzero(stack.known)
+    parts = [_at_speed(model, float(speed)) for speed in speeds[known]]
+    lost = sum(int(np.isnan(part.values).sum()) for part in parts)
     if lost:
         warnings.warn(
             f"{lost} motions on coefficients over the frequency do not settle at their own "
@@ -50,11 +42,7 @@ def own_motions(model: LinearModel, stack: PeriodicSystem) -> Motions:
             UserWarning,
             stacklevel=user_level(),
         )
-    values, vectors = (
-        np.concatenate([getattr(p, n) for p in parts]) for n in ("values", "vectors")
-    )
-    bounds = np.concatenate([part.bounds for part in parts])
-    return Motions(stack.speed, values, vectors, solved.orders, bounds)
+    return joined_motions(speeds, list(zip(known[:, None], parts, strict=True)))
 
 
 def met(model: LinearModel, found: Motions) -> np.ndarray:
@@ -72,40 +60,34 @@ def met(model: LinearModel, found: Motions) -> np.ndarray:
     return used[used > 0.0]
 
 
-def _without_values(like: Motions) -> Motions:
-    none = (np.full(X.shape, np.nan, dtype=X.dtype) for X in (like.values, like.vectors))
-    return Motions(like.speeds, *none, like.orders, np.array([np.nan]))
-
-
-def _at_speed(model: LinearModel, speed: float, basis: np.ndarray | None) -> Motions:
+def _at_speed(model: LinearModel, speed: float) -> Motions:
     """Return the motions at one speed, each with the coefficients of its own frequency."""
-    ends = model.table_frequencies[[0, -1]]
+    ends, basis = model.table_frequencies[[0, -1]], model.moving_basis
     wanted = np.unique([*ends, min(max(abs(speed), ends[0]), ends[1])])
-    samples, solved = np.zeros(0), None
+    samples, parts = np.zeros(0), []
     for sweep in range(_MOST):
-        part = _solved(model, speed, wanted, basis)
+        systems = joined([model.at(speed, float(each)) for each in wanted])
+        parts.append(motions_of(systems if basis is None else systems.projected(basis)))
         samples = np.concatenate([samples, wanted])
-        solved = part if solved is None else after(solved, part)
-        imag = np.abs(solved.values.imag)
+        values = np.concatenate([part.values for part in parts])
         # beyond the ends of the tables nothing changes: a motion there has its coefficients
-        gap = np.clip(imag, *ends) - samples[:, None]
+        gap = np.clip(np.abs(values.imag), *ends) - samples[:, None]
         done = np.abs(gap) <= _TOLERANCE * np.maximum(samples[:, None], 1e-300)
         open_ = ~np.any(done, axis=0)
-        if not np.any(open_):
-            break
-        wanted = np.unique(_next(samples, gap[:, open_], sweep))
-        wanted = np.setdiff1d(wanted, samples)
+        wanted = np.setdiff1d(_next(samples, gap[:, open_], sweep), samples)
         if not wanted.size:
             break
     # motions of one frequency have one sample, for their shapes are apart there
     first = np.where(open_, np.argmin(np.abs(gap), axis=0), np.argmax(done, axis=0))
     columns = np.arange(len(first))
     lost = np.abs(gap[first, columns]) > _ENOUGH * samples[first]
-    values = np.where(lost, complex(np.nan, np.nan), solved.values[first, columns])
-    vectors = solved.vectors[first, :, :, columns]  # (k, h, c)
-    vectors = np.moveaxis(vectors, 0, -1)[None]
-    bound = solved.bounds.max(keepdims=True)
-    return Motions(np.array([speed]), values[None], vectors, solved.orders, bound)
+    values = np.where(lost, complex(np.nan, np.nan), values[first, columns])
+    vectors = np.concatenate([part.vectors for part in parts])[first, :, :, columns]  # (k, h, c)
+    bound = np.array([max(part.bounds.max() for part in parts)])
+    orders = parts[0].orders
+    return Motions(
+        np.array([speed]), values[None], np.moveaxis(vectors, 0, -1)[None], orders, bound
+    )
 
 
 def _next(samples: np.ndarray, gap: np.ndarray, sweep: int) -> np.ndarray:
@@ -118,20 +100,3 @@ def _next(samples: np.ndarray, gap: np.ndarray, sweep: int) -> np.ndarray:
     a, b, ha, hb = x[low], x[low + 1], h[low, columns], h[low + 1, columns]
     share = 0.5 if sweep % 3 == 2 else ha / (ha - hb)  # halves where secants are slow
     return a + share * (b - a)
-
-
-def _solved(
-    model: LinearModel, speed: float, frequencies: np.ndarray, basis: np.ndarray | None
-) -> Motions:
-    """Return the motions with the coefficients of frequencies, (s, k)."""
-    stack = joined([model.at(speed, float(each)) for each in frequencies])
-    return motions_of(stack if basis is None else stack.projected(basis))
-
-
-def after(one: Motions, other: Motions) -> Motions:
-    """Return motions of constant equations one after the other."""
-    each = ("speeds", "values", "vectors", "bounds")
-    speeds, values, vectors, bounds = (
-        np.concatenate([getattr(one, n), getattr(other, n)]) for n in each
-    )
-    return Motions(speeds, values, vectors, one.orders, bounds)

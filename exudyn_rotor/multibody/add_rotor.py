@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import exudyn
-from exudyn.itemInterface import ObjectGenericODE2
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
@@ -15,37 +14,22 @@ from exudyn_rotor.multibody.full.add_full import add_full
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.full.full_plan import check_memory, make_full_plan
 from exudyn_rotor.multibody.rotor.equations import constant_object, user_function_object
-from exudyn_rotor.multibody.rotor.frame import (
-    CENTRE_OF_MASS,
-    FRAME_NODES,
-    LOCKINGS,
-    add_constraints,
-    driving_force,
-)
-from exudyn_rotor.multibody.rotor.marker_body import (
-    add_weight,
-    interface_markers,
-    marker_body_mesh,
-    marker_body_object,
-)
+from exudyn_rotor.multibody.rotor.frame import LOCKINGS, add_constraints, driving_force
+from exudyn_rotor.multibody.rotor.markers import add_weight, flexible_body
 from exudyn_rotor.multibody.rotor.plan import (
-    Plan,
     Setup,
     check_free_names,
     color_of,
-    generic_node,
-    item_name,
     main_system,
     make_plan,
-    marker_requests,
+    marker_kinds,
     placement,
 )
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.multibody.rotor.rotor_items import note_rotor
+from exudyn_rotor.multibody.rotor.rotor_items import add_interface_markers
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.reduction.selection import NEGLIGIBLE
-from exudyn_rotor.solid.damping import LOSS_LEFT_OUT
+from exudyn_rotor.solid.rotor import LOSS_LEFT_OUT
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.formulation import (
     ConstantSpeed,
@@ -79,13 +63,7 @@ def add_rotor(
     mass_damping: float = 0.0,
     stiffness_damping: float = 0.0,
     markers: Mapping[str, str] | str | None = None,
-    marker_offsets: Mapping[str, ArrayLike] | None = None,
-    show_markers: bool = True,
-    condense_markers: bool = True,
     locking: str = "auto",
-    frame_node: str = CENTRE_OF_MASS,
-    marker_body: bool = True,
-    negligible: float = NEGLIGIBLE,
     color: Sequence[float] = DEFAULT_COLOR,
 ) -> RotorBody | FullRotorBody:
     """Add a fixed-axis rotor to `mbs`.
@@ -130,16 +108,7 @@ def add_rotor(
     markers : {'rigid', 'position'} or mapping of str to these, optional
         Kind of the markers at all interfaces, or interfaces that get a marker; all of them, rigid,
         by default. A position marker serves springs and forces at a fifth of the cost of a rigid
-        one.
-    marker_offsets : mapping of str to array_like, shape (3,), optional
-        Offset of a marker from the interface's reference point, mesh axes [m].
-    show_markers : bool
-        Whether markers are drawn.
-    condense_markers : bool
-        Whether ``mbs.Assemble()`` moves a script's own markers on many mesh nodes of the rotor to
-        one or three added nodes with the same mean motion: the same to round-off, at a cost that
-        does not depend on the mesh; and whether forces at a rigid marker's own offset have their
-        lever for tilts. See :mod:`exudyn_rotor.multibody.rotor.assembly`.
+        one. ``body.add_marker`` adds others, with an offset too.
     locking : {'auto', 'constraints', 'mass'}
         How coordinates of the marker body's node that the formulation does not have are held.
         ``'constraints'``, which ``'auto'`` is, serves all solvers, and Exudyn's analyses of the
@@ -147,19 +116,6 @@ def add_rotor(
         with an error, "contains constraints that cannot be solved", about an object whose name says
         what to do. They need ``'mass'``, which static solvers do not take; see
         :mod:`exudyn_rotor.multibody.rotor.frame`.
-    frame_node : {'centre_of_mass', 'mesh_origin'}
-        Where the node of the frame is, ``body.nodes["rigid"]``: markers and sensors that a script
-        adds there move with the mean rigid motion of the rotor at this place, tilts included. The
-        centre of mass (its foot on the axis, where the translation is not free) is where a force
-        tilts nothing; Exudyn's own body has its node in the mesh origin, and so have the twins of
-        its calls. It changes neither equations nor cost. See the notes.
-    marker_body : bool
-        Whether a massless flexible body of Exudyn shares the coordinates. It gives markers, mesh
-        sensors and drawing, and its node the coordinates that are locked; False leaves out all of
-        these.
-    negligible : float
-        Share of their upper bound below which couplings are left out of a time step; see
-        :func:`exudyn_rotor.select_modes`.
     color : sequence of 4 floats
         RGBA.
 
@@ -183,12 +139,17 @@ def add_rotor(
     ``body.frame.B``, with z along the spin axis; local output, and rotations about single axes of
     the node, are in those. Markers have mesh axes always.
 
-    The node itself carries the frame's coordinates, which do not tilt: its translation is that of
-    the centre of mass, its angle the rotor's mean rotation about the axis. What a script attaches
-    to rigid and position markers there (``MarkerNodeRigid``, ``MarkerNodePosition``) is pointed by
-    ``mbs.Assemble()`` at markers with the rotor's mean motion, so that forces, torques, springs,
-    joints and sensors act as on Exudyn's body. Markers of single coordinates, and sensors of the
-    node, stay what they are; a warning, and ``body.check_connections()``, name what they lack.
+    The node of the frame is in the mesh origin, as that of Exudyn's body. It carries the frame's
+    coordinates, which do not tilt: its translation is that of the centre of mass, its angle the
+    rotor's mean rotation about the axis. What a script attaches to rigid and position markers there
+    (``MarkerNodeRigid``, ``MarkerNodePosition``) is pointed by ``mbs.Assemble()`` at markers with
+    the rotor's mean motion, so that forces, torques, springs, joints and sensors act as on Exudyn's
+    body. Markers of single coordinates, and sensors of the node, stay what they are; a warning, and
+    ``body.check_connections()``, name what they lack.
+
+    A script's own markers on many mesh nodes are moved by ``mbs.Assemble()`` to one or three added
+    nodes with the same mean motion: the same to round-off, at a cost that does not depend on the
+    mesh (:mod:`exudyn_rotor.multibody.rotor.assembly`).
 
     The static solver keeps the initial velocities, so the rotor spins in it, its angle stands
     still. With a constant spin and translation ``'none'`` its solution is the steady state in the
@@ -203,7 +164,7 @@ def add_rotor(
     with a marker has its mean motion as coordinates (:mod:`exudyn_rotor.multibody.full.ties`). At a
     constant speed a time step calls no Python and needs no new factor. Give
     ``recommended_settings(…, body=body)``: Exudyn's default linear solver is a dense one. Markers
-    come by ``markers`` and ``body.add_marker``, not by mesh nodes of the flexible body; markers at
+    come by `markers` and ``body.add_marker``, not by mesh nodes of the flexible body; markers at
     the node of the frame, damping by `mass_damping` of a rotor that nothing holds, and checks and
     linear analyses of the scene need a reduced rotor.
 
@@ -239,7 +200,6 @@ def add_rotor(
     formulation = Formulation(
         suited_translation(translation, rotor.grounded), spin, drive, spin_coupling
     )
-    requests = marker_requests(rotor, markers, marker_offsets, show_markers, marker_body)
     setup = Setup(
         name=None if name is None else checks.label(name, "name"),
         formulation=formulation,
@@ -258,12 +218,8 @@ def add_rotor(
         gravity=checks.vector(gravity, "gravity", "m/s²"),
         mass_damping=checks.number(mass_damping, "mass_damping", "1/s", least=0.0),
         stiffness_damping=checks.number(stiffness_damping, "stiffness_damping", "s", least=0.0),
-        markers=requests,
-        condense_markers=checks.flag(condense_markers, "condense_markers"),
+        markers=marker_kinds(rotor.interfaces, markers),
         locking=checks.choice(locking, "locking", LOCKINGS),
-        frame_node=checks.choice(frame_node, "frame_node", FRAME_NODES),
-        marker_body=marker_body,
-        negligible=checks.number(negligible, "negligible", least=0.0, below=1.0),
         color=color_of(color),
     )
     check_free_names(mbs, setup)
@@ -275,15 +231,34 @@ def add_rotor(
 def _add_reduced(mbs: exudyn.MainSystem, reduced: ReducedRotor, setup: Setup) -> RotorBody:
     by_default = setup.stiffening == "auto"
     level = chosen_level(setup.stiffening, reduced.invariants.K2 is not None)
-    setup = replace(setup, stiffening=level)
-    plan = make_plan(reduced, setup)
+    plan = make_plan(reduced, replace(setup, stiffening=level))
     if by_default and level == "tilt":
         warn_of_left_out(reduced.invariants, setup.placement.speed, 4)
     if reduced.invariants.H is not None:
         warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=3)
-    if not setup.marker_body:
-        return add_bare(mbs, plan)
-    return add_with_marker_body(mbs, plan, reduced)
+    rigid, modes = plan.add_nodes(mbs)
+    # first of all objects, as in scripts that know it by its number
+    item = flexible_body(
+        plan, [rigid, modes], plan.motion.invariants.S, reduced.shapes, setup.name or ""
+    )
+    marker_body = mbs.AddObject(item)
+    by_mass = setup.locking == "mass"
+    drive = driving_force(plan.locks, plan.layout.lock_mass) if by_mass else None
+    if plan.motion.is_constant and drive is None:
+        physics = constant_object(plan.motion, plan.layout, [rigid, modes])
+    else:
+        physics = user_function_object(plan.motion, plan.layout, [rigid, modes], drive)
+    body = RotorBody(
+        mbs,
+        plan,
+        nodes={"rigid": rigid, "modes": modes},
+        objects={"physics": mbs.AddObject(physics), "marker_body": marker_body},
+        constraints={} if by_mass else add_constraints(mbs, plan.locks, rigid),
+        gravity_load=add_weight(mbs, marker_body, plan.marker_body_gravity),
+        mesh_node_count=0 if reduced.shapes is None else len(reduced.shapes.nodes),
+    )
+    add_interface_markers(body)
+    return body
 
 
 def _add_solid(mbs: exudyn.MainSystem, rotor: SolidRotor, setup: Setup) -> FullRotorBody:
@@ -292,61 +267,6 @@ def _add_solid(mbs: exudyn.MainSystem, rotor: SolidRotor, setup: Setup) -> FullR
         rotor = with_chosen_prestress(rotor, None)
     level = chosen_level(setup.stiffening, rotor.carried_prestress is not None)
     plan = make_full_plan(rotor, replace(setup, stiffening=level))
-    if rotor.structural_damping is not None:
+    if rotor.structural_damping:
         warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=3)
     return add_full(mbs, plan)
-
-
-def add_bare(mbs: exudyn.MainSystem, plan: Plan) -> RotorBody:
-    """Add only the unknowns of the formulation, on one generic node."""
-    node = mbs.AddNode(plan.bare_node())
-    physics = mbs.AddObject(_physics(plan, [node]))
-    return RotorBody(mbs, plan, {"coordinates": node}, {"physics": physics})
-
-
-def add_with_marker_body(mbs: exudyn.MainSystem, plan: Plan, reduced: ReducedRotor) -> RotorBody:
-    """Add nodes, the marker body, locks, equations, gravity and markers."""
-    setup, inv = plan.setup, plan.motion.invariants
-    offsets = {interface: request.offset for interface, request in setup.markers.items()}
-    mesh = marker_body_mesh(
-        reduced.shapes, reduced.interfaces, plan.selection.T, reduced.axis, plan.frame, offsets
-    )
-    rigid = mbs.AddNode(plan.rigid_node())
-    modes = mbs.AddNode(generic_node(*plan.start, item_name("NodeGeneric:", setup.name)))
-    # first of all objects, as in scripts that know it by its number
-    marker_body = mbs.AddObject(
-        marker_body_object(
-            setup.name or "",
-            [rigid, modes],
-            mesh,
-            inv.mass,
-            plan.selection.origin + inv.center,
-            inv.S,
-            plan.frame,
-            setup.color,
-        )
-    )
-    physics = mbs.AddObject(_physics(plan, [rigid, modes]))
-    by_mass = setup.locking == "mass"
-    body = RotorBody(
-        mbs,
-        plan,
-        nodes={"rigid": rigid, "modes": modes},
-        objects={"physics": physics, "marker_body": marker_body},
-        markers=interface_markers(mbs, setup, marker_body, mesh, plan.frame),
-        constraints={} if by_mass else add_constraints(mbs, plan.locks, rigid),
-        gravity_load=add_weight(mbs, marker_body, plan.marker_body_gravity),
-        mesh_node_count=mesh.mesh_node_count,
-        mesh_stress=bool(mesh.stress.size),
-    )
-    note_rotor(body)
-    return body
-
-
-def _physics(plan: Plan, nodes: list) -> ObjectGenericODE2:
-    drive = None
-    if plan.setup.locking == "mass" and plan.setup.marker_body:
-        drive = driving_force(plan.locks, plan.layout.lock_mass)
-    if plan.motion.is_constant and drive is None:
-        return constant_object(plan.motion, plan.layout, nodes)
-    return user_function_object(plan.motion, plan.layout, nodes, drive)

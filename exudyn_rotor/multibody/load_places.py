@@ -10,8 +10,7 @@ import numpy as np
 
 from exudyn_rotor.multibody.drives.connect_rotors import SceneConnection
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
-from exudyn_rotor.solid.interface import Interface, rotation_moments
-from exudyn_rotor.solid.rotor import FiniteElementRotor
+from exudyn_rotor.solid.interface import rotation_moments
 from exudyn_rotor.theory.nodal import skew
 
 _MARKERS = {"SuperElementPosition": 3, "SuperElementRigid": 6}
@@ -32,26 +31,11 @@ class LoadPlace:
         Displacement of the point, and rotation where moments act, by modal coordinates, mesh axes.
     interface : str or None
         The interface whose mean motion this is.
-    nodes : tuple of (ndarray of int, ndarray) or None
-        Mesh nodes with their weights, where it is no interface; None where they are not known.
     """
 
     point: np.ndarray
     motion: np.ndarray
     interface: str | None
-    nodes: tuple[np.ndarray, np.ndarray] | None
-
-    def load_columns(self, rotor: FiniteElementRotor) -> np.ndarray | None:
-        """Return nodal loads (3n, 3 or 6) of unit forces and moments; None where not known."""
-        if self.interface is not None:
-            where = rotor.interfaces[self.interface]
-        elif self.nodes is not None:
-            numbers, weights = self.nodes
-            where = Interface("loaded", numbers, weights, rotor.nodes[numbers])
-        else:
-            return None
-        rows = where.centered_on(self.point).mean_motion(rotor.node_count)
-        return rows[: len(self.motion)].T.toarray()
 
 
 def load_places(body: RotorItems) -> tuple[LoadPlace, ...]:
@@ -66,7 +50,7 @@ def load_places(body: RotorItems) -> tuple[LoadPlace, ...]:
         kind = marker["markerType"]
         if kind in _MARKERS and int(marker["bodyNumber"]) == number:
             count = _MARKERS[kind] if moments else 3
-            found.append(_at_marker(body, held, marker, points, columns, count))
+            found.append(_at_marker(body, marker, points, columns, count))
     return (*found, *_of_drives(body))
 
 
@@ -92,7 +76,6 @@ def _acting(mbs: exudyn.MainSystem) -> Iterator[tuple[list, str]]:
 
 def _at_marker(
     body: RotorItems,
-    number: int,
     marker: dict,
     points: np.ndarray,
     columns: np.ndarray,
@@ -109,10 +92,7 @@ def _at_marker(
         motion = np.vstack([motion, lever @ np.einsum("kab,kbm->am", levers, moved)])
     motion = np.vstack([turn.T @ part for part in np.split(motion, count // 3)])
     on_mesh = point @ turn + body.frame.origin
-    nodes = body.node_places.get(number)
-    if nodes is None and numbers.max() < body.mesh_node_count:
-        nodes = numbers, weights
-    return LoadPlace(on_mesh, motion, _interface_at(body, on_mesh, motion), nodes)
+    return LoadPlace(on_mesh, motion, _interface_at(body, on_mesh, motion))
 
 
 def _interface_at(body: RotorItems, point: np.ndarray, motion: np.ndarray) -> str | None:
@@ -138,4 +118,4 @@ def _of_drives(body: RotorItems) -> Iterator[LoadPlace]:
             names |= {drive.at} if drive.body is body else set(interfaces)
     for name in sorted(names):
         interface = interfaces[name]
-        yield LoadPlace(interface.reference, interface.motion @ body.selection.T, name, None)
+        yield LoadPlace(interface.reference, interface.motion @ body.selection.T, name)

@@ -276,11 +276,6 @@ class Balance:
         by_spin = np.abs(n) > N
         return tuple(float(np.linalg.norm(moved[one]) / size) for one in (~by_spin, by_spin))
 
-    def distance(self, c: np.ndarray, other: np.ndarray) -> float:
-        """Return how far apart two motions get, relative to how far the second one gets."""
-        away = np.abs(self.values(c - other)).max()
-        return float(away / max(np.abs(self.values(other)).max(), 1e-300))
-
 
 def orders_of(reach: tuple[int, int]) -> np.ndarray:
     """Return all (k, n) up to K and N, shape (h, 2)."""

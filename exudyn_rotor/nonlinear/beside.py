@@ -6,7 +6,8 @@ with the derivatives G, G' of :mod:`.balance` along the motion. In the motions o
 mean of the right side, ``ż = λ z + B u``, what is left of that side, u, acts at few places. Gauss's
 method with two stages in a step, of fourth order and stable for all that loses energy, needs of the
 laws a rank of four for each place: the matrix of a period, the monodromy matrix, takes k²
-operations a step for k coordinates. Its eigenvalues μ are the multipliers: the motion is stable
+operations a step for k coordinates: those slower than ten times the highest harmonic, and static
+ones for all that is faster. Its eigenvalues μ are the multipliers: the motion is stable
 where all are inside the unit circle. One of a limit cycle is 1: the shift in time. Motions that the
 laws do not feel keep their exponents. A round rotor is taken in axes that stand still.
 
@@ -28,6 +29,7 @@ _A = np.array([[0.25, 0.25 - np.sqrt(3.0) / 6.0], [0.25 + np.sqrt(3.0) / 6.0, 0.
 _PER_CYCLE = 6  # steps in a cycle of the fastest motion on the laws
 _PER_WAVE = 8  # and in the shortest wave of the steady motion
 _FEWEST, _MOST = 64, 2_000  # steps
+_STATIC = 10.0  # times the highest harmonic: motions that are faster follow as springs do
 _FELT = 1e-6  # of the motion that laws act on most: one that they do not act on
 _DEPENDENT = 1e-10  # of singular values of motions of unit length
 _NEAR = 2e-3  # relative difference of frequencies that are taken for the same
@@ -44,9 +46,12 @@ class Beside:
     balance: Balance
     c: np.ndarray
 
-    @property
+    @cached_property
     def _rest(self) -> Unloaded:
-        return self.balance.rest.unloaded.for_stability
+        rest, (K, N) = self.balance.rest.unloaded.for_stability, self.balance.reach
+        first, second = self.balance.rest.rates
+        waves = K * abs(first) + N * abs(second)
+        return rest.up_to(_STATIC * waves) if waves else rest
 
     @cached_property
     def _places(self) -> np.ndarray:

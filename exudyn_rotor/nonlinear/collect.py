@@ -42,8 +42,7 @@ def collected(
         coordinate_orders, coordinates = _stacked([_half(each) for each in kept])
         beside = model.coordinates[rotors_of(model.bodies)[0].size :]
         of_run = {
-            "coordinate_orders": coordinate_orders, "coordinates": coordinates, "basis": "rotor",
-            "beside": beside,
+            "coordinate_orders": coordinate_orders, "coordinates": coordinates, "beside": beside,
         }  # fmt: skip
     measured = np.array([_at_bearings(point) for point in points])  # (p, 4, b)
     return PeriodicResponse(

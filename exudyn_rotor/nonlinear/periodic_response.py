@@ -70,9 +70,8 @@ def periodic_response(
     ----------
     target : ReducedRotor, SolidRotor, RotorTrain, LinearModel or exudyn.MainSystem
         As of :func:`linear_model`. A scene has laws of :func:`add_supports` on the ground or on one
-        foundation, Exudyn's own linear springs between interfaces and the ground, constant forces
-        and weight; anything else in it is refused. Of a train, the unbalance is that of rotors of
-        ratio 1.
+        foundation, constant forces and weight; anything else in it is refused. Of a train, the
+        unbalance is that of rotors of ratio 1.
     values : array_like, shape (v,)
         Ascending values of the parameter; all solutions that are met there are among the points.
         From the first to the last one the branches are followed.

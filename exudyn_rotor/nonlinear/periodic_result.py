@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.response.response import DIRECTIONS
-from exudyn_rotor.linear.response.run_start import RunStart
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import StartState, spin_at_start
-from exudyn_rotor.results import numbers, storable, words
+from exudyn_rotor.nonlinear.run_start import state_in_scene
+from exudyn_rotor.results import Result, numbers, storable, text_table, words
 from exudyn_rotor.units import IN_HERTZ, Units
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ _MARKERS = {"fold": "D", "doubling": "^", "torus": "s", "branching": "P"}
 
 @storable
 @dataclass(frozen=True, eq=False)
-class PeriodicResponse(RunStart):
+class PeriodicResponse(Result):
     """Branches of steady motions ``u = Re Σ a_kn exp i(kφ + nθ/r)``, in axes that stand still.
 
     θ is the spin angle; the second phase φ is of the ball pass, or of a limit cycle; it has no
@@ -78,7 +78,11 @@ class PeriodicResponse(RunStart):
     label : str
         The parameter and its unit.
     coordinate_orders : ndarray of int, shape (c, 2)
-        As `orders`, of :attr:`coordinates`, rotor frame.
+        As `orders`, of `coordinates`.
+    coordinates : ndarray of complex, shape (p, c, k), optional
+        Harmonics of the coordinates of the reduced rotor in its own axes, from which runs begin.
+    beside : tuple of str, optional
+        Names of those after the reduced rotor's: of a foundation, controllers and pads.
 
     Examples
     --------
@@ -116,6 +120,10 @@ class PeriodicResponse(RunStart):
     revolutions: int
     label: str
     coordinate_orders: np.ndarray = numbers("harmonics", 2, dtype=int)
+    coordinates: np.ndarray | None = numbers(
+        "abscissa", "harmonics", "coordinates", dtype=complex, finite=False, optional=True
+    )
+    beside: tuple[str, ...] = words("beside", default=(), kw_only=True)
 
     def __repr__(self) -> str:
         """Return one line."""
@@ -209,10 +217,6 @@ class PeriodicResponse(RunStart):
         mean = self.motion[:, self._at(place), self._constant(), :2].real.sum(axis=1)
         return np.linalg.norm(seen - mean[:, None], axis=-1).max(axis=1)
 
-    def end_to_end(self, place: str | None = None) -> np.ndarray:
-        """Return the way from end to end of the motion along n1 and n2, shape (p, 2) [m]."""
-        return np.ptp(self._over_phases(place), axis=1)
-
     def _constant(self) -> np.ndarray:
         return ~np.any(self.orders, axis=1)
 
@@ -246,28 +250,20 @@ class PeriodicResponse(RunStart):
         Raises
         ------
         TypeError, ValueError
-            As :meth:`UnbalanceResponse.state`.
+            For another rotor, foundation or controllers, and a system that is not assembled.
         """
         reduced_body(body)
         angle = spin_at_start(body)[0] if angle is None else checks.number(angle, "angle", "rad")
         point = self._point(point)
-        return self._start(point, body, angle, float(self.speeds[point]))
-
-    def _computed_at(self, value: float) -> int:
         if self.coordinates is None:
             raise ValueError(
                 "state: the response keeps no coordinates: supports have coordinates that turn"
             )
-        return int(value)
-
-    def _check_harmonics(self) -> None:
-        """Let every number of harmonics be."""
-
-    def _waves(self, index: int) -> tuple[np.ndarray, np.ndarray]:
-        rates = self.coordinate_orders @ self.rates[index]
-        speed = self.speeds[index]
-        turns = self.rates[index] / speed if speed else np.zeros(2)
-        return self.coordinate_orders @ turns, rates
+        rates, speed = self.coordinate_orders @ self.rates[point], float(self.speeds[point])
+        phases = angle * (rates / speed) if speed else 0.0 * rates
+        turned = np.exp(1j * phases)[:, None] * self.coordinates[point]
+        x, x_t = turned.sum(axis=0).real, (1j * rates[:, None] * turned).sum(axis=0).real
+        return state_in_scene(body, x, x_t, self.beside, angle, speed)
 
     def _point(self, point: int) -> int:
         return checks.count(point, "point", most=len(self.values) - 1)
@@ -297,8 +293,6 @@ class PeriodicResponse(RunStart):
                 "kind": np.array(self.kinds),
                 "place": np.full(rows, place),
                 "amplitude [m]": self.amplitudes(place),
-                "n1, end to end [m]": self.end_to_end(place)[:, 0],
-                "n2, end to end [m]": self.end_to_end(place)[:, 1],
             }
             for place in self.places
         ]
@@ -319,31 +313,27 @@ class PeriodicResponse(RunStart):
         }
         return columns | {name: np.tile(each, count) for name, each in ends.items()}
 
-    def table(self, place: str | None = None, *, units: str = "rpm", every: bool = False) -> str:
-        """Return motions at one place as text: wanted values and changes, or every point."""
-        checks.flag(every, "every")
+    def table(self, place: str | None = None, *, units: str = "rpm") -> str:
+        """Return motions at one place as text: wanted values and changes of the motion."""
         values, label = self._shown(units)
         name = self.places[self._at(place)]
-        gaps = np.full(len(values), np.nan)
-        known = np.any(np.isfinite(self.gaps), axis=1)
-        gaps[known] = np.nanmin(self.gaps[known], axis=1)
-        lines = [
-            name,
-            f"{label:>20} {'branch':>6} {'amplitude [m]':>13} {'force [N]':>10} {'gap [m]':>10} "
-            f"{'growth [1/s]':>12}  motion",
-        ]
-        rows = zip(
-            values, self.branches, self.amplitudes(name), self.forces.max(axis=1), gaps,
-            self.growth, self.stable, self.kinds, strict=True,
-        )  # fmt: skip
-        for value, branch, amplitude, force, gap, growth, stable, kind in rows:
-            if every or kind != "computed":
-                motion = kind if kind in _MARKERS else "stable" if stable else "unstable"
-                lines.append(
-                    f"{value:20.6g} {branch:6d} {amplitude:13.4e} {force:10.4g} {gap:10.3e} "
-                    f"{growth:12.4g}  {motion}"
-                )
-        return "\n".join(lines)
+        gaps = np.where(np.isfinite(self.gaps), self.gaps, np.inf).min(axis=1, initial=np.inf)
+        states = np.where(self.stable, "stable", "unstable")
+        columns = {
+            label: values,
+            "branch": self.branches,
+            "amplitude [m]": self.amplitudes(name),
+            "force [N]": self.forces.max(axis=1),
+            "gap [m]": np.where(np.isfinite(gaps), gaps, np.nan),
+            "growth [1/s]": self.growth,
+            "motion": np.array(
+                [kind if kind in _MARKERS else state
+                 for kind, state in zip(self.kinds, states, strict=True)]
+            ),
+        }  # fmt: skip
+        shown = np.array([kind != "computed" for kind in self.kinds], dtype=bool)
+        lines = text_table({title: column[shown] for title, column in columns.items()})
+        return "\n".join([name, *lines])
 
     def plot(self, place: str | None = None, *, ax: Axes | None = None, units: str = "rpm") -> Axes:
         """Draw the largest distance from the mean place [µm] over the parameter.
@@ -362,13 +352,6 @@ class PeriodicResponse(RunStart):
         name = self.places[self._at(place)]
         amplitudes = 1e6 * self.amplitudes(name)
         ax = plotting.axes_or_new(ax)
-        told: set[str] = set()
-
-        def named(word: str) -> str:
-            first = word not in told
-            told.add(word)
-            return word if first else "_" + word
-
         for branch in np.unique(self.branches):
             rows = np.flatnonzero(self.branches == branch)
             stable = self.stable[rows]
@@ -377,13 +360,14 @@ class PeriodicResponse(RunStart):
             for part in np.split(np.arange(len(rows)), ends):
                 shown = rows[part[0] : part[-1] + 2]  # to where the next part begins
                 word, line = ("stable", "-") if stable[part[0]] else ("unstable", "--")
-                ax.plot(values[shown], amplitudes[shown], line, color=color, label=named(word))
+                ax.plot(values[shown], amplitudes[shown], line, color=color, label=word)
         for kind, marker in _MARKERS.items():
             at = np.array([each == kind for each in self.kinds], dtype=bool)
             if at.any():
-                ax.plot(values[at], amplitudes[at], marker, color="k", mfc="w", label=named(kind))
+                ax.plot(values[at], amplitudes[at], marker, color="k", mfc="w", label=kind)
         ax.set_xlabel(label)
         ax.set_ylabel("amplitude [µm]")
         ax.set_title(name, loc="right", fontsize=10)
-        ax.legend()
+        once = {line.get_label(): line for line in ax.lines}
+        ax.legend(handles=list(once.values()))
         return ax

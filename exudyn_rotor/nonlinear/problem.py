@@ -10,7 +10,6 @@ import numpy as np
 from exudyn_rotor.bearings.annular_seal import AnnularSeal
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.given import Given
-from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.rolling import RollingBearing, depth_under
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
@@ -54,12 +53,11 @@ def parted(given: Sequence[Given]) -> tuple[list[Bearing], list[Given]]:
         if not isinstance(one, Bearing) or isinstance(one, AnnularSeal):
             linear.append(one)
             continue
-        remembers = isinstance(one, JournalBearing) and one.remembers
-        if remembers or isinstance(one, TiltingPadBearing):
+        if isinstance(one, TiltingPadBearing):
             raise ValueError(
                 f"supports: the bearing at {one.interface!r} has no force by place and velocity "
-                "alone: its voids or its pads have motions of their own; give a film with "
-                "cavitation='reynolds', or the linear coefficients, bearing.linearised()"
+                "alone: its pads have motions of their own; give the linear coefficients, "
+                "bearing.linearised()"
             )
         laws.append(one)
     return laws, linear

@@ -15,10 +15,11 @@ rotor has.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import eigh, orth
 
 from exudyn_rotor.calls import kept
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, difference, stacked
@@ -26,6 +27,7 @@ from exudyn_rotor.linear.model.linear_model import ON_FOUNDATION, LinearModel
 
 Coupling = tuple[np.ndarray, np.ndarray, np.ndarray]  # rows, columns, H (h, d, d)
 _SMALL = 1e-12  # share of a receptance or a motion that is rounding
+_DEPENDENT = 1e-8  # of singular values of static motions
 
 
 def journal_motions(model: LinearModel, names: Sequence[str], speed: float) -> Terms:
@@ -72,12 +74,15 @@ class Unloaded:
     standing : LinearModel, optional
         The same in axes that stand still, of a round rotor: there what laws do to motions beside a
         steady one changes little, and not at all on a circle.
+    within : ndarray, shape (r', r), optional
+        Columns of fewer motions, see :meth:`up_to`.
     """
 
     model: LinearModel
     names: Sequence[str]
     speed: float
     standing: LinearModel | None = None
+    within: np.ndarray | None = None
     known: dict = field(default_factory=dict, repr=False)  # receptances
 
     @cached_property
@@ -85,10 +90,27 @@ class Unloaded:
         """The rest in axes that stand still, if it can be."""
         return Unloaded(self.standing, self.names, self.speed) if self.standing else self
 
+    def up_to(self, frequency: float) -> Unloaded:
+        """Return the rest in its motions up to a frequency [rad/s], and static ones of the others.
+
+        Faster motions follow the forces of the laws as springs do: of them the basis keeps what
+        they yield to constant forces.
+        """
+        M, _, K = self.system.matrices()
+        squares, shapes = eigh(0.5 * (K + K.T), 0.5 * (M + M.T))
+        fast = squares > frequency**2
+        felt = np.vstack([np.vstack([C.real, C.imag]) for C in self.journals.values()])
+        yields = shapes[:, fast] @ ((felt @ shapes[:, fast]) / squares[fast]).T
+        static = orth(yields, rcond=_DEPENDENT) if np.any(yields) else yields[:, :0]
+        if static.shape[1] >= np.sum(fast):
+            return self
+        return replace(self, within=np.hstack([shapes[:, ~fast], static]), known={})
+
     @cached_property
     def basis(self) -> np.ndarray:
         """Motions that something resists, (k, r)."""
-        return resisted(self.model)
+        resists = resisted(self.model)
+        return resists if self.within is None else resists @ self.within
 
     @cached_property
     def system(self) -> PeriodicSystem:
@@ -98,7 +120,8 @@ class Unloaded:
     @cached_property
     def journals(self) -> Terms:
         """C (d, r)."""
-        return _journals(self.model, tuple(self.names), bool(self.speed))
+        found = _journals(self.model, tuple(self.names), bool(self.speed))
+        return found if self.within is None else {n: C @ self.within for n, C in found.items()}
 
 
 @dataclass(frozen=True, eq=False)

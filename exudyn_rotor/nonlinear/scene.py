@@ -1,7 +1,7 @@
 """A scene as a rotor, or a train of rotors, on supports and laws: what harmonic balance takes.
 
-Laws are known by what :func:`exudyn_rotor.add_supports` added, and Exudyn's own springs and forces
-by their constants. Anything else might be nonlinear, and is refused by its name.
+Laws are known by what :func:`exudyn_rotor.add_supports` added, and Exudyn's own forces by their
+constants. Anything else might be nonlinear, and is refused by its name.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ import exudyn
 import numpy as np
 
 from exudyn_rotor.bearings.given import Given
-from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.model.build import Target
 from exudyn_rotor.linear.model.scene.scene_checks import check_scene
@@ -24,12 +23,9 @@ from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation
 
-_SAME_PLACE = 1e-9  # m, of the ends of a spring
-_SPRING = "ConnectorCartesianSpringDamper"
 _INSTEAD = (
-    "periodic_response takes laws of add_supports on the ground or on one foundation, Exudyn's "
-    f"{_SPRING}s between an interface and the ground, and constant forces at interfaces; leave "
-    "it out, or look at a run"
+    "periodic_response takes laws of add_supports on the ground or on one foundation, and constant "
+    "forces at interfaces; leave it out, or look at a run"
 )
 
 
@@ -77,9 +73,9 @@ def listed(mbs: exudyn.MainSystem, body: RotorBody | Sequence[RotorBody]) -> Lis
     else:
         check_scene(mbs, reduced_body(body, how="the rotor in the scene, of add_rotor"))
         base = _foundation(body)
-        springs = list(_springs(body, base))
+        _check_objects(body, base)
         target, level, bodies = body.selection.source, body.stiffening, [body]
-        supports = (*(one.support for one in body.supports), *springs)
+        supports = tuple(one.support for one in body.supports)
         foundation = None if base is None else _in_mesh(base, body)
     for one in bodies:
         if one.formulation.moves_origin:
@@ -111,31 +107,22 @@ def _in_mesh(base: SceneFoundation, body: RotorBody) -> Foundation:
     return found.turned(back, -back @ placement.position)
 
 
-def _springs(body: RotorBody, base: SceneFoundation | None) -> Iterator[Support]:
-    """Yield Exudyn's own springs at the rotor, and refuse all other objects but known ones."""
+def _check_objects(body: RotorBody, base: SceneFoundation | None) -> None:
+    """Refuse all objects but known ones."""
     mbs = body.mbs
-    known = {
-        int(number)
-        for numbers in (
-            body.objects.values(),
-            body.constraints.values(),
-            *(one.objects for one in body.supports),
-            () if base is None else base.objects.values(),
-        )
-        for number in numbers
-    }
+    own = (body.objects.values(), body.constraints.values())
+    laws = (one.objects for one in body.supports)
+    below = () if base is None else base.objects.values()
+    known = {int(number) for numbers in (*own, *laws, below) for number in numbers}
     frame = None if base is None else mbs.GetObject(base.objects["marker_body"])["nodeNumbers"][0]
     for number in set(range(mbs.systemData.NumberOfObjects())) - known:
         item = mbs.GetObject(number)
         if item["objectType"] == "Ground" or (frame is not None and _holds(mbs, item, int(frame))):
             continue
-        support = _spring(body, item) if item["objectType"] == _SPRING and base is None else None
-        if support is None:
-            raise ValueError(
-                f"mbs: object {number} ({item['objectType']} {item['name']!r}) is no law of this "
-                f"package; {_INSTEAD}"
-            )
-        yield support
+        raise ValueError(
+            f"mbs: object {number} ({item['objectType']} {item['name']!r}) is no law of this "
+            f"package; {_INSTEAD}"
+        )
 
 
 def _holds(mbs: exudyn.MainSystem, item: dict, frame: int) -> bool:
@@ -146,29 +133,6 @@ def _holds(mbs: exudyn.MainSystem, item: dict, frame: int) -> bool:
         return False
     markers = (mbs.GetMarker(int(number)) for number in item["markerNumbers"])
     return any(int(marker.get("nodeNumber", -1)) == frame for marker in markers)
-
-
-def _spring(body: RotorBody, item: dict) -> Support | None:
-    """Return a linear spring of Exudyn between an interface and the ground; None of others."""
-    mbs, kinds = body.mbs, exudyn.OutputVariableType
-    ends = [int(number) for number in item["markerNumbers"]]
-    named = {int(marker): name for name, marker in body.markers.items()}
-    known = [number for number in ends if number in named]
-    if len(known) != 1 or item["springForceUserFunction"] or not item["activeConnector"]:
-        return None
-    [other] = [number for number in ends if number not in named]
-    carrier = mbs.GetMarker(other).get("bodyNumber")
-    if carrier is None or mbs.GetObject(int(carrier))["objectType"] != "Ground":
-        return None
-    places = [
-        mbs.GetMarkerOutput(number, kinds.Position, exudyn.ConfigurationType.Reference)
-        for number in ends
-    ]
-    if np.linalg.norm(places[1] - places[0] - item["offset"]) > _SAME_PLACE:
-        return None  # a spring that is not relaxed
-    A = body.standing_axes
-    K, D = (A.T @ np.diag(item[name]) @ A for name in ("stiffness", "damping"))
-    return Support(named[known[0]], K, D)
 
 
 def _loads(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import itertools
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,12 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.pictures.drawing import Orbit, animated, draw_motion
-from exudyn_rotor.results import Result, numbers, storable, words
+from exudyn_rotor.plotting import COLORS, draw_surface, flat_triangles
+from exudyn_rotor.results import Result, numbers, storable, text_table, words
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.storage import write_bytes
 from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.rotating_axes import FRAMES, axes_of
+from exudyn_rotor.theory.rotating_axes import axes_of
 from exudyn_rotor.units import Units
 from exudyn_rotor.vtk import write_surface
 
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
 
 
 _STATIONS = 15  # along the axis
+_SHARE = 0.1  # largest displacement as drawn, over the size of the rotor
+_ALPHA = 0.3  # of the surface, through which the orbits are seen
+_COLORS = dict(zip(("forward", "backward", "straight"), COLORS, strict=False))
 # of the larger amplitude: an orbit with less of the smaller one is neither forward nor backward
 _STRAIGHT = 0.02
 # frequencies that differ by less than this share are one
@@ -93,12 +97,6 @@ class MotionShapes(Result):
                 f"motion: needs three values for each of the {len(self.positions)} nodes, got "
                 f"{self.motion.shape[2]}"
             )
-        if self.triangles.size and (
-            self.triangles.shape[1] not in (3, 6) or self.triangles.max() >= len(self.positions)
-        ):
-            raise ValueError("triangles: needs 3 or 6 numbers of nodes each")
-        if not np.any(self.direction):
-            raise ValueError("direction: needs a vector along the spin axis, got zeros")
 
     @property
     def axis(self) -> SpinAxis:
@@ -119,15 +117,8 @@ class MotionShapes(Result):
 
         With the `units` 'rpm' speeds are in rpm and frequencies in Hz, with 'SI' both in rad/s.
         """
-        shown = Units.of(units)
-        speed, frequency = f"speed [{shown.speed}]", f"frequency [{shown.frequency}]"
-        lines = [f"index{speed:>14}{frequency:>19}  what"]
-        for index, label in enumerate(self.labels):
-            lines.append(
-                f"{index:5d}{shown.speeds(self.speeds[index]):14.5g}"
-                f"{shown.frequencies(self.frequencies[index]):19.6g}  {label}"
-            )
-        return "\n".join(lines)
+        numbered = {"index": np.arange(len(self.labels)), **self.columns(units)}
+        return "\n".join(text_table(numbered))
 
     def displacement(self, index: int, time: float) -> np.ndarray:
         """Return the displacement of all nodes at a time [s], rotor frame, mesh axes, (n, 3).
@@ -156,18 +147,12 @@ class MotionShapes(Result):
             axial_places.append((center, local @ axes.T))
         return axial_places
 
-    def plot(
-        self,
-        index: int = 0,
-        ax: Axes3D | None = None,
-        *,
-        share: float = 0.1,
-        units: str = "Hz",
-    ) -> Axes3D:
+    def plot(self, index: int = 0, ax: Axes3D | None = None, *, units: str = "Hz") -> Axes3D:
         """Draw the rotor at the time zero and the orbits of its centre line.
 
         Orbits are blue where the rotor whirls forward, seen from outside and relative to the spin,
-        and orange where it whirls backward.
+        and orange where it whirls backward. The largest displacement is drawn as a tenth of the
+        rotor's size.
 
         Parameters
         ----------
@@ -175,8 +160,6 @@ class MotionShapes(Result):
             Which shape, counted from 0.
         ax : Axes3D, optional
             3D axes to draw in; those of a new figure by default.
-        share : float, optional
-            Largest displacement as drawn, over the size of the rotor.
         units : {'Hz', 'rpm', 'SI'}, optional
             Of speed and frequency in the title, see :meth:`table`.
 
@@ -186,39 +169,42 @@ class MotionShapes(Result):
             If there is no surface, no motion, or no such shape.
         """
         index = checks.count(index, "index", most=len(self.labels) - 1)
-        shown, scale = Units.of(units), self._scale(index, share)
-        moved = self.displacement(index, 0.0)
-        reach = scale * self._amplitudes(index)
-        low, high = (self.positions - reach).min(axis=0), (self.positions + reach).max(axis=0)
-        orbits = [
-            Orbit(center + scale * points, sense)
-            for (center, points), sense in zip(self.orbits(index), self._senses(index), strict=True)
-        ]
-        sizes = np.linalg.norm(reach, axis=1)
-        sizes = sizes / sizes.max()
-        title = (
-            f"{self.labels[index]}\n{shown.frequencies(self.frequencies[index]):.5g} "
-            f"{shown.frequency} at a spin of {shown.speeds(self.speeds[index]):.5g} {shown.speed}"
+        shown, scale = Units.of(units), self._scale(index)
+        reach = scale * np.abs(self.motion[index]).sum(axis=0).reshape(-1, 3)
+        room = np.array(
+            [(self.positions - reach).min(axis=0), (self.positions + reach).max(axis=0)]
         )
-        places = self.positions + scale * moved
-        room = np.array([low, high])
-        return draw_motion(places, self.triangles, sizes, orbits, room, self.positions, title, ax)
+        sizes = np.linalg.norm(reach, axis=1)
+        places = self.positions + scale * self.displacement(index, 0.0)
+        label = "displacement / largest"
+        ax = draw_surface(places, self.triangles, sizes / sizes.max(), label, ax, room=room)
+        ax.collections[-1].set(alpha=_ALPHA, linewidth=0.0)
+        ax.computed_zorder = False
+        known: set[str] = set()
+        orbits = self.orbits(index)
+        for (center, points), sense in zip(orbits, self._senses(index), strict=True):
+            name = sense if sense not in known else None
+            known.add(sense)
+            line = (center + scale * points).T
+            ax.plot(*line, color=_COLORS[sense], lw=1.2, zorder=5, label=name)
+        if orbits:
+            centers = np.array([center + scale * points[0] for center, points in orbits])
+            ax.plot(*centers.T, "k.-", lw=1.0, ms=4, zorder=6, label="centre line")
+            ax.legend(loc="upper right", frameon=False, fontsize="small")
+        ax.set_title(
+            f"{self.labels[index]}\n{shown.frequencies(self.frequencies[index]):.5g} "
+            f"{shown.frequency} at a spin of {shown.speeds(self.speeds[index]):.5g} {shown.speed}",
+            fontsize="small",
+        )
+        return ax
 
     def animate(
-        self,
-        path: str | PathLike,
-        index: int = 0,
-        *,
-        frame: str = "inertial",
-        share: float = 0.1,
-        frames: int = 24,
-        seconds: float = 2.0,
-        units: str = "Hz",
+        self, path: str | PathLike, index: int = 0, *, frames: int = 24, seconds: float = 2.0
     ) -> None:
-        """Write one period of the motion as an animated GIF.
+        """Write one period of the motion, seen from outside, as an animated GIF.
 
-        In the inertial frame the rotor also spins by Ω times the period; a motion that stands
-        still there is shown over one revolution. In its own frame the period is that of ν.
+        The rotor also spins by Ω times the period. A motion that stands still in space is shown
+        over one revolution.
 
         Parameters
         ----------
@@ -226,49 +212,45 @@ class MotionShapes(Result):
             Ends with '.gif'; a file there is replaced by a complete one only.
         index : int, optional
             Which shape, counted from 0.
-        frame : {'inertial', 'rotor'}
-        share : float, optional
-            See :meth:`plot`.
         frames : int, optional
             Number of pictures.
         seconds : float, optional
             How long one period lasts in the film [s].
-        units : {'Hz', 'rpm', 'SI'}, optional
-            See :meth:`plot`.
 
         Raises
         ------
         TypeError, ValueError, OSError
             If an argument is of another kind, there is no surface, or the file cannot be written.
         """
+        from matplotlib import pyplot
+        from PIL import Image
+
         target = checks.path(path)
         if target.suffix != ".gif":
             raise ValueError(f"path: needs the ending .gif, got {str(target)!r}")
-        index = checks.count(index, "index", most=len(self.labels) - 1)
-        inertial = checks.choice(frame, "frame", FRAMES) == "inertial"
         count = checks.count(frames, "frames", least=2, most=1000)
-        seconds = checks.number(seconds, "seconds", "s", above=0.0)
-        scale = self._scale(index, share)
-        speed = self.speeds[index]
-        rate = self.frequencies[index] if inertial else abs(self.rates[index])
-        rate = rate or abs(speed) or 1.0
-        times = 2.0 * np.pi / rate * np.arange(count) / count
-        ax = self.plot(index, share=share, units=units)
-        shown = self.triangles[:, :3]
-        if self.triangles.shape[1] == 6:
-            shown = self.triangles[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
-        stations = self._stations
-
-        def places(time: float) -> tuple[np.ndarray, np.ndarray]:
+        each = round(1000.0 * checks.number(seconds, "seconds", "s", above=0.0) / count)
+        ax = self.plot(index)
+        figure, faces, line = ax.figure, ax.collections[-1], ax.lines[-1]
+        rate = self.frequencies[index] or abs(self.speeds[index]) or 1.0
+        scale, corners, pictures = self._scale(index), flat_triangles(self.triangles), []
+        for time in 2.0 * np.pi / rate * np.arange(count) / count:
             moved = scale * self.displacement(index, time)
-            centers = [center + (mean @ moved.ravel()) for center, mean in stations]
-            nodes, centers = self.positions + moved, np.array(centers).reshape(-1, 3)
-            if not inertial:
-                return nodes, centers
-            turn = self.axis.rotation(speed * time).T
-            return ((part - self.point) @ turn + self.point for part in (nodes, centers))
-
-        write_bytes(target, animated(ax, shown, places, times, seconds))
+            turn = self.axis.rotation(self.speeds[index] * time).T
+            nodes = (self.positions + moved - self.point) @ turn + self.point
+            faces.set_verts(nodes[corners])
+            faces.set_alpha(_ALPHA)
+            if self._stations:
+                centers = [center + mean @ moved.ravel() for center, mean in self._stations]
+                line.set_data_3d(*((np.array(centers) - self.point) @ turn + self.point).T)
+            figure.canvas.draw()
+            rgb = np.asarray(figure.canvas.buffer_rgba())[..., :3]
+            pictures.append(Image.fromarray(rgb).convert("P", palette=Image.Palette.ADAPTIVE))
+        pyplot.close(figure)
+        film = io.BytesIO()
+        options = {"append_images": pictures[1:], "duration": each, "loop": 0}
+        pictures[0].save(film, format="GIF", save_all=True, **options)
+        write_bytes(target, film.getvalue())
 
     def to_vtk(self, path: str | PathLike) -> None:
         """Write all shapes on the surface for ParaView; needs the package meshio.
@@ -351,13 +333,11 @@ class MotionShapes(Result):
                 senses.append("forward" if ahead else "backward")
         return senses
 
-    def _amplitudes(self, index: int) -> np.ndarray:
-        """Return the largest displacement of every node along each axis, (n, 3)."""
-        return np.abs(self.motion[index]).sum(axis=0).reshape(-1, 3)
-
-    def _scale(self, index: int, share: float) -> float:
-        share = checks.number(share, "share", above=0.0)
-        largest = np.linalg.norm(self._amplitudes(index), axis=1).max()
+    def _scale(self, index: int) -> float:
+        """Return by how much displacements are drawn larger than they are."""
+        largest = np.linalg.norm(
+            np.abs(self.motion[index]).sum(axis=0).reshape(-1, 3), axis=1
+        ).max()
         if largest == 0.0:
             raise ValueError(f"index: the shape {index}, {self.labels[index]!r}, has no motion")
-        return share * np.ptp(self.positions, axis=0).max() / largest
+        return _SHARE * np.ptp(self.positions, axis=0).max() / largest

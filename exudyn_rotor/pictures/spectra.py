@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.results import Result, numbers, storable
+from exudyn_rotor.results import Result, numbers, storable, text_table
 from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:
@@ -45,9 +45,9 @@ class Spectra(Result):
     --------
     >>> from exudyn_rotor import Spectra
     >>> print(Spectra([0.5, 1.5], [60.0, 90.0], [-90.0, 0.0, 90.0], [[0, 0, 1], [2, 0, 1]]).table())
-      time [s]    speed [Hz]     strongest [Hz]   amplitude
-           0.5        9.5493             14.324           1
-           1.5        14.324            -14.324           2
+    time [s]  speed [Hz]  strongest frequency [Hz]  amplitude
+         0.5      9.5493                   14.3239          1
+         1.5     14.3239                  -14.3239          2
     """
 
     times: np.ndarray = numbers("windows")
@@ -146,13 +146,7 @@ class Spectra(Result):
 
     def table(self, *, units: str = "Hz") -> str:
         """Return the strongest frequency of every window as text; `units` as of :meth:`plot`."""
-        shown = Units.of(units)
-        speed, strongest = f"speed [{shown.speed}]", f"strongest [{shown.frequency}]"
-        lines = [f"  time [s]{speed:>14}{strongest:>19}   amplitude"]
-        for row in zip(*self.columns(units).values(), strict=True):
-            time, speed, frequency, amplitude = row
-            lines.append(f"{time:10.4g}{speed:14.5g}{frequency:19.5g}{amplitude:12.4g}")
-        return "\n".join(lines)
+        return "\n".join(text_table(self.columns(units)))
 
     def _inside(self, highest: float | None, least: float, order: float) -> tuple:
         """Return which frequencies are shown, and the largest of their amplitudes.

@@ -33,9 +33,8 @@ class Spring(Protocol):
     """What the static solution needs of a :class:`exudyn_rotor.Support`."""
 
     interface: str
+    stiffness_varies: bool
 
-    @property
-    def stiffness_varies(self) -> bool: ...
     def matrices(self, speed: float) -> tuple[np.ndarray, np.ndarray]: ...
 
 
@@ -46,14 +45,7 @@ _ROUNDING = 1e-9  # of a moment: part across the axis
 
 
 def nodal_loads(rotor: FiniteElementRotor, loads: Loads) -> np.ndarray:
-    """Return given loads as nodal forces, shape (3n,) [N]; see :meth:`SolidRotor.prestress`.
-
-    Raises
-    ------
-    TypeError, ValueError
-        For loads of another form, unknown places, moments across the axis or at a node, and a
-        torque on an interface that is not alike around the axis.
-    """
+    """Return given loads as nodal forces, shape (3n,) [N]; see :meth:`SolidRotor.prestress`."""
     if not isinstance(loads, Mapping):
         return checks.array(loads, "loads", "N", shape=(rotor.node_count, 3)).ravel().copy()
     total = np.zeros(rotor.nodes.size)
@@ -113,16 +105,7 @@ def checked_supports(supports: Sequence[Spring] | Spring) -> tuple[Spring, ...]:
 def support_forces(
     rotor: FiniteElementRotor, supports: Sequence[Spring], relief: InertiaRelief, load: np.ndarray
 ) -> np.ndarray:
-    """Return the nodal forces (3n,) by which supports take up a load (3n,).
-
-    Parameters
-    ----------
-    rotor : SolidRotor
-    supports : sequence of Spring
-    relief : InertiaRelief
-        Elastic inverse of the rotor.
-    load : ndarray, shape (3n,)
-    """
+    """Return the nodal forces (3n,) by which supports take up a load (3n,)."""
     rows, stiffness = _springs(rotor, supports)
     if not len(stiffness):
         return np.zeros_like(load)

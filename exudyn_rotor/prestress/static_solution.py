@@ -43,13 +43,16 @@ from exudyn_rotor.prestress.given_loads import (
     nodal_loads,
     support_forces,
 )
-from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.rotor import FiniteElementRotor, check_unstressed
 from exudyn_rotor.solid.tensor import von_mises
-from exudyn_rotor.solvers.choice import Way, way_of
-from exudyn_rotor.solvers.inertia_relief import InertiaRelief, free_motions_of, inertia_relief
+from exudyn_rotor.solvers.inertia_relief import (
+    InertiaRelief,
+    Way,
+    free_motions_of,
+    inertia_relief,
+)
 from exudyn_rotor.theory.nodal import rotations, skew
 
 # a stress field in equilibrium loses a few per cent where it was averaged at nodes
@@ -77,7 +80,11 @@ def static_prestress(
     checks.flag(euler, "euler")
     _check_yield(yield_stress, speed)
     supports = checked_supports(supports)
-    _check_alone(clamped, initial_displacement, loads is not None or bool(supports))
+    if (loads is not None or supports) and (clamped or initial_displacement):
+        raise ValueError(
+            "loads, supports: have no solution with clamped interfaces or an initial displacement; "
+            "hold a rotor by stiff supports, and leave initial_displacement out"
+        )
     shape = (rotor.node_count, 6)
     rest_stress = None if stress is None else checks.array(stress, "stress", "Pa", shape=shape)
     if rotor.elements is None:
@@ -88,7 +95,10 @@ def static_prestress(
         )
     elements = rotor.elements
     residual = None if rest_stress is None else elements.load_of_stress(rest_stress)
-    state = _support(rotor, clamped)
+    supported = rotor.clamped(clamped) if clamped else rotor
+    nodes = [rotor.interfaces[name].nodes for name in clamped]
+    hub = np.unique(np.concatenate([np.zeros(0, dtype=int), *nodes]))
+    state = _StaticState(rotor, supported, hub, rotor.stiffness, inertia_relief(supported))
     constant = None
     if rest_stress is not None:
         springback = state.solve(residual)
@@ -101,7 +111,7 @@ def static_prestress(
         rest_stress = _in_equilibrium(rotor, rest_stress, springback)
         state = state.stressed(constant)
 
-    load = centrifugal_load(rotor)
+    load = rotor.centrifugal_load
     displacement, matrix = state.stiffening(load)
     initial = None
     if initial_displacement:
@@ -127,7 +137,7 @@ def static_prestress(
     return Prestress(
         matrix=matrix,
         nodes=rotor.nodes,
-        euler=state.stiffening(euler_load(rotor))[1] if euler else None,
+        euler=state.stiffening(rotor.euler_load)[1] if euler else None,
         displacement=displacement,
         stress=by_spin,
         constant=constant,
@@ -142,24 +152,6 @@ def static_prestress(
     )
 
 
-def _check_alone(clamped: Sequence[str], initial_displacement: bool, given: bool) -> None:
-    if given and (clamped or initial_displacement):
-        raise ValueError(
-            "loads, supports: have no solution with clamped interfaces or an initial displacement; "
-            "hold a rotor by stiff supports, and leave initial_displacement out"
-        )
-
-
-def centrifugal_load(rotor: FiniteElementRotor) -> np.ndarray:
-    """Return ``f_c = M x_⊥``, the centrifugal nodal load per ω², shape (3n,)."""
-    return rotor.mass @ rotor.axis.radial(rotor.nodes).ravel()
-
-
-def euler_load(rotor: FiniteElementRotor) -> np.ndarray:
-    """Return ``−M ẽx``, the Euler nodal load per ω̇, shape (3n,)."""
-    return -rotor.mass @ np.cross(rotor.axis.direction, rotor.nodes - rotor.axis.point).ravel()
-
-
 def relief_rotations(rotor: FiniteElementRotor) -> np.ndarray:
     """Return the angular accelerations of inertia relief per ω² and per ω̇, shape (2, 3).
 
@@ -170,10 +162,10 @@ def relief_rotations(rotor: FiniteElementRotor) -> np.ndarray:
     if not carried.balanced:
         return np.zeros((2, 3))
     free = free_motions_of(rotor)
-    by_spin = centrifugal_load(rotor)
+    by_spin = rotor.centrifugal_load
     if carried.reactions is not None:
         by_spin = by_spin + carried.reactions
-    loads = np.stack([by_spin, euler_load(rotor)])
+    loads = np.stack([by_spin, rotor.euler_load])
     turns = rotations(rotor.nodes, rotor.center_of_mass)
     inertia = turns.T @ (rotor.mass @ turns)
     momentum = turns.T @ (rotor.mass @ (free @ (free.T @ loads.T)))
@@ -185,10 +177,7 @@ def relief_under_stress(
 ) -> InertiaRelief:
     """Return the elastic inverse of a stiffness with a stress at rest in it.
 
-    Raises
-    ------
-    ValueError
-        If it is not positive definite but for the `free` rigid motions: the rotor buckles.
+    ValueError if it is not positive definite but for the `free` rigid motions: the rotor buckles.
     """
     try:
         return InertiaRelief(stiffness, mass, free, way)
@@ -203,18 +192,14 @@ def relief_under_stress(
 class _StaticState:
     """What takes up static loads: the rotor, with a hub, and with a stress at rest or none.
 
-    `supported` is the rotor with the hub's nodes held, `stiffness` that of the rotor itself.
+    `supported` is the rotor with the nodes `hub` held, `stiffness` that of the rotor itself.
     """
 
     rotor: FiniteElementRotor
     supported: FiniteElementRotor
+    hub: np.ndarray
     stiffness: sp.csr_array
     relief: InertiaRelief
-
-    @property
-    def hub(self) -> np.ndarray:
-        """Nodes that the hub holds."""
-        return np.setdiff1d(self.supported.elements.held, self.rotor.elements.held)
 
     @property
     def rigid(self) -> np.ndarray:
@@ -223,17 +208,17 @@ class _StaticState:
 
     def stressed(self, constant: sp.csr_array) -> _StaticState:
         """Return the state with the stiffness of a stress at rest, which acts on every load."""
-        free = matrices.without_nodes(constant, self.supported.elements.held)
-        held = sp.csr_array(self.supported.stiffness + free)
-        relief = relief_under_stress(held, self.rotor.mass, self.relief.rigid, way_of(self.rotor))
+        free = self.supported.elements.free
+        added = constant if free is None else free @ constant @ free
+        held = sp.csr_array(self.supported.stiffness + added)
+        relief = relief_under_stress(held, self.rotor.mass, self.relief.rigid, Way.of(self.rotor))
         return replace(self, stiffness=self.stiffness + constant, relief=relief)
 
     def solve(self, load: np.ndarray) -> np.ndarray:
         """Return the static displacement (3n,)."""
-        displacement = self.relief.solve(load)
+        displacement, free = self.relief.solve(load), self.supported.elements.free
         # the stiff springs of `clamped` give way a little
-        displacement.reshape(-1, 3)[self.supported.elements.held] = 0.0
-        return displacement
+        return displacement if free is None else free @ displacement
 
     def stiffening(self, load: np.ndarray) -> tuple[np.ndarray, sp.csr_array]:
         """Return the displacement (3n,) of a load, and K_G with what the hub's forces add."""
@@ -245,11 +230,6 @@ class _StaticState:
             springs = disc.stiffness_matrix(self.rotor.node_count)
             matrix = matrix + _hub_stiffness(self.rotor, disc.nodes, -(springs @ displacement))
         return displacement, matrix
-
-
-def _support(rotor: FiniteElementRotor, clamped: Sequence[str]) -> _StaticState:
-    supported = rotor.clamped(clamped) if clamped else rotor
-    return _StaticState(rotor, supported, rotor.stiffness, inertia_relief(supported))
 
 
 def _hub_stiffness(rotor: FiniteElementRotor, hub: np.ndarray, forces: np.ndarray) -> sp.csr_array:

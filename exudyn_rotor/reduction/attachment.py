@@ -1,7 +1,22 @@
-"""Attachment modes: static responses to loads at the interfaces, which no finite set of modes has.
+"""Static responses beside the modes: to loads at interfaces, and to the inertia of turning modes.
 
-With them a basis is statically complete for loads at the interfaces. They tell what other modes
-leave out: Rubin, "Improved component-mode representation", AIAA Journal 13 (1975).
+With attachment modes a basis is statically complete for loads at the interfaces. They tell what
+other modes leave out: Rubin, "Improved component-mode representation", AIAA Journal 13 (1975).
+
+A motion ``c_f = Q q e^{λt}`` in the columns Q of a basis leaves, in the full equations (105), the
+forces
+
+    r = (λ²M + λ(D + 2ΩMẽ) + K + Ω²(K_G + Mẽẽ)) Q q,    ẽẽ = eeᵀ − I.
+
+For a mass-orthonormal basis that diagonalises K (``QᵀKQ = Λ``) the part of r that does no work on
+Q is a combination of the columns of
+
+    KQ − MQΛ,   MẽQ,   M eeᵀQ,   K_G Q,   DQ
+
+(with K_u beside K_G where that is carried), each less ``MQ`` times its work on Q. The static
+responses ``K⁺L`` to these loads L are what the basis lacks first: the lowest left-out modes,
+weighted by how much the motions in the basis excite them. Beside Q they make a finer rotor, and by
+it the error of the basis is estimated (:mod:`exudyn_rotor.linear.modal.basis_error`).
 """
 
 from __future__ import annotations
@@ -11,18 +26,24 @@ from collections.abc import Sequence
 import numpy as np
 
 from exudyn_rotor.reduction.basis import rigid_columns
-from exudyn_rotor.reduction.component import ModeBasis
-from exudyn_rotor.solid.clamp import clamped_coordinates
+from exudyn_rotor.reduction.component import ModeBasis, numbered, unit_columns
 from exudyn_rotor.solid.interface import Interface
+from exudyn_rotor.solid.rigid import clamped_coordinates
 from exudyn_rotor.solid.rotor import FiniteElementRotor
-from exudyn_rotor.solvers.choice import coordinates
-from exudyn_rotor.solvers.inertia_relief import held_inverse, inertia_relief
-from exudyn_rotor.theory.nodal import rotations, translations
+from exudyn_rotor.solvers.inertia_relief import coordinates, held_inverse, inertia_relief
+from exudyn_rotor.theory.nodal import rotations, translations, turned
 
 # share of its motion by which an interface may deform and still be rigid on purpose (RBE2)
 _RIGID = 1e-6
 # residual of responses, share of the load: what a basis errs by is of second order in it
 _TOLERANCE = 1e-8
+# speed of the rim beyond which no solid holds [m/s]
+_RIM = 1000.0
+# times the highest frequency of the basis, a speed that no rotor of few modes reaches
+_ABOVE = 10.0
+# strain energy of a response, over that of a mode, below which it is left out: by this share it
+# could change the square of a frequency at that speed; a tenth of it at 300 m/s
+_SMALL = 1e-3
 
 
 def attachment_modes(rotor: FiniteElementRotor, others: np.ndarray) -> ModeBasis:
@@ -36,12 +57,7 @@ def attachment_modes(rotor: FiniteElementRotor, others: np.ndarray) -> ModeBasis
         clamped, get no loads of their own. Where there are such, or the rotor's own stiffness holds
         it, responses to uniform linear and angular accelerations are among them, with these
         interfaces held: with the rigid motions of interfaces that ``craig_bampton_modes`` has, that
-        is the same as inertia relief.
-
-    Raises
-    ------
-    ValueError
-        If the rotor has loose parts.
+        is the same as inertia relief. ValueError if the rotor has loose parts.
     """
     rigid = rigid_interfaces(rotor, others)
     loads = [
@@ -54,11 +70,8 @@ def attachment_modes(rotor: FiniteElementRotor, others: np.ndarray) -> ModeBasis
     responses = [np.zeros((rotor.nodes.size, 0))]
     if loads:
         responses.append(static_responses(rotor, rigid, np.hstack(loads)))
-    columns = np.hstack(responses)
-    norms = np.sqrt(np.einsum("ik,ik->k", columns, rotor.mass @ columns))
-    columns = columns[:, norms > 0.0] / norms[norms > 0.0]
-    labels = tuple(f"attachment mode {i + 1}" for i in range(columns.shape[1]))
-    return ModeBasis(columns, labels, rotor.nodes)
+    columns = unit_columns(rotor, np.hstack(responses))
+    return ModeBasis(columns, numbered("attachment mode", columns.shape[1]), rotor.nodes)
 
 
 def static_responses(
@@ -68,11 +81,6 @@ def static_responses(
 
     By inertia relief where none is. The rigid motions of held interfaces, which modes that keep
     them rigid contain, complete the responses.
-
-    Raises
-    ------
-    ValueError
-        If the rotor has loose parts.
     """
     if not held:
         return inertia_relief(rotor).solve(loads, _TOLERANCE)
@@ -96,7 +104,6 @@ def rigid_interfaces(rotor: FiniteElementRotor, modes: np.ndarray) -> list[Inter
 
 
 def _stays_rigid(interface: Interface, modes: np.ndarray) -> bool:
-    """Return True if no mode deforms the interface."""
     if modes.shape[1] == 0 or len(interface.nodes) < 3:
         return False
     motion = modes.reshape(-1, 3, modes.shape[1])[interface.nodes].reshape(-1, modes.shape[1])
@@ -104,3 +111,71 @@ def _stays_rigid(interface: Interface, modes: np.ndarray) -> bool:
     rigid = np.linalg.qr(np.hstack([translations(len(interface.nodes)), turns]))[0]
     strain = np.linalg.norm(motion - rigid @ (rigid.T @ motion))
     return bool(strain <= _RIGID * np.linalg.norm(motion))
+
+
+def inertial_modes(
+    rotor: FiniteElementRotor, others: np.ndarray, basis: np.ndarray, stiffness: np.ndarray
+) -> ModeBasis:
+    """Return static responses to the loads of a turning rotor's modes.
+
+    Parameters
+    ----------
+    rotor : SolidRotor
+    others : ndarray, shape (3n, k)
+        Component modes that these are to go with; interfaces that they keep rigid stay so.
+    basis : ndarray, shape (3n, m)
+        Mass-orthonormal basis Q of the rotor, rigid motions included.
+    stiffness : ndarray, shape (m,)
+        Diagonal Λ of ``QᵀKQ`` [1/s²].
+
+    Returns
+    -------
+    ModeBasis
+        Only the independent responses that can matter, of unit strain energy.
+    """
+    momenta = rotor.mass @ basis
+    loads = _loads(rotor, basis, momenta, stiffness)
+    loads -= momenta @ (basis.T @ loads)
+    loads = _strongest(rotor, loads, stiffness)
+    responses = static_responses(rotor, rigid_interfaces(rotor, others), loads)
+    energy = loads.T @ responses
+    values, turn = np.linalg.eigh(0.5 * (energy + energy.T))
+    strong = values > _SMALL
+    columns = responses @ (turn[:, strong] / np.sqrt(values[strong]))
+    return ModeBasis(columns, numbered("inertial mode", columns.shape[1]), rotor.nodes)
+
+
+def _loads(
+    rotor: FiniteElementRotor, basis: np.ndarray, momenta: np.ndarray, stiffness: np.ndarray
+) -> np.ndarray:
+    """Return loads (3n, j), so large that their energy is a relative change of stiffness."""
+    e, radii = rotor.axis.direction, np.linalg.norm(rotor.axis.radial(rotor.nodes), axis=1)
+    highest = np.sqrt(stiffness.max(initial=0.0))
+    speed = min(_ABOVE * highest, _RIM / max(radii.max(), 1e-300))  # the largest that counts
+    gyroscopic = turned(e, momenta)  # Mẽ = ẽM, as (24) says
+    along = momenta + turned(e, gyroscopic)
+    loads = [speed * gyroscopic, speed * along]
+    elastic = stiffness > 0.0
+    frequencies = np.sqrt(stiffness[elastic])
+    columns = basis[:, elastic]
+    forces = rotor.stiffness @ columns - momenta[:, elastic] * stiffness[elastic]
+    loads.append(forces / frequencies)
+    carried = rotor.carried_prestress
+    if carried is not None:
+        loads.append(speed * (carried.per_square @ basis))
+    if rotor.damping is not None:
+        loads.append(rotor.damping @ columns)
+    return np.hstack(loads)
+
+
+def _strongest(rotor: FiniteElementRotor, loads: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
+    """Return the independent loads whose responses can have an energy that counts.
+
+    Where all frequencies that are left out are above ω, ``LᵀK⁺L ≤ LᵀM⁻¹L/ω²``. Here ω is the median
+    of those kept, and M is lumped.
+    """
+    elastic = stiffness[stiffness > 0.0]
+    square = np.median(elastic) if elastic.size else 0.0
+    scaled = loads / np.sqrt(rotor.mass.diagonal())[:, None]
+    values, turn = np.linalg.eigh(scaled.T @ scaled)
+    return loads @ turn[:, values > _SMALL * square]

@@ -6,8 +6,7 @@ mean motion of the rotor (Tisserand frame), so that ``S = 0`` and ``g = 0`` for 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
@@ -18,8 +17,6 @@ from exudyn_rotor.reduction.fields import ModeKind, rigid_names
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import rotations, translations
 
-# share of a column that is new, below which squares of lengths have too few digits left
-_EVEN = 1e-5
 # length of a column, of the largest, that is rounding
 _NOTHING = 1e-12
 
@@ -37,7 +34,7 @@ class OrthonormalBasis:
     rigid_kinds : tuple of ModeKind
         What the leading rigid columns are.
     from_modes : ndarray, shape (r, k)
-        Share of every component mode in every column.
+        Share of every component mode in every column, zero for the rigid motions.
     dropped : tuple of str
         Component modes and rigid motions that added nothing to the basis.
     """
@@ -50,80 +47,39 @@ class OrthonormalBasis:
     dropped: tuple[str, ...]
 
     @classmethod
-    def of_rigid(
+    def of(
         cls,
-        rigid: np.ndarray,
-        kinds: tuple[ModeKind, ...],
+        rigid: tuple[np.ndarray, tuple[ModeKind, ...]],
+        modes: ModeBasis,
         mass: sp.csr_array,
+        stiffness: sp.csr_array,
         rank_tolerance: float,
     ) -> OrthonormalBasis:
-        """Orthonormalise rigid motions (3n, r); parameters as of :meth:`extended`."""
-        none = np.zeros((len(rigid), 0))
-        found = gram_schmidt((none, none), rigid, mass, rank_tolerance)
-        return cls(
-            matrix=found.matrix,
-            momenta=found.momenta,
-            stiffness=np.zeros(len(found.used)),
-            rigid_kinds=tuple(kinds[i] for i in found.used),
-            from_modes=np.zeros((0, len(found.used))),
-            dropped=_unused(rigid_names(kinds), found.used),
-        )
-
-    def extended(
-        self, modes: ModeBasis, mass: sp.csr_array, stiffness: sp.csr_array, rank_tolerance: float
-    ) -> OrthonormalBasis:
-        """Return the basis with more component modes.
+        """Return the basis of rigid motions (3n, r), with their kinds, and component modes.
 
         A column is dropped when what is left of it, once the columns before it are taken out, is
-        smaller than `rank_tolerance` times its own norm. The flexible columns are then turned so
-        that M and K become diagonal on them, ascending in frequency.
+        smaller than `rank_tolerance` times its own norm. The flexible columns are turned so that M
+        and K become diagonal on them, ascending in frequency.
         """
-        found = gram_schmidt((self.matrix, self.momenta), modes.matrix, mass, rank_tolerance)
-        rigid, known = len(self.rigid_kinds), self.matrix.shape[1]
-        forces = stiffness @ found.matrix
-        mixed = self.matrix[:, rigid:].T @ forces
-        own = np.diag(self.stiffness[rigid:])
-        values, turn = scipy.linalg.eigh(
-            np.block([[own, mixed], [mixed.T, found.matrix.T @ forces]])
+        motions, kinds = rigid
+        names = rigid_names(kinds) + modes.labels
+        matrix, momenta, used = gram_schmidt(
+            np.hstack([motions, modes.matrix]), mass, rank_tolerance
         )
-        shares = np.zeros((modes.matrix.shape[1], len(found.used)))
-        shares[found.used] = scipy.linalg.solve_triangular(found.triangle, np.eye(len(found.used)))
-        earlier = -self.from_modes @ (found.first @ shares[found.used])
-        from_modes = np.block(
-            [[self.from_modes, earlier], [np.zeros((len(shares), known)), shares]]
+        kept = tuple(kinds[i] for i in used if i < len(kinds))
+        held, flexible = np.split(matrix, [len(kept)], axis=1)
+        values, turn = scipy.linalg.eigh(flexible.T @ (stiffness @ flexible))
+        flexible, flexible_momenta = flexible @ turn, momenta[:, len(kept) :] @ turn
+        # the flexible columns are G⁺ times what the modes have beside the rigid motions
+        shares = np.linalg.pinv(flexible_momenta.T @ modes.matrix)
+        return cls(
+            matrix=np.hstack([held, flexible]),
+            momenta=np.hstack([momenta[:, : len(kept)], flexible_momenta]),
+            stiffness=np.r_[np.zeros(len(kept)), values],
+            rigid_kinds=kept,
+            from_modes=np.hstack([np.zeros((len(shares), len(kept))), shares]),
+            dropped=tuple(name for i, name in enumerate(names) if i not in used),
         )
-
-        def turned(columns: np.ndarray, added: np.ndarray) -> np.ndarray:
-            return np.hstack([columns[:, :rigid], np.hstack([columns[:, rigid:], added]) @ turn])
-
-        return replace(
-            self,
-            matrix=turned(self.matrix, found.matrix),
-            momenta=turned(self.momenta, found.momenta),
-            stiffness=np.concatenate([self.stiffness[:rigid], values]),
-            from_modes=turned(from_modes[:, :known], from_modes[:, known:]),
-            dropped=self.dropped + _unused(modes.labels, found.used),
-        )
-
-
-class Orthonormal(NamedTuple):
-    """What :func:`gram_schmidt` returns.
-
-    Attributes
-    ----------
-    matrix, momenta : ndarray, shape (3n, k)
-        The new columns Q, and ``MQ``.
-    used : list of int
-        Which of the given columns C they come from.
-    triangle, first : ndarray, shape (k, k) and (m, k)
-        T and S of ``C = QT + FS``, F the columns that were there before.
-    """
-
-    matrix: np.ndarray
-    momenta: np.ndarray
-    used: list[int]
-    triangle: np.ndarray
-    first: np.ndarray
 
 
 def rigid_columns(nodes: np.ndarray, axis: SpinAxis, center: np.ndarray) -> np.ndarray:
@@ -138,97 +94,23 @@ def rigid_columns(nodes: np.ndarray, axis: SpinAxis, center: np.ndarray) -> np.n
     return np.hstack([shifts, turns])
 
 
-def _unused(names: tuple[str, ...], used: list[int]) -> tuple[str, ...]:
-    return tuple(name for i, name in enumerate(names) if i not in used)
-
-
 def gram_schmidt(
-    first: tuple[np.ndarray, np.ndarray],
-    columns: np.ndarray,
-    mass: sp.csr_array,
-    tolerance: float,
-) -> Orthonormal:
-    """Orthonormalise `columns` against those of `first` and each other.
+    columns: np.ndarray, mass: sp.csr_array, tolerance: float
+) -> tuple[np.ndarray, np.ndarray, list[int]]:
+    """Return mass-orthonormal columns Q, ``MQ``, and which of the given columns they come from.
 
-    Parameters
-    ----------
-    first : tuple of ndarray, shape (3n, m)
-        Mass-orthonormal columns F, and ``MF``.
-    columns : ndarray, shape (3n, k)
-    mass : scipy.sparse.csr_array, shape (3n, 3n)
-    tolerance : float
-        Of a column that is used more than this share of it is new.
+    Of a column that is used more than the share `tolerance` is new.
     """
-    found = _all_at_once(first, columns, mass, tolerance)
-    return _one_by_one(first, columns, mass, tolerance) if found is None else found
-
-
-def _all_at_once(
-    first: tuple[np.ndarray, np.ndarray],
-    columns: np.ndarray,
-    mass: sp.csr_array,
-    tolerance: float,
-) -> Orthonormal | None:
-    """Return what :func:`gram_schmidt` does; None where a column is nearly one of the others.
-
-    Source: Yamamoto, Nakatsukasa, Yanagisawa, Fukaya, "Roundoff error analysis of the CholeskyQR2
-    algorithm", ETNA 44 (2015).
-    """
-    count = columns.shape[1]
-    triangle, shares = np.eye(count), np.zeros((first[0].shape[1], count))
-    for step in range(2):  # the second keeps full precision
-        share = first[1].T @ columns
-        columns = columns - first[0] @ share
-        momenta = mass @ columns
-        squares = columns.T @ momenta
-        try:
-            factor = scipy.linalg.cholesky(squares)
-        except scipy.linalg.LinAlgError:
-            return None
-        if step == 0:
-            lengths = np.sqrt(np.diag(squares) + np.einsum("ik,ik->k", share, share))
-            least = max(tolerance, _EVEN) * lengths
-            if np.any(np.diag(factor) <= least) or lengths.min(
-                initial=np.inf
-            ) <= _NOTHING * lengths.max(initial=0.0):
-                return None
-        shares, triangle = shares + share @ triangle, factor @ triangle
-        columns, momenta = (
-            scipy.linalg.solve_triangular(factor, each.T, trans=1).T for each in (columns, momenta)
-        )
-    return Orthonormal(columns, momenta, list(range(count)), triangle, shares)
-
-
-def _one_by_one(
-    first: tuple[np.ndarray, np.ndarray],
-    columns: np.ndarray,
-    mass: sp.csr_array,
-    tolerance: float,
-) -> Orthonormal:
-    """Return what :func:`gram_schmidt` does."""
-    size, start = first[0].shape
-    basis, weighted = (np.empty((size, start + columns.shape[1])) for _ in range(2))
-    basis[:, :start], weighted[:, :start] = first
-    count, used, shares = start, [], []
+    basis, momenta = (np.empty(columns.shape, order="F") for _ in range(2))
     lengths = np.sqrt(np.maximum(np.einsum("ik,ik->k", columns, mass @ columns), 0.0))
-    largest = lengths.max(initial=0.0)
+    used: list[int] = []
     for index, length in enumerate(lengths):
-        column = np.array(columns[:, index], dtype=float)
-        share = np.zeros(count)
+        column, count = np.array(columns[:, index], dtype=float), len(used)
         for _ in range(2):  # one pass loses orthogonality
-            projection = weighted[:, :count].T @ column
-            column -= basis[:, :count] @ projection
-            share += projection
-        weight = mass @ column
-        norm = np.sqrt(max(column @ weight, 0.0))
-        if norm <= tolerance * length or length <= _NOTHING * largest:
-            continue
-        basis[:, count], weighted[:, count] = column / norm, weight / norm
-        used.append(index)
-        shares.append(np.append(share, norm))
-        count += 1
-    triangle = np.zeros((count, len(used)))
-    for j, share in enumerate(shares):
-        triangle[: len(share), j] = share
-    new = slice(start, count)
-    return Orthonormal(basis[:, new], weighted[:, new], used, triangle[start:], triangle[:start])
+            column -= basis[:, :count] @ (momenta[:, :count].T @ column)
+        momentum = mass @ column
+        norm = np.sqrt(max(column @ momentum, 0.0))
+        if norm > tolerance * length and length > _NOTHING * lengths.max():
+            basis[:, count], momenta[:, count] = column / norm, momentum / norm
+            used.append(index)
+    return basis[:, : len(used)], momenta[:, : len(used)], used

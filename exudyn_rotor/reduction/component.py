@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
+import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from exudyn.FEM import FEMinterface
 
 from exudyn_rotor import checks
-from exudyn_rotor.reduction.mode_pairs import lowest_with_pairs
+from exudyn_rotor.calls import user_level
+from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.rotor import FiniteElementRotor
-from exudyn_rotor.solvers import lanczos
+from exudyn_rotor.solvers import modes as eigen
 from exudyn_rotor.solvers.inertia_relief import (
     free_motions_of,
     inertia_relief,
     relative_rounding,
 )
-from exudyn_rotor.solvers.modes import lowest_modes
 
 # of the median: beside stiffer springs dense eigenvalues of the rest lose digits
 _GRADED = 1e4
+_APART = 2e-2  # relative distance of the frequencies of a pair, at most
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,8 +78,7 @@ class ModeBasis:
         if self.stress is not None:
             shape = (len(nodes), 6, modes)
             checked["stress"] = checks.array(self.stress, "mode basis: stress", shape=shape)
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)
+        checks.keep(self, **checked)
 
 
 def free_modes(rotor: FiniteElementRotor, count: int, *, tolerance: float = 1e-10) -> ModeBasis:
@@ -133,24 +136,110 @@ def free_modes(rotor: FiniteElementRotor, count: int, *, tolerance: float = 1e-1
     check_count(count, size - rigid_count, smallest=1)
     graded = stiffness.diagonal().max() > _GRADED * np.median(stiffness.diagonal())
 
-    def solve(number: int) -> lanczos.Modes:
-        if lanczos.is_small(size, number) and not (graded and 4 * number <= size):
+    def solve(number: int) -> eigen.Modes:
+        if eigen.is_small(size, number) and not (graded and 4 * number <= size):
             dense = stiffness.toarray(), mass.toarray()
-            return lanczos.dense_modes(*dense, number, skip=rigid_count)
+            return eigen.dense_modes(*dense, number, skip=rigid_count)
         inverse = inertia_relief(rotor, rigid)
-        return lowest_modes(stiffness, mass, inverse, number, tolerance)
+        return eigen.lowest_modes(stiffness, mass, inverse, number, tolerance)
 
-    values, modes = lowest_with_pairs(rotor, solve, count, size - rigid_count)
+    values, modes = lowest_with_pairs(solve, count, size - rigid_count)
     precision = relative_rounding(stiffness, rigid)
-    lanczos.check_modes(stiffness, mass, values, modes, precision=precision)
-    return ModeBasis(
-        lanczos.with_fixed_sign(modes), eigenmode_labels(count), rotor.nodes, np.sqrt(values)
+    eigen.check_modes(stiffness, mass, values, modes, precision=precision)
+    modes = eigen.with_fixed_sign(modes)
+    return ModeBasis(modes, numbered("eigenmode", count), rotor.nodes, np.sqrt(values))
+
+
+def lowest_with_pairs(
+    solve: Callable[[int], eigen.Modes], count: int, available: int
+) -> eigen.Modes:
+    """Return the `count` lowest modes; with a warning where the next one is the last one's pair.
+
+    A round rotor bends in all planes alike; an uneven mesh splits the two frequencies by little.
+    With one mode of a pair it is an asymmetric shaft. `solve` returns squared frequencies and
+    modes by their number, of which `available` are there.
+    """
+    values, modes = solve(min(count + 1, available) if count else 0)
+    frequencies = np.sqrt(np.maximum(values, 0.0))
+    near = np.diff(frequencies) <= _APART * frequencies[1:]
+    if 0 < count < len(values) and near[count - 1] and not (count > 1 and near[count - 2]):
+        first, second = frequencies[count - 1 : count + 1] / (2.0 * np.pi)
+        warnings.warn(
+            f"count: mode {count} ({first:.4g} Hz) is one of a pair in two planes, and mode "
+            f"{count + 1} ({second:.4g} Hz) is left out: the rotor bends as an asymmetric shaft "
+            f"does, or in one plane alone; ask for {count + 1} modes",
+            UserWarning,
+            stacklevel=user_level(),
+        )
+    return values[:count], modes[:, :count]
+
+
+def component_modes(
+    rotor: FiniteElementRotor, modes: int | ModeBasis | FEMinterface | np.ndarray
+) -> ModeBasis:
+    """Return what ``SolidRotor.reduce`` is given as a basis of this rotor."""
+    if isinstance(modes, ModeBasis):
+        matrices.check_same_mesh(rotor.nodes, modes.nodes)
+        return modes
+    if isinstance(modes, FEMinterface):
+        return fem_interface_modes(rotor, modes)
+    if isinstance(modes, np.ndarray) and modes.ndim:
+        columns = checks.array(modes, "modes", shape=(rotor.nodes.size, None))
+        return ModeBasis(columns, numbered("column", columns.shape[1]), nodes=rotor.nodes)
+    if isinstance(modes, int | np.integer) and not isinstance(modes, bool):
+        count = checks.count(modes, "modes")
+        if count == 0:  # a rigid rotor
+            return ModeBasis(np.zeros((rotor.nodes.size, 0)), (), nodes=rotor.nodes)
+        return free_modes(rotor, count)
+    raise TypeError(
+        f"modes: expected a number of free eigenmodes, a ModeBasis, a FEMinterface with modes, or "
+        f"an array of displacement columns, got {checks.shown(modes)}"
     )
 
 
-def eigenmode_labels(count: int) -> tuple[str, ...]:
-    """Return 'eigenmode 1', 'eigenmode 2', …"""
-    return tuple(f"eigenmode {number}" for number in range(1, count + 1))
+def fem_interface_modes(rotor: FiniteElementRotor, fem: FEMinterface) -> ModeBasis:
+    """Return the modes that a ``FEMinterface`` of the rotor's mesh has computed.
+
+    With stress where it has ``postProcessingModes`` of type StressLocal. Frequencies are NaN,
+    because a ``FEMinterface`` does not say which modes are static.
+    """
+    matrix = modes_of(fem, rotor.nodes)
+    stress = None
+    recovered = fem.postProcessingModes
+    if str(recovered.get("outputVariableType", "")).endswith("StressLocal"):
+        nodes, count = len(rotor.nodes), matrix.shape[1]
+        stress = np.asarray(recovered["matrix"], dtype=float)  # six columns for every mode
+        if stress.shape != (nodes, 6 * count):
+            raise ValueError(
+                f"the FEMinterface's stress modes have the shape {stress.shape}, but {nodes} nodes "
+                f"and {count} modes need {(nodes, 6 * count)}; compute them after the modes, with "
+                "fem.ComputePostProcessingModesNGsolve(…)"
+            )
+        stress = stress.reshape(nodes, count, 6).transpose(0, 2, 1)
+    labels = numbered("FEMinterface mode", matrix.shape[1])
+    return ModeBasis(matrix, labels, rotor.nodes, stress=stress)
+
+
+def modes_of(fem: FEMinterface, nodes: np.ndarray) -> np.ndarray:
+    """Return the modes (3n, k) of a ``FEMinterface`` with the mesh nodes (n, 3)."""
+    if "matrix" not in fem.modeBasis:
+        raise ValueError(
+            "the FEMinterface holds no modes; call fem.ComputeEigenmodes(…) or "
+            "fem.ComputeHurtyCraigBamptonModes(…) first"
+        )
+    matrices.check_same_mesh(nodes, np.asarray(fem.nodes.get("Position", ()), dtype=float))
+    return checks.array(fem.modeBasis["matrix"], "fem: its modes", shape=(nodes.size, None))
+
+
+def numbered(name: str, count: int) -> tuple[str, ...]:
+    """Return 'name 1', 'name 2', …"""
+    return tuple(f"{name} {number}" for number in range(1, count + 1))
+
+
+def unit_columns(rotor: FiniteElementRotor, columns: np.ndarray) -> np.ndarray:
+    """Return columns (3n, k) mass-normalised, without those that move nothing."""
+    sizes = np.sqrt(np.einsum("ik,ik->k", columns, rotor.mass @ columns))
+    return columns[:, sizes > 0.0] / sizes[sizes > 0.0]
 
 
 def check_count(count: int, available: int, *, smallest: int) -> None:

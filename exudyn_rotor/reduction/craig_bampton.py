@@ -14,21 +14,24 @@ import scipy.sparse as sp
 
 from exudyn_rotor import checks
 from exudyn_rotor.reduction.attachment import is_clamped
-from exudyn_rotor.reduction.component import ModeBasis, check_count, check_rotor, eigenmode_labels
-from exudyn_rotor.reduction.mode_pairs import lowest_with_pairs
+from exudyn_rotor.reduction.component import (
+    ModeBasis,
+    check_count,
+    check_rotor,
+    lowest_with_pairs,
+    numbered,
+)
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.rotor import FiniteElementRotor
-from exudyn_rotor.solvers import lanczos
-from exudyn_rotor.solvers.choice import coordinates
+from exudyn_rotor.solvers import modes as eigen
 from exudyn_rotor.solvers.constrained import ConstrainedInverse
 from exudyn_rotor.solvers.inertia_relief import (
-    free_rigid_motions,
+    InertiaRelief,
+    coordinates,
     held_inverse,
     inertia_relief,
     relative_rounding,
 )
-from exudyn_rotor.solvers.modes import Inverse, lowest_modes
-from exudyn_rotor.solvers.rounding import rounding, rounding_unit
 from exudyn_rotor.theory.nodal import rotations, translations
 
 # static modes, eigenvalues and eigenmodes
@@ -61,7 +64,7 @@ def craig_bampton_modes(
         Number of fixed-interface eigenmodes; may be zero.
     interfaces : iterable of str, optional
         Names of the rotor's interfaces to use; by default all but those that are clamped, whose
-        motions are the springs' that hold them. Leave out, too, what is clamped in some directions.
+        motions are the springs' that hold them.
     coupling : {'RBE2', 'RBE3'}, optional
         'RBE2': the nodes of an interface move as one rigid body. 'RBE3': their weighted mean
         motion (:meth:`Interface.mean_motion`) is prescribed and the surface may deform.
@@ -101,9 +104,9 @@ def craig_bampton_modes(
     checks.tolerance(tolerance)
     chosen = _choose(rotor, interfaces)
     static, values, eigenmodes = _COUPLINGS[coupling](rotor, count, chosen, tolerance)
-    labels = sum((_labels(interface) for interface in chosen), ()) + eigenmode_labels(count)
+    labels = sum((_labels(interface) for interface in chosen), ()) + numbered("eigenmode", count)
     return ModeBasis(
-        np.hstack([static, lanczos.with_fixed_sign(eigenmodes)]),
+        np.hstack([static, eigen.with_fixed_sign(eigenmodes)]),
         labels,
         rotor.nodes,
         np.concatenate([np.full(static.shape[1], np.nan), np.sqrt(values)]),
@@ -156,10 +159,9 @@ def _rigid_coupling(
             f"the interfaces do not hold the rotor, or it has loose parts ({error})"
         ) from error
     static[inner] = -inverse.solve((rotor.stiffness @ static)[inner])
-    _check_equilibrium(rotor, (rotor.stiffness @ static)[inner], rounding(rotor.stiffness, static))
     solve = partial(_eigenmodes, stiffness, mass, inverse, tolerance=tolerance)
-    values, inner_modes = lowest_with_pairs(rotor, solve, count, len(inner), inner)
-    lanczos.check_modes(stiffness, mass, values, inner_modes)
+    values, inner_modes = lowest_with_pairs(solve, count, len(inner))
+    eigen.check_modes(stiffness, mass, values, inner_modes)
     eigenmodes = np.zeros((rotor.mass.shape[0], count))
     eigenmodes[inner] = inner_modes
     return static, values, eigenmodes
@@ -176,25 +178,20 @@ def _mean_coupling(
     constraints = sp.csr_array(sp.vstack(rows))
     available = mass.shape[0] - constraints.shape[0]
     check_count(count, available, smallest=0)
-    rigid = free_rigid_motions(rotor.nodes, mass, stiffness, rotor.rigid_motions)
     relief = inertia_relief(rotor)
-    try:
-        inverse = ConstrainedInverse(relief, constraints)
-    except ValueError as error:
-        raise ValueError(f"{error}{_held_in_part(rotor)}") from error
-    motions = np.eye(constraints.shape[0])
-    static = inverse.prescribe(motions)
-    _check_mean_motion(rotor, constraints, static)
-    precision = relative_rounding(stiffness, rigid)
-    force = lanczos.without_reactions(stiffness @ static, constraints)
-    unit = rounding_unit(stiffness, precision)
-    _check_equilibrium(rotor, force, unit * inverse.prescribed_terms(motions))
+    inverse = ConstrainedInverse(relief, constraints)
+    static = inverse.prescribe(np.eye(constraints.shape[0]))
+    error = np.abs(constraints @ static - np.eye(len(static.T))).max()
+    if error > _MOTION_TOLERANCE:
+        raise ValueError(
+            f"the interfaces miss their unit motions by {error:.1e}: they nearly depend on each "
+            "other"
+        )
     held = {"tolerance": tolerance, "constraints": constraints}
     solve = partial(_eigenmodes, stiffness, mass, inverse, **held)
-    values, modes = lowest_with_pairs(rotor, solve, count, available)
-    lanczos.check_modes(
-        stiffness, mass, values, modes, precision=precision, constraints=constraints
-    )
+    values, modes = lowest_with_pairs(solve, count, available)
+    precision = relative_rounding(stiffness, relief.rigid)
+    eigen.check_modes(stiffness, mass, values, modes, precision=precision, constraints=constraints)
     return static, values, modes
 
 
@@ -204,24 +201,24 @@ _COUPLINGS = {"RBE2": _rigid_coupling, "RBE3": _mean_coupling}
 def _eigenmodes(
     stiffness: sp.csr_array,
     mass: sp.csr_array,
-    inverse: Inverse,
+    inverse: InertiaRelief | ConstrainedInverse,
     count: int,
     tolerance: float,
     constraints: sp.csr_array | None = None,
-) -> lanczos.Modes:
+) -> eigen.Modes:
     """Return the lowest modes of a held model, under ``C u = 0`` where constraints are given."""
     size = mass.shape[0]
     if count == 0:
         return np.zeros(0), np.zeros((size, 0))
-    if not lanczos.is_small(size, count):
+    if not eigen.is_small(size, count):
         balanced = None
         if constraints is not None:
-            balanced = partial(lanczos.without_reactions, constraints=constraints)
-        return lowest_modes(stiffness, mass, inverse, count, tolerance, balanced)
+            balanced = partial(eigen.without_reactions, constraints=constraints)
+        return eigen.lowest_modes(stiffness, mass, inverse, count, tolerance, balanced)
     if constraints is None:
-        return lanczos.dense_modes(stiffness.toarray(), mass.toarray(), count)
+        return eigen.dense_modes(stiffness.toarray(), mass.toarray(), count)
     allowed = la.null_space(constraints.toarray())
-    values, modes = lanczos.dense_modes(
+    values, modes = eigen.dense_modes(
         allowed.T @ (stiffness @ allowed), allowed.T @ (mass @ allowed), count
     )
     return values, allowed @ modes
@@ -249,30 +246,3 @@ def _refuse_shared_nodes(chosen: list[Interface]) -> None:
                     "cannot move rigidly with both; use coupling='RBE3' or separate the faces"
                 )
             owner[node] = interface.name
-
-
-def _check_equilibrium(rotor: FiniteElementRotor, force: np.ndarray, allowed: np.ndarray) -> None:
-    """Check that static modes need no `force` but at the interfaces, up to the rounding allowed."""
-    if np.any(np.linalg.norm(force, axis=0) > allowed):
-        raise ValueError(
-            "a static interface mode is not in equilibrium; the stiffness may not be symmetric "
-            f"or is too badly conditioned{_held_in_part(rotor)}"
-        )
-
-
-def _check_mean_motion(
-    rotor: FiniteElementRotor, constraints: sp.csr_array, static: np.ndarray
-) -> None:
-    error = np.abs(constraints @ static - np.eye(len(static.T))).max()
-    if error > _MOTION_TOLERANCE:
-        raise ValueError(
-            f"the interfaces miss their unit motions by {error:.1e}; the interfaces nearly "
-            f"depend on each other{_held_in_part(rotor)}"
-        )
-
-
-def _held_in_part(rotor: FiniteElementRotor) -> str:
-    """Return what else may be the cause of a bad condition."""
-    if not rotor.grounded:
-        return ""
-    return ", or one is clamped in some directions: leave it out, interfaces=[…]"

@@ -75,7 +75,7 @@ class ReducedInterface:
     motion: np.ndarray
 
     def __post_init__(self) -> None:
-        set_checked(
+        checks.keep(
             self,
             reference=checks.vector(self.reference, "interface: reference", "m"),
             center=checks.vector(self.center, "interface: center", "m"),
@@ -124,7 +124,7 @@ class ModeShapes:
         if stress is not None:
             shape = (len(nodes), 6, matrix.shape[1])
             stress = checks.array(stress, "shapes: stress", "Pa", shape=shape)
-        set_checked(self, nodes=nodes, matrix=matrix, triangles=triangles, stress=stress)
+        checks.keep(self, nodes=nodes, matrix=matrix, triangles=triangles, stress=stress)
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,21 +162,10 @@ class Centrifugal:
             if getattr(self, name) is not None:
                 values = checks.array(getattr(self, name), f"centrifugal: {name}", shape=(None, 6))
                 fields[name] = values
-        counts = {name: f.size // (3 if f.ndim == 1 else 6) for name, f in fields.items()}
-        if len(set(counts.values())) > 1:
-            raise ValueError(f"centrifugal: all fields need the same nodes, got {counts}")
         if self.yield_stress is not None:
             name = "centrifugal: yield_stress"
             fields["yield_stress"] = checks.number(self.yield_stress, name, "Pa", above=0.0)
-        set_checked(self, **fields)
-
-    @property
-    def node_count(self) -> int | None:
-        """Number of nodes n; None where all fields are None."""
-        for field, width in ((self.displacement, 3), (self.stress, 6), (self.constant_stress, 6)):
-            if field is not None:
-                return field.size // width
-        return None
+        checks.keep(self, **fields)
 
     def stress_at(self, speed: float) -> np.ndarray | None:
         """Return the static stress at a spin speed [rad/s], with that at rest, (n, 6) [Pa].
@@ -188,9 +177,3 @@ class Centrifugal:
             return None
         by_spin = speed**2 * self.stress
         return by_spin if self.constant_stress is None else self.constant_stress + by_spin
-
-
-def set_checked(owner: object, **values: object) -> None:
-    """Set checked fields of a frozen dataclass."""
-    for name, value in values.items():
-        object.__setattr__(owner, name, value)

@@ -13,25 +13,20 @@ the same modes leave tilts to the frame, whose equations hold them to every orde
 
 from __future__ import annotations
 
-import warnings
-
 import numpy as np
 import scipy.linalg
 from exudyn.FEM import FEMinterface
 
 from exudyn_rotor import checks
 from exudyn_rotor.reduction.basis import gram_schmidt, rigid_columns
+from exudyn_rotor.reduction.component import modes_of
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.fem_interface import import_model
 from exudyn_rotor.solid.matrices import as_mass, as_nodes
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.invariants import Invariants
-from exudyn_rotor.theory.stiffening import stiffening
 
 _SEEN = 1e-6  # share of a mode's mass that moves as a rigid body, above rounding of free modes
-_STIFF = 1e-10  # eigenvalues of K below this share of the largest belong to rigid motions
-_TOLD = 0.01  # loss of stiffness whose speed the warning names
 
 
 def use_mean_axis_modes(fem: FEMinterface, *, rank_tolerance: float = 1e-7) -> tuple[int, ...]:
@@ -85,18 +80,13 @@ def use_mean_axis_modes(fem: FEMinterface, *, rank_tolerance: float = 1e-7) -> t
     model = import_model(fem)
     nodes = as_nodes(model.nodes)
     mass = as_mass(model.mass, len(nodes))
-    if "matrix" not in fem.modeBasis:
-        raise ValueError(
-            "fem: it holds no modes; call fem.ComputeEigenmodes(…) or "
-            "fem.ComputeHurtyCraigBamptonModes(…) first"
-        )
-    modes = checks.array(fem.modeBasis["matrix"], "fem: its modes", shape=(nodes.size, None))
-    rigid, shares = _rigid_share(nodes, mass, modes)
-    flexible = modes - rigid @ shares
-    none = np.zeros((nodes.size, 0))
+    modes = modes_of(fem, nodes)
+    rigid = rigid_columns(nodes, SpinAxis.of("z"), nodes.mean(axis=0))
+    weighted = mass @ rigid
+    flexible = modes - rigid @ (scipy.linalg.pinvh(rigid.T @ weighted) @ (weighted.T @ modes))
     elastic = [
         index
-        for index in gram_schmidt((none, none), flexible, mass, rank_tolerance).used
+        for index in gram_schmidt(flexible, mass, rank_tolerance)[2]
         if _norm(flexible[:, index], mass) > rank_tolerance * _norm(modes[:, index], mass)
     ]
     if not elastic:
@@ -110,31 +100,6 @@ def use_mean_axis_modes(fem: FEMinterface, *, rank_tolerance: float = 1e-7) -> t
             "matrix": np.asarray(stress)[:, columns],
         }
     return tuple(index for index in range(modes.shape[1]) if index not in elastic)
-
-
-def false_softening(rotor: FiniteElementRotor, modes: np.ndarray) -> float:
-    """Return the largest share of stiffness that Exudyn's body loses with `modes`, per Ω².
-
-    Zero for modes that do not turn the rotor in the mean: free eigenmodes, and what
-    :func:`use_mean_axis_modes` makes.
-    """
-    rigid, shares = _rigid_share(rotor.nodes, rotor.mass, modes)
-    energy = np.einsum("ik,ik->k", modes, rotor.mass @ modes)
-    of_rigid = np.einsum("ik,ik->k", rigid @ shares, rotor.mass @ (rigid @ shares))
-    if rotor.grounded or np.all(of_rigid <= _SEEN * energy):
-        return 0.0
-    center = rotor.axis.project(rotor.center_of_mass)
-    invariants = Invariants.of(
-        rotor.nodes - center, rotor.mass, rotor.stiffness, None, modes, rotor.axis.direction
-    )
-    values, vectors = scipy.linalg.eigh(invariants.K)
-    stiff = values > _STIFF * values[-1]
-    scaled = vectors[:, stiff] / np.sqrt(values[stiff])
-    missing, softening = (
-        np.linalg.eigvalsh(scaled.T @ matrix @ scaled)[-1]
-        for matrix in (stiffening(invariants, "tilt").K2, invariants.C)
-    )
-    return float(missing) if missing > _SEEN * softening else 0.0
 
 
 def frame_shares(
@@ -157,27 +122,6 @@ def frame_shares(
     if np.all(np.einsum("ik,ik->k", G[:rigid], G[:rigid]) <= _SEEN * energy):
         return None
     return -G[:rigid] @ np.linalg.pinv(G[rigid:])
-
-
-def warn_of_held_frame(rotor: FiniteElementRotor, modes: np.ndarray, stacklevel: int) -> None:
-    """Warn, at the caller's line, where Exudyn's own body would soften falsely with `modes`."""
-    loss = false_softening(rotor, modes)
-    if loss > 0.0:
-        warnings.warn(
-            "the modes of the FEMinterface hold Exudyn's frame at a boundary (Craig–Bampton); "
-            f"its own body then falsely loses up to {_TOLD:.0%} of a mode's stiffness at "
-            f"{np.sqrt(_TOLD / loss):.3g} rad/s, growing with the square of the speed, and this "
-            "rotor does not: call use_mean_axis_modes(fem) to compare the two",
-            UserWarning,
-            stacklevel=stacklevel + 1,
-        )
-
-
-def _rigid_share(nodes: np.ndarray, mass, modes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the rigid motions (3n, 6), and their shares (6, k) in the modes."""
-    rigid = rigid_columns(nodes, SpinAxis.of("z"), nodes.mean(axis=0))
-    weighted = mass @ rigid
-    return rigid, scipy.linalg.pinvh(rigid.T @ weighted) @ (weighted.T @ modes)
 
 
 def _norm(column: np.ndarray, mass) -> float:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 import scipy.linalg
@@ -12,14 +13,17 @@ from exudyn.FEM import FEMinterface
 
 from exudyn_rotor import checks
 from exudyn_rotor.calls import one_thread
-from exudyn_rotor.prestress.carrying import with_chosen_prestress
-from exudyn_rotor.prestress.estimate import estimated_stiffness
+from exudyn_rotor.prestress.carrying import estimated_stiffness, with_chosen_prestress
 from exudyn_rotor.prestress.static_solution import relief_rotations
-from exudyn_rotor.reduction.attached import Attached
-from exudyn_rotor.reduction.attachment import attachment_modes
+from exudyn_rotor.reduction.attachment import attachment_modes, inertial_modes
 from exudyn_rotor.reduction.basis import OrthonormalBasis, rigid_columns
-from exudyn_rotor.reduction.component import ModeBasis, free_modes
-from exudyn_rotor.reduction.fem_interface_modes import fem_interface_modes
+from exudyn_rotor.reduction.component import (
+    ModeBasis,
+    component_modes,
+    free_modes,
+    numbered,
+    unit_columns,
+)
 from exudyn_rotor.reduction.fields import (
     RIGID_KINDS,
     Centrifugal,
@@ -27,16 +31,16 @@ from exudyn_rotor.reduction.fields import (
     ModeShapes,
     ReducedInterface,
 )
-from exudyn_rotor.reduction.inertial_modes import inertial_modes
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.rotor import FiniteElementRotor
+from exudyn_rotor.solvers.inertia_relief import free_motions_of, inertia_relief
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.nodal import rotations, translations
 from exudyn_rotor.theory.stiffening import with_prestress
 
 _UNRESISTED = (ModeKind.TRANSLATION_1, ModeKind.TRANSLATION_2, ModeKind.AXIAL)
+_FREE_MODES = 12  # beside static ones, for what a spin adds
 _NO_TURN = 1e-9  # of the largest: what rounding leaves of the rotation of a translation
 
 ModeSource = int | ModeBasis | FEMinterface | np.ndarray
@@ -59,16 +63,39 @@ def reduce_rotor(
         rotor = with_chosen_prestress(rotor, prestress)
         unknown = prestress is None and rotor.carried_prestress is None
         network = estimated_stiffness(rotor) if unknown else None
-    component = _component_modes(rotor, modes)
+    component = component_modes(rotor, modes)
     with one_thread():
         component = _with_turned_displacement(rotor, component)
-        basis = OrthonormalBasis.of_rigid(
-            *_rigid_motions(rotor, rotor.center_of_mass), rotor.mass, rank_tolerance
-        ).extended(component, rotor.mass, rotor.stiffness, rank_tolerance)
+        basis = _basis(rotor, component, rank_tolerance)
         if basis.matrix.shape[1] == 0:
             raise ValueError("the reduced basis is empty: ask for at least one component mode")
-        attached = Attached(partial(_with_attachments, rotor, component, basis, rank_tolerance))
+        attached = cache(partial(_with_attachments, rotor, component, basis, rank_tolerance))
         return _reduced(rotor, component, basis, stress, keep_shapes, attached, network)
+
+
+def reduced_for_loads(
+    rotor: FiniteElementRotor, nodes: Sequence[int], *, spins: bool, stress: bool
+) -> ReducedRotor:
+    """Return the rotor with its static responses to loads at interfaces and `nodes`.
+
+    Its deflection under these loads is that of the solid model. One that `spins` has free modes,
+    too, and the static centrifugal displacement. ValueError if it has loose parts.
+    """
+    columns = [attachment_modes(rotor, np.zeros((rotor.nodes.size, 0))).matrix]
+    loads = [np.eye(1, rotor.nodes.size, 3 * n + i)[0] for n in nodes for i in range(3)]
+    if rotor.grounded:
+        loads += list((rotor.mass @ translations(rotor.node_count)).T)
+    if spins:
+        loads.append(rotor.centrifugal_load)
+    if loads:
+        columns.append(inertia_relief(rotor).solve(np.column_stack(loads)))
+    if spins:
+        most = rotor.nodes.size - free_motions_of(rotor).shape[1]
+        columns.append(free_modes(rotor, min(_FREE_MODES, most)).matrix)
+    matrix = unit_columns(rotor, np.hstack(columns))
+    known = None if spins or rotor.carried_prestress is not None else False
+    basis = ModeBasis(matrix, numbered("static mode", matrix.shape[1]), rotor.nodes)
+    return reduce_rotor(rotor, basis, stress=stress, prestress=known)
 
 
 def _reduced(
@@ -77,7 +104,7 @@ def _reduced(
     basis: OrthonormalBasis,
     stress: bool,
     keep_shapes: bool,
-    attached: Attached | None = None,
+    attached: Callable | None = None,
     network: sp.csr_array | None = None,
 ) -> ReducedRotor:
     center = rotor.center_of_mass
@@ -90,25 +117,23 @@ def _reduced(
         rotor.axis.direction,
         basis.momenta,
     )
-    rigid_count = len(basis.rigid_kinds)
-    _check_stable(basis.stiffness[rigid_count:])
-    if rotor.mass_damping is not None:
-        own_share = component.matrix @ basis.from_modes  # first, or nearly equal modes cost digits
-        damping = invariants.D + own_share.T @ (rotor.mass_damping @ own_share)
-        invariants = replace(invariants, D=damping)
-    if rotor.structural_damping is not None:
-        structural = basis.matrix.T @ (rotor.structural_damping @ basis.matrix)
-        invariants = replace(invariants, H=0.5 * (structural + structural.T))
+    _check_stable(basis.stiffness)
+    invariants = _cleaned(invariants, basis)
+    mode_mass = _mode_mass(component, basis)
+    if rotor.mass_damping:
+        invariants = replace(invariants, D=invariants.D + rotor.mass_damping * mode_mass)
+    if rotor.structural_damping:
+        invariants = replace(invariants, H=rotor.structural_damping * invariants.K)
     if network is not None:
         estimate = basis.matrix.T @ (network @ basis.matrix)
         invariants = replace(invariants, K2_estimated=0.5 * (estimate + estimate.T))
     return ReducedRotor(
         axis=rotor.axis,
         center_of_mass=center,
-        invariants=_stiffened(rotor, _cleaned(invariants, basis), basis.matrix),
+        invariants=_stiffened(rotor, invariants, basis.matrix),
         rigid_kinds=basis.rigid_kinds,
         interfaces=_interfaces(rotor, basis.matrix),
-        mode_mass=_mode_mass(component, basis),
+        mode_mass=mode_mass,
         dropped=basis.dropped,
         grounded=rotor.grounded,
         shapes=_shapes(rotor, component, basis, stress) if keep_shapes else None,
@@ -122,7 +147,7 @@ def _with_attachments(
     component: ModeBasis,
     basis: OrthonormalBasis,
     rank_tolerance: float,
-) -> tuple[ReducedRotor | None, np.ndarray | None]:
+) -> tuple[ReducedRotor, np.ndarray] | None:
     """Return the rotor with static responses beside its modes, and where its own columns are there.
 
     None if its static response is unknown.
@@ -135,38 +160,21 @@ def _with_attachments(
                 inertial_modes(rotor, component.matrix, basis.matrix, stiffness),
             )
         except ValueError:  # loose parts; the given modes may do without them
-            return None, None
-        finer = basis.extended(added, rotor.mass, rotor.stiffness, rank_tolerance)
-        reduced = _reduced(rotor, _joined(component, added), finer, False, False)
+            return None
+        every = _joined(component, added)
+        finer = _basis(rotor, every, rank_tolerance)
+        reduced = _reduced(rotor, every, finer, False, False)
         return reduced, finer.matrix.T @ basis.momenta
+
+
+def _basis(rotor: FiniteElementRotor, modes: ModeBasis, tolerance: float) -> OrthonormalBasis:
+    rigid = _rigid_motions(rotor, rotor.center_of_mass)
+    return OrthonormalBasis.of(rigid, modes, rotor.mass, rotor.stiffness, tolerance)
 
 
 def _joined(first: ModeBasis, second: ModeBasis) -> ModeBasis:
     columns = np.hstack([first.matrix, second.matrix])
     return ModeBasis(columns, first.labels + second.labels, first.nodes)
-
-
-def _component_modes(rotor: FiniteElementRotor, modes: ModeSource) -> ModeBasis:
-    if isinstance(modes, ModeBasis):
-        matrices.check_same_mesh(rotor.nodes, modes.nodes)
-        return modes
-    if isinstance(modes, FEMinterface):
-        return fem_interface_modes(rotor, modes)
-    if isinstance(modes, np.ndarray) and modes.ndim == 0 and modes.dtype.kind in "iu":
-        modes = int(modes)
-    if isinstance(modes, np.ndarray):
-        columns = checks.array(modes, "modes", shape=(rotor.nodes.size, None))
-        labels = tuple(f"column {i + 1}" for i in range(columns.shape[1]))
-        return ModeBasis(columns, labels, nodes=rotor.nodes)
-    if isinstance(modes, (int, np.integer)) and not isinstance(modes, bool):
-        count = checks.count(modes, "modes")
-        if count == 0:  # a rigid rotor
-            return ModeBasis(np.zeros((rotor.nodes.size, 0)), (), nodes=rotor.nodes)
-        return free_modes(rotor, count)
-    raise TypeError(
-        f"modes: expected a number of free eigenmodes, a ModeBasis, a FEMinterface with modes, or "
-        f"an array of displacement columns, got {checks.shown(modes)}"
-    )
 
 
 def _rigid_motions(
@@ -181,7 +189,7 @@ def _rigid_motions(
     scaled = rigid / np.maximum(np.linalg.norm(rigid, axis=0), 1e-300)
     _, _, vt = scipy.linalg.svd(rotor.stiffness @ scaled, full_matrices=False)
     free = scaled @ vt[6 - rotor.rigid_motions :].T
-    return free, (ModeKind.FREE,) * rotor.rigid_motions
+    return free, (ModeKind.FREE,) * free.shape[1]
 
 
 def _with_turned_displacement(rotor: FiniteElementRotor, component: ModeBasis) -> ModeBasis:
@@ -225,13 +233,8 @@ def _mode_mass(component: ModeBasis, basis: OrthonormalBasis) -> np.ndarray:
 
 def _cleaned(invariants: Invariants, basis: OrthonormalBasis) -> Invariants:
     """Put in exactly what holds by construction, so that round-off excites nothing."""
-    rigid_count = len(basis.rigid_kinds)
-    structural = None if invariants.H is None else invariants.H.copy()
-    if structural is not None:
-        structural[:rigid_count] = structural[:, :rigid_count] = 0.0
     return replace(
         invariants,
-        H=structural,
         M=np.eye(invariants.size),
         K=np.diag(np.maximum(basis.stiffness, 0.0)),
         center=np.zeros(3),

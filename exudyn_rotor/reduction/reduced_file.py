@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
+from dataclasses import MISSING, fields
+from functools import partial
 from os import PathLike
 from typing import Any, TypeVar
 
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.reduction.attached import Attached
 from exudyn_rotor.reduction.fields import Centrifugal, ModeKind, ModeShapes, ReducedInterface
 from exudyn_rotor.storage import Entries, read_arrays, write_arrays
 from exudyn_rotor.theory.axis import SpinAxis
@@ -18,14 +19,8 @@ from exudyn_rotor.theory.invariants import Invariants
 Rotor = TypeVar("Rotor")  # ReducedRotor, which has the methods that call this module
 
 _KIND = "reduced rotor"
-_INVARIANTS = ("direction", "center", "J", "S", "P", "M", "K", "D", "G", "C")
-_OPTIONAL_INVARIANTS = ("K2", "B", "K4", "K2_estimated", "H", "K0")
-_INTERFACE = ("reference", "center", "motion")
-_SHAPES = ("nodes", "matrix")
-_CENTRIFUGAL = ("displacement", "stress", "constant_stress")
 _ATTACHED = "attached."
 _IN_ATTACHED = "in_attached"
-_ROUNDING = 1e-8  # of the largest eigenvalue: above the rounding of sums, far below a wrong matrix
 
 
 def save_reduced(rotor: Rotor, path: str | PathLike) -> None:
@@ -43,35 +38,24 @@ def _entries(rotor: Rotor) -> dict[str, object]:
         "dropped": np.array(rotor.dropped, dtype=str),
         "grounded": rotor.grounded,
     }
-    data |= _given("invariants", rotor.invariants, ("mass", *_INVARIANTS, *_OPTIONAL_INVARIANTS))
-    data |= _given("centrifugal", rotor.centrifugal, ("yield_stress", *_CENTRIFUGAL))
-    for index, interface in enumerate(rotor.interfaces.values()):
-        data |= _given(f"interface{index}", interface, ("radius", *_INTERFACE))
-    data |= _given("shapes", rotor.shapes, ("triangles", "stress", *_SHAPES))
+    groups = {"invariants": rotor.invariants, "centrifugal": rotor.centrifugal}
+    groups |= {f"interface{i}": one for i, one in enumerate(rotor.interfaces.values())}
+    groups["shapes"] = rotor.shapes
+    for group, owner in groups.items():
+        for field in fields(owner) if owner is not None else ():
+            value = getattr(owner, field.name)
+            data |= {} if value is None else {f"{group}.{field.name}": value}
     if rotor.with_attachments is not None:
         added = _entries(rotor.with_attachments)
         data |= {_ATTACHED + key: value for key, value in added.items()}
-        data |= {} if rotor.in_attached is None else {_IN_ATTACHED: rotor.in_attached}
+        data[_IN_ATTACHED] = rotor.in_attached
     return data
-
-
-def _given(group: str, owner: object, names: tuple[str, ...]) -> dict[str, object]:
-    """Return the entries of `owner` that are not None."""
-    values = {name: getattr(owner, name, None) for name in names}
-    return {f"{group}.{name}": value for name, value in values.items() if value is not None}
 
 
 def load_reduced(path: str | PathLike, make: Callable[..., Rotor]) -> Rotor:
     """Read a rotor from `path`; `make` is the class :class:`ReducedRotor`.
 
-    Raises
-    ------
-    OSError
-        When there is no such file.
-    ValueError
-        When the file is not a reduced rotor of this package, is damaged, or does not describe a
-        rotor: wrong names, types, shapes, values that are not finite, matrices that are not
-        symmetric or not definite.
+    OSError when there is no such file; ValueError when it is damaged or describes no reduced rotor.
     """
     entries = Entries(read_arrays(path, _KIND))
     try:
@@ -90,38 +74,30 @@ def _fields(entries: Entries, make: Callable[..., Rotor]) -> dict[str, Any]:
     if axis.shape != (2, 3):
         raise ValueError(f"axis: needs the shape (2, 3), got {axis.shape}")
     attached = entries.group(_ATTACHED)
-    fields = {
+    found = {
         "axis": SpinAxis(*axis),
         "center_of_mass": entries.array("center_of_mass"),
-        "invariants": _invariants(entries.group("invariants.")),
+        "invariants": _made(Invariants, entries.group("invariants.")),
         "rigid_kinds": _kinds(entries.words("rigid_kinds", unique=False)),
         "interfaces": {
-            name: _interface(entries.group(f"interface{index}."))
+            name: _made(ReducedInterface, entries.group(f"interface{index}."))
             for index, name in enumerate(entries.words("interface_names"))
         },
-        "mode_mass": _definite(entries.array("mode_mass"), "mode_mass"),
+        "mode_mass": entries.array("mode_mass"),
         "dropped": entries.words("dropped", unique=False),
         "grounded": entries.flag("grounded"),
-        "shapes": _shapes(entries.group("shapes.")),
-        "centrifugal": _centrifugal(entries.group("centrifugal.")),
+        "shapes": _made(ModeShapes, entries.group("shapes."), True),
+        "centrifugal": _made(Centrifugal, entries.group("centrifugal."), True),
     }
     if attached:
-        columns = entries.arrays(_IN_ATTACHED, optional=True).get(_IN_ATTACHED)
-        fields["attached"] = _attached(make(**_fields(attached, make)), columns, fields)
+        finer = make(**_fields(attached, make))
+        shape = finer.size, found["invariants"].size
+        columns = checks.array(entries.array(_IN_ATTACHED), _IN_ATTACHED, shape=shape)
+        if finer.interfaces.keys() != found["interfaces"].keys():
+            raise ValueError("with_attachments: needs the interfaces of the rotor")
+        found["attached"] = partial(tuple, (finer, columns))
     attached.close()
-    return fields
-
-
-def _attached(rotor: Rotor, columns: np.ndarray | None, fields: Mapping[str, Any]) -> Attached:
-    """Return the finer rotor, if it fits what the file says of the rotor itself."""
-    if rotor.interfaces.keys() != fields["interfaces"].keys():
-        raise ValueError("with_attachments: needs the interfaces of the rotor")
-    size = fields["invariants"].size
-    if columns is not None and columns.shape != (rotor.size, size):
-        raise ValueError(
-            f"in_attached: needs the shape ({rotor.size}, {size}), got {columns.shape}"
-        )
-    return Attached.known(rotor, columns)
+    return found
 
 
 def _kinds(names: tuple[str, ...]) -> tuple[ModeKind, ...]:
@@ -129,52 +105,15 @@ def _kinds(names: tuple[str, ...]) -> tuple[ModeKind, ...]:
     return tuple(ModeKind[name] for name in names)
 
 
-def _invariants(entries: Entries) -> Invariants:
-    invariants = Invariants(
-        mass=entries.number("mass"),
-        **entries.arrays(*_INVARIANTS),
-        **entries.arrays(*_OPTIONAL_INVARIANTS, optional=True),
-    )
-    for name in ("K", "C", "J", "K4", "H"):
-        if getattr(invariants, name) is not None:
-            _definite(getattr(invariants, name), f"invariants.{name}")
-    entries.close()
-    return invariants
-
-
-def _interface(entries: Entries) -> ReducedInterface:
-    interface = ReducedInterface(radius=entries.number("radius"), **entries.arrays(*_INTERFACE))
-    entries.close()
-    return interface
-
-
-def _shapes(entries: Entries) -> ModeShapes | None:
-    if not entries:
+def _made(kind: type, entries: Entries, optional: bool = False) -> Any:
+    """Return an object of a dataclass from the entries of its fields; None of none if optional."""
+    if optional and not entries:
         return None
-    shapes = ModeShapes(
-        triangles=entries.array("triangles", int),
-        **entries.arrays(*_SHAPES),
-        **entries.arrays("stress", optional=True),
-    )
+    values = {}
+    for field in fields(kind):
+        if field.name in entries or field.default is MISSING:
+            read = entries.number if field.type.startswith("float") else entries.array
+            whole = field.name == "triangles"
+            values[field.name] = entries.array(field.name, int) if whole else read(field.name)
     entries.close()
-    return shapes
-
-
-def _centrifugal(entries: Entries) -> Centrifugal | None:
-    if not entries:
-        return None
-    known = "yield_stress" in entries
-    fields = Centrifugal(
-        yield_stress=entries.number("yield_stress") if known else None,
-        **entries.arrays(*_CENTRIFUGAL, optional=True),
-    )
-    entries.close()
-    return fields
-
-
-def _definite(matrix: np.ndarray, name: str) -> np.ndarray:
-    """Return a symmetric matrix without negative eigenvalues, but for rounding."""
-    values = np.linalg.eigvalsh(matrix)
-    if values.size and values[0] < -_ROUNDING * np.abs(values).max():
-        raise ValueError(f"{name}: has the negative eigenvalue {values[0]:.4g}")
-    return matrix
+    return kind(**values)

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from os import PathLike
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.reduction.attached import Attached
 from exudyn_rotor.reduction.fields import (
     Centrifugal,
     ModeKind,
     ModeShapes,
     ReducedInterface,
     rigid_names,
-    set_checked,
 )
 from exudyn_rotor.reduction.reduced_file import load_reduced, save_reduced
 from exudyn_rotor.theory.axis import SpinAxis
@@ -55,9 +53,10 @@ class ReducedRotor:
         None when the rotor was reduced without them: then no mesh nodes, no drawing.
     centrifugal : Centrifugal or None
         None when the rotor was reduced without a computed prestress, or without shapes.
-    attached : Attached or None
-        The same rotor with static responses beside the modes, computed when it is first asked for:
-        :attr:`with_attachments`. None where that is not known.
+    attached : callable or None
+        Returns the same rotor with static responses beside the modes, and the columns of this one
+        in it, (l, k); called when :attr:`with_attachments` is first asked for, as it takes some
+        solutions of the full model. None where there are no static responses.
 
     Raises
     ------
@@ -93,7 +92,7 @@ class ReducedRotor:
     grounded: bool = False
     shapes: ModeShapes | None = None
     centrifugal: Centrifugal | None = None
-    attached: Attached | None = None
+    attached: Callable[[], tuple[ReducedRotor, np.ndarray] | None] | None = None
 
     def __post_init__(self) -> None:
         checks.instance(self.axis, "axis", SpinAxis)
@@ -112,7 +111,7 @@ class ReducedRotor:
                 f"rigid_kinds: needs at most {size} rigid motions, each once, got "
                 f"{[kind.name for kind in kinds]}"
             )
-        set_checked(
+        checks.keep(
             self,
             center_of_mass=checks.vector(self.center_of_mass, "center_of_mass", "m"),
             rigid_kinds=kinds,
@@ -124,34 +123,49 @@ class ReducedRotor:
         self._check_fields()
 
     def _check_fields(self) -> None:
-        """Check what may be None."""
+        """Check fields that may be None."""
         if self.shapes is not None:
             checks.instance(self.shapes, "shapes", ModeShapes)
             _check_columns(self.shapes.matrix, "shapes: matrix", self.size)
         if self.centrifugal is not None:
             checks.instance(self.centrifugal, "centrifugal", Centrifugal)
-            nodes = self.centrifugal.node_count
-            if self.shapes is None or nodes != len(self.shapes.nodes):
-                raise ValueError(f"centrifugal: needs shapes of its {nodes} nodes")
+            nodes = 0 if self.shapes is None else len(self.shapes.nodes)
+            for name, width in (("displacement", 3), ("stress", 6), ("constant_stress", 6)):
+                field = getattr(self.centrifugal, name)
+                if field is not None and field.size != width * nodes:
+                    raise ValueError(f"centrifugal: {name}: needs the {nodes} nodes of the shapes")
         if self.attached is not None:
-            checks.instance(self.attached, "attached", Attached, "SolidRotor.reduce(…) makes one")
+            checks.function(self.attached, "attached")
 
     @cached_property
+    def _finer(self) -> tuple[ReducedRotor | None, np.ndarray | None]:
+        """The finer rotor and the columns of this one in it; the full model is let go then."""
+        found = None if self.attached is None else self.attached()
+        known = None if found is None else partial(tuple, found)
+        object.__setattr__(self, "attached", known)
+        return (None, None) if found is None else found
+
+    def __getstate__(self) -> dict[str, object]:
+        """Send to other processes what is known of the finer rotor, not the full model."""
+        self._finer  # noqa: B018
+        return vars(self)
+
+    @property
     def with_attachments(self) -> ReducedRotor | None:
         """The same rotor with more columns, without shapes: how much the modes leave out.
 
         Beside the modes it has static responses to loads at the interfaces and to the inertia
         forces of the modes in a turning frame. None where that is not known.
         """
-        return None if self.attached is None else self.attached.rotor
+        return self._finer[0]
 
-    @cached_property
+    @property
     def in_attached(self) -> np.ndarray | None:
         """The columns of this rotor in the basis of :attr:`with_attachments`, shape (l, k).
 
-        Orthonormal. None where that is not known, as in files of version 0.1.
+        Orthonormal. None where that is not known.
         """
-        return None if self.attached is None else self.attached.columns
+        return self._finer[1]
 
     @property
     def size(self) -> int:
@@ -214,15 +228,21 @@ class ReducedRotor:
         loss = checks.number(loss, "loss", least=0.0)
         if mass == 0.0 and stiffness == 0.0 and loss == 0.0:
             return self
-        inv, attached = self.invariants, self.attached
+        inv = self.invariants
         structural = inv.H
         if loss:
             structural = loss * inv.K + (0.0 if inv.H is None else inv.H)
         damping = inv.D + mass * self.mode_mass + stiffness * inv.K
-        if attached is not None:
-            attached = attached.with_damping(mass=mass, stiffness=stiffness, loss=loss)
         damped = replace(inv, D=damping, H=structural)
-        return replace(self, invariants=damped, attached=attached)
+        if self.attached is None:
+            return replace(self, invariants=damped)
+
+        def finer() -> tuple[ReducedRotor, np.ndarray] | None:
+            rotor, columns = self._finer
+            factors = {"mass": mass, "stiffness": stiffness, "loss": loss}
+            return None if rotor is None else (rotor.with_damping(**factors), columns)
+
+        return replace(self, invariants=damped, attached=finer)
 
     def static_displacement(self, speed: float) -> np.ndarray:
         """Return the static centrifugal displacement at a spin speed.

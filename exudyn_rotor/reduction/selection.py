@@ -1,7 +1,11 @@
-"""Which rigid modes a formulation needs: those its frame does not hold, and no others."""
+"""A reduced rotor with some of its columns: those of a formulation, or fewer flexible modes.
+
+A formulation needs the rigid modes that its frame does not hold, and no others.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,7 +17,7 @@ from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.invariants import Invariants
 
 NEGLIGIBLE = 1e-10  # see `negligible` of select_modes
-_SAME = 1e-6  # share of its scale below which a difference of two bases is round-off
+_SAME = 1e-6  # share of the largest entry below which a difference of bases is round-off
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +55,16 @@ class Selection:
         sign are another basis.
         """
         checks.instance(reduced, "reduced", ReducedRotor)
-        return _same_basis(self.source, reduced)
+        one, two = self.source, reduced
+        if one.rigid_kinds != two.rigid_kinds or one.size != two.size:
+            return False
+        # what is linear or bilinear in the columns, and kept without shapes
+        pairs = [(getattr(one.invariants, x), getattr(two.invariants, x)) for x in "PGCK"]
+        pairs += [
+            (one.interfaces[name].motion, two.interfaces[name].motion)
+            for name in one.interfaces.keys() & two.interfaces.keys()
+        ]
+        return all(np.abs(x - y).max() <= _SAME * np.abs(x).max() for x, y in pairs if x.size)
 
     def __repr__(self) -> str:
         return f"Selection({len(self.labels)} of the {self.T.shape[0]} columns of {self.source!r})"
@@ -111,26 +124,6 @@ def select_modes(
     )
 
 
-def _same_basis(one: ReducedRotor, two: ReducedRotor) -> bool:
-    """Compare what is linear or bilinear in the columns, and kept without shapes."""
-    if one.rigid_kinds != two.rigid_kinds or one.size != two.size:
-        return False
-    a, b = one.invariants, two.invariants
-    pairs = [
-        (a.direction, b.direction, 1.0),
-        (a.mass, b.mass, a.mass),
-        (one.center_of_mass, two.center_of_mass, np.sqrt(np.trace(a.J) / a.mass)),
-        (a.P, b.P, np.sqrt(np.trace(a.J))),
-        (a.G, b.G, 1.0),  # the columns are mass-orthonormal
-        (a.C, b.C, 1.0),
-        (a.K, b.K, np.maximum(np.abs(a.K), np.abs(b.K))),
-    ]
-    for name in one.interfaces.keys() & two.interfaces.keys():
-        motion = one.interfaces[name].motion
-        pairs.append((motion, two.interfaces[name].motion, np.abs(motion).max()))
-    return all(np.all(np.abs(x - y) <= _SAME * scale) for x, y, scale in pairs)
-
-
 def _without_noise(invariants: Invariants, negligible: float) -> Invariants:
     """Put zeros for what is negligible; the columns are mass-orthonormal."""
     size = np.sqrt(invariants.mass)
@@ -183,7 +176,14 @@ def _columns(reduced: ReducedRotor, formulation: Formulation) -> tuple[np.ndarra
 
 def without_mean_rotation(reduced: ReducedRotor, T: np.ndarray) -> np.ndarray:
     """Make columns T of a basis free of mean rotation about the axis, and orthonormal again."""
-    return _orthogonal_to(mean_rotation(reduced), T)
+    held = mean_rotation(reduced)
+    overlap = held @ T
+    touched = np.abs(overlap) > 1e-14
+    # the polar factor is the orthonormal set closest to the columns, so labels keep their meaning
+    u, _, vt = np.linalg.svd(T[:, touched] - np.outer(held, overlap[touched]), full_matrices=False)
+    result = T.copy()
+    result[:, touched] = u @ vt
+    return result
 
 
 def mean_rotation(reduced: ReducedRotor) -> np.ndarray:
@@ -194,15 +194,111 @@ def mean_rotation(reduced: ReducedRotor) -> np.ndarray:
     return turns / size if size else turns
 
 
-def _orthogonal_to(held: np.ndarray, T: np.ndarray) -> np.ndarray:
-    """Make the columns T orthogonal to the unit vector `held`, and orthonormal again."""
-    overlap = held @ T
-    touched = np.abs(overlap) > 1e-14
-    if not np.any(touched):
-        return T
-    columns = T[:, touched] - np.outer(held, overlap[touched])
-    # the polar factor is the orthonormal set closest to the columns, so labels keep their meaning
-    u, _, vt = np.linalg.svd(columns, full_matrices=False)
-    result = T.copy()
-    result[:, touched] = u @ vt
-    return result
+def in_basis(reduced: ReducedRotor, T: np.ndarray, rigid_kinds: Iterable[ModeKind]) -> ReducedRotor:
+    """Return the rotor for combinations T (k, l) of its columns, without static responses.
+
+    `rigid_kinds` are what the leading columns of T are.
+    """
+    shapes = reduced.shapes
+    if shapes is not None:
+        stress = None if shapes.stress is None else shapes.stress @ T
+        shapes = replace(shapes, matrix=shapes.matrix @ T, stress=stress)
+    return replace(
+        reduced,
+        invariants=reduced.invariants.in_basis(T),
+        rigid_kinds=tuple(rigid_kinds),
+        interfaces={
+            name: replace(interface, motion=interface.motion @ T)
+            for name, interface in reduced.interfaces.items()
+        },
+        mode_mass=T.T @ reduced.mode_mass @ T,
+        shapes=shapes,
+        attached=None,
+    )
+
+
+def without_spin(reduced: ReducedRotor) -> ReducedRotor:
+    """Return a rotor none of whose motions has a mean rotation about the axis.
+
+    So that θ(t) is that rotation, as :func:`select_modes` has it. A rotor without the rigid motion
+    'spin', a grounded one for instance, is returned as it is.
+    """
+    if ModeKind.SPIN not in reduced.rigid_kinds:
+        return reduced
+    T = _beside_spin(reduced)
+
+    def finer() -> tuple[ReducedRotor, np.ndarray] | None:
+        rotor = reduced.with_attachments
+        if rotor is None:
+            return None
+        U = _beside_spin(rotor)
+        return _without_kind(rotor, U), U.T @ reduced.in_attached @ T
+
+    return replace(_without_kind(reduced, T), attached=None if reduced.attached is None else finer)
+
+
+def _beside_spin(reduced: ReducedRotor) -> np.ndarray:
+    columns = [i for i, kind in enumerate(reduced.kinds) if kind is not ModeKind.SPIN]
+    return without_mean_rotation(reduced, np.eye(reduced.size)[:, columns])
+
+
+def _without_kind(reduced: ReducedRotor, T: np.ndarray) -> ReducedRotor:
+    kinds = (kind for kind in reduced.rigid_kinds if kind is not ModeKind.SPIN)
+    return in_basis(reduced, T, kinds)
+
+
+def keep_modes(reduced: ReducedRotor, indices: Sequence[int]) -> ReducedRotor:
+    """Return the rotor with some of its flexible modes; rigid motions always stay.
+
+    Parameters
+    ----------
+    reduced : ReducedRotor
+    indices : sequence of int
+        Flexible modes to keep, counted from 0: index 0 is 'mode 1' of ``reduced.labels``. Empty
+        for a rigid rotor. They keep their order in `reduced`; the labels count anew.
+
+    Returns
+    -------
+    ReducedRotor
+        Static centrifugal fields stay complete: they are not sums of modes.
+
+    Raises
+    ------
+    TypeError
+        If `reduced` is not a ReducedRotor, or an index no whole number.
+    ValueError
+        If an index does not exist or is given twice, or nothing would be left.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, keep_modes
+    >>> spring = 1e6 * np.kron([[1, -1], [-1, 1]], np.diag([0, 0, 1]))
+    >>> ends = [[0, 0, 0], [0, 0, 1]]
+    >>> rotor = SolidRotor.from_matrices(np.eye(6), spring, ends, "z", grounded=False)
+    >>> keep_modes(rotor.reduce(1), [])
+    ReducedRotor(5 rigid + 0 flexible modes, 2 kg, interfaces: none)
+    """
+    checks.instance(reduced, "reduced", ReducedRotor, "SolidRotor.reduce(…) makes one")
+    rigid = len(reduced.rigid_kinds)
+    chosen = _checked_indices(indices, reduced.size - rigid)
+    columns = np.r_[np.arange(rigid), rigid + chosen].astype(int)
+    if columns.size == 0:
+        raise ValueError("keep_modes: this rotor has no rigid motions; keep at least one mode")
+
+    def finer() -> tuple[ReducedRotor, np.ndarray] | None:
+        rotor, shares = reduced.with_attachments, reduced.in_attached
+        return None if rotor is None else (rotor, shares[:, columns])
+
+    kept = in_basis(reduced, np.eye(reduced.size)[:, columns], reduced.rigid_kinds)
+    return replace(kept, attached=None if reduced.attached is None else finer)
+
+
+def _checked_indices(indices: Sequence[int], count: int) -> np.ndarray:
+    chosen = np.sort(checks.whole_numbers(indices, "indices"))
+    if chosen.size and chosen[-1] >= count:
+        there = f"flexible modes 0 to {count - 1}" if count else "no flexible modes"
+        raise ValueError(f"indices: the rotor has {there}, got {chosen[-1]}")
+    if len(np.unique(chosen)) < len(chosen):
+        raise ValueError(f"indices: a mode is named twice: {chosen.tolist()}")
+    return chosen

@@ -98,7 +98,15 @@ class Prestress:
             if getattr(self, name) is not None:
                 checked[name] = matrices.as_matrix(f"{name} matrix", getattr(self, name), count)
         if self.initial_displacement is not None:
-            checked["initial_displacement"] = _pair(self.initial_displacement, count)
+            pair = self.initial_displacement
+            if not isinstance(pair, tuple | list) or len(pair) != 2:
+                raise TypeError(
+                    "initial_displacement: needs two matrices, K_u and K_uu, got "
+                    f"{checks.shown(pair)}"
+                )
+            checked["initial_displacement"] = tuple(
+                matrices.as_matrix("initial_displacement matrix", one, count) for one in pair
+            )
         shapes = {
             "displacement": (3 * count,),
             "load": (3 * count,),
@@ -115,8 +123,7 @@ class Prestress:
             checked["yield_stress"] = checks.number(
                 self.yield_stress, "yield_stress", "Pa", above=0.0
             )
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)
+        checks.keep(self, **checked)
 
     @property
     def per_square(self) -> sp.csr_array:
@@ -170,24 +177,6 @@ class Prestress:
         )
 
     def __repr__(self) -> str:
-        parts = [f"{len(self.nodes)} nodes"]
-        parts += [
-            name for name in ("euler", "constant", "by_loads") if getattr(self, name) is not None
-        ]
-        parts += [] if self.initial_displacement is None else ["initial displacement"]
-        parts += [] if self.balanced else ["clamped"]
-        return f"Prestress({', '.join(parts)})"
-
-
-def _pair(given: Any, count: int) -> tuple[sp.csr_array, sp.csr_array]:
-    """Return the matrices K_u and K_uu of an initial displacement."""
-    if not isinstance(given, tuple | list) or len(given) != 2:
-        raise TypeError(
-            "initial_displacement: needs the two matrices (K_u, K_uu), got "
-            f"{checks.shown(given)}; rotor.prestress(initial_displacement=True) computes them"
-        )
-    names = ("K_u", "K_uu")
-    return tuple(
-        matrices.as_matrix(f"initial_displacement: {name}", matrix, count)
-        for name, matrix in zip(names, given, strict=True)
-    )
+        names = ("euler", "constant", "by_loads", "initial_displacement")
+        given = [f", {name}" for name in names if getattr(self, name) is not None]
+        return f"Prestress({len(self.nodes)} nodes{''.join(given)})"

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
 
+from exudyn_rotor import checks
 from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.shapes import KINDS, ElementKind, Rule
 
@@ -43,7 +44,7 @@ class Block:
 
 @dataclass(frozen=True, eq=False)
 class SolidElements:
-    """Elements of a model, for its matrices, those of a static field and of single materials.
+    """Elements of a model, for its matrices and those of a static field.
 
     All integrals of a static field use the integration points of the stiffness matrix. A stress
     field in discrete equilibrium then stays so: for a rotation ``a × x`` its geometric stiffness
@@ -60,10 +61,8 @@ class SolidElements:
         Lamé parameters λ, μ of every region [Pa].
     densities : ndarray, shape (regions,)
         [kg/m³].
-    held : ndarray of int, optional
-        Nodes that are clamped: their rows and columns are zero in every matrix.
     free : scipy.sparse.csr_array, optional
-        Takes held directions of nodes out of displacements, shape (3n, 3n).
+        Takes held directions of clamped nodes out of displacements, shape (3n, 3n).
     """
 
     nodes: np.ndarray
@@ -71,46 +70,51 @@ class SolidElements:
     materials: Sequence[str]
     lame: np.ndarray
     densities: np.ndarray
-    held: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     free: sp.csr_array | None = None
 
-    def mass_matrix(self, factors: np.ndarray | None = None) -> sp.csr_array:
-        """Return the mass matrix (3n, 3n), with a factor for every region, shape (regions,)."""
-        densities = self.densities if factors is None else factors * self.densities
+    @classmethod
+    def of_materials(
+        cls,
+        nodes: np.ndarray,
+        blocks: Sequence[Block],
+        regions: Sequence[str],
+        materials: Mapping[str, Mapping[str, float]],
+    ) -> SolidElements:
+        """Return the elements with a material by the name of each region."""
+        young, ratio, densities = np.array([list(materials[name].values()) for name in regions]).T
+        shear = young / (2.0 * (1.0 + ratio))
+        lame = np.column_stack([2.0 * shear * ratio / (1.0 - 2.0 * ratio), shear])
+        return cls(nodes, blocks, regions, lame, densities)
+
+    def mass_matrix(self) -> sp.csr_array:
+        """Return the mass matrix (3n, 3n)."""
 
         def entries(block: Block) -> Iterator[np.ndarray]:
             points = block.shape.mass_rule[0]
             values = block.shape.values(points)
             products = np.einsum("qi,qj->qij", values, values).reshape(len(points), -1)
             for part in self._parts(block, block.shape.mass_rule):
-                yield (densities[part.regions][:, None] * part.weights) @ products
+                yield (self.densities[part.regions][:, None] * part.weights) @ products
 
         matrix = self._assembled(entries, 1)
         return self._without_held(matrices.in_all_directions(matrix))
 
-    def stiffness_matrix(self, factors: np.ndarray | None = None) -> sp.csr_array:
-        """Return the stiffness matrix (3n, 3n), with a factor for every region."""
-        scale = 1.0 if factors is None else factors[:, None]
-        return self._without_held(self._of_strains(None, None, scale * self.lame))
+    def stiffness_matrix(self) -> sp.csr_array:
+        """Return the stiffness matrix (3n, 3n)."""
+        return self._without_held(self._of_strains(None, None))
 
     def geometric_stiffness(self, displacement: np.ndarray) -> sp.csr_array:
-        """Return ``vᵀ K_G u = ∫ σ⁰ : (∇uᵀ∇v) dV`` with σ⁰ of a displacement, shape (3n, 3n).
+        """Return ``vᵀ K_G u = ∫ σ⁰ : (∇uᵀ∇v) dV`` with σ⁰ of a displacement (3n,).
 
-        Parameters
-        ----------
-        displacement : ndarray, shape (3n,)
-            Static displacement u⁰, mesh axes; σ⁰ is Hooke's stress of its linear strain.
+        σ⁰ is Hooke's stress of its linear strain.
         """
-        static = self._nodal("displacement", displacement, (self.nodes.size,)).reshape(-1, 3)
+        static = self._static(displacement)
         return self._without_held(self._of_stress(lambda part: part.stress(static, self.lame)))
 
     def geometric_stiffness_of_stress(self, stress: np.ndarray) -> sp.csr_array:
-        """Return the same of a nodal stress field, interpolated by the shape functions.
+        """Return the same of a nodal stress (n, 6), interpolated by the shape functions.
 
-        Parameters
-        ----------
-        stress : ndarray, shape (n, 6)
-            Components xx, yy, zz, yz, xz, xy in mesh axes [Pa].
+        Components xx, yy, zz, yz, xz, xy in mesh axes [Pa].
         """
         return self._without_held(self._of_nodal_stress(stress))
 
@@ -128,7 +132,7 @@ class SolidElements:
         St. Venant–Kirchhoff elasticity in the direction u⁰, from ``W = ½ E : C : E`` with
         ``E = sym ∇u + ½ ∇uᵀ∇u``. Parameters as there.
         """
-        half = self._of_strains(self._static(displacement), None, self.lame)
+        half = self._of_strains(self._static(displacement), None)
         return self._without_held(sp.csr_array(half + half.T))
 
     def squared_displacement_stiffness(self, displacement: np.ndarray) -> sp.csr_array:
@@ -137,7 +141,7 @@ class SolidElements:
         Symbols and parameters of :meth:`initial_displacement_stiffness`.
         """
         static = self._static(displacement)
-        return self._without_held(self._of_strains(static, static, self.lame))
+        return self._without_held(self._of_strains(static, static))
 
     def nodal_stress(self, displacements: np.ndarray) -> np.ndarray:
         """Return the stress (n, 6, k) of displacement columns (3n, k).
@@ -145,27 +149,9 @@ class SolidElements:
         Each element's stress is that at its integration points, linear between them; a node gets
         the mean of its elements. In a curved tetrahedron that has two faces on a smooth surface,
         which is flat where they meet, the stress grows without bound there. At a node shared by
-        two materials this is the mean over both.
-
-        Parameters
-        ----------
-        displacements : ndarray, shape (3n, k)
-
-        Returns
-        -------
-        ndarray, shape (n, 6, k)
-            Components xx, yy, zz, yz, xz, xy in mesh axes [Pa].
-
-        Raises
-        ------
-        ValueError
-            If the columns do not have three entries for every node.
+        two materials this is the mean over both. Components xx, yy, zz, yz, xz, xy in mesh axes.
         """
-        columns = np.asarray(displacements, dtype=float)
-        if columns.ndim != 2 or len(columns) != self.nodes.size:
-            raise ValueError(
-                f"stress: needs columns of shape ({self.nodes.size}, k), got {columns.shape}"
-            )
+        columns = checks.array(displacements, "stress: columns", shape=(self.nodes.size, None))
         result = np.zeros((len(self.nodes), 6, columns.shape[1]))
         counts = np.zeros(len(self.nodes))
         for block in self.blocks:
@@ -217,11 +203,7 @@ class SolidElements:
             for i, name in enumerate(self.materials)
         ]
 
-    def holding(self, nodes: np.ndarray) -> SolidElements:
-        """Return the elements with more nodes clamped."""
-        return replace(self, held=np.union1d(self.held, nodes))
-
-    def holding_directions(self, free: sp.csr_array) -> SolidElements:
+    def holding(self, free: sp.csr_array) -> SolidElements:
         """Return the elements with more directions held, which the projection `free` takes out."""
         return replace(self, free=free if self.free is None else sp.csr_array(self.free @ free))
 
@@ -246,9 +228,7 @@ class SolidElements:
         linear = sp.csr_array(sp.kron(means, sp.eye_array(3), format="csr"))
         return linear if self.free is None else sp.csr_array(self.free @ linear)
 
-    def _of_strains(
-        self, first: np.ndarray | None, second: np.ndarray | None, lame: np.ndarray
-    ) -> sp.csr_array:
+    def _of_strains(self, first: np.ndarray | None, second: np.ndarray | None) -> sp.csr_array:
         """Return ``∫ E(v) : C : E(u) dV``, of E = ε for None, else E₁ of nodal displacements."""
 
         def entries(block: Block) -> Iterator[np.ndarray]:
@@ -256,7 +236,7 @@ class SolidElements:
                 left = right = part.strains(first)
                 if second is not first:
                     right = part.strains(second)
-                right = _hooke(lame)[part.regions][:, None] @ right
+                right = _hooke(self.lame)[part.regions][:, None] @ right
                 right *= part.weights[..., None, None]
                 size = left.shape[3]
                 shape = (len(left), -1, size)
@@ -267,7 +247,7 @@ class SolidElements:
         return self._assembled(entries, 3)
 
     def _of_nodal_stress(self, stress: np.ndarray) -> sp.csr_array:
-        values = self._nodal("stress", stress, (len(self.nodes), 6))
+        values = checks.array(stress, "stress", "Pa", shape=(len(self.nodes), 6))
         return self._of_stress(lambda part: part.interpolated(values)[..., _TENSOR])
 
     def _of_stress(self, stress: Callable[[_Part], np.ndarray]) -> sp.csr_array:
@@ -315,24 +295,10 @@ class SolidElements:
             yield _Part(nodes, regions, np.abs(sizes) * weights, values, across)
 
     def _static(self, displacement: np.ndarray) -> np.ndarray:
-        return self._nodal("displacement", displacement, (self.nodes.size,)).reshape(-1, 3)
-
-    def _nodal(self, label: str, values: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
-        """Check a nodal field."""
-        values = np.asarray(values, dtype=float)
-        if values.shape != shape:
-            raise ValueError(
-                f"{label}: the shape must be {shape} for the rotor's {len(self.nodes)} nodes, got "
-                f"{values.shape}; it may belong to another mesh"
-            )
-        if not np.all(np.isfinite(values)):
-            raise ValueError(f"{label}: has entries that are not finite")
-        return values
+        return checks.array(displacement, "displacement", shape=(self.nodes.size,)).reshape(-1, 3)
 
     def _without_held(self, matrix: sp.csr_array) -> sp.csr_array:
-        if self.free is not None:
-            matrix = sp.csr_array(self.free.T @ matrix @ self.free)
-        return matrix if self.held.size == 0 else matrices.without_nodes(matrix, self.held)
+        return matrix if self.free is None else sp.csr_array(self.free.T @ matrix @ self.free)
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,14 @@ from exudyn.FEM import FEMinterface
 
 from exudyn_rotor import checks
 from exudyn_rotor.solid.model import FiniteElementModel, NodeSet
-from exudyn_rotor.solid.ngsolve_model import is_named
+
+# Face names that Netgen invents for faces without a name.
+_INVENTED_NAME = re.compile(r"(default|bc_\d+)?")
+
+
+def is_named(face: str) -> bool:
+    """Tell whether a user gave this face name, rather than Netgen."""
+    return _INVENTED_NAME.fullmatch(face) is None
 
 
 def import_model(fem: FEMinterface) -> FiniteElementModel:

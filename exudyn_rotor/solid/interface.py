@@ -64,14 +64,14 @@ class Interface:
         reference = center
         if self.reference is not None:
             reference = checks.vector(self.reference, f"interface {name!r}: reference", "m")
-        for key, value in {
-            "nodes": nodes,
-            "weights": weights,
-            "positions": positions,
-            "center": center,
-            "reference": reference,
-        }.items():
-            object.__setattr__(self, key, value)
+        checks.keep(
+            self,
+            nodes=nodes,
+            weights=weights,
+            positions=positions,
+            center=center,
+            reference=reference,
+        )
 
     def __repr__(self) -> str:
         center = ", ".join(f"{value:.5g}" for value in self.center)

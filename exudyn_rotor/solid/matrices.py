@@ -21,15 +21,7 @@ _POSITION_TOLERANCE = 1e-9
 
 
 def as_nodes(nodes: Any) -> np.ndarray:
-    """Return the node positions as a read-only array, shape (n, 3).
-
-    Raises
-    ------
-    TypeError
-        If `nodes` does not hold numbers.
-    ValueError
-        If the shape is not (n, 3) with n ≥ 1, or an entry is not finite.
-    """
+    """Return the node positions as a read-only array, shape (n, 3), n ≥ 1."""
     positions = checks.array(nodes, "nodes", "m", finite=False)
     if positions.ndim == 2 and positions.shape[1] in (6, 7):
         raise ValueError(
@@ -38,15 +30,11 @@ def as_nodes(nodes: Any) -> np.ndarray:
         )
     if positions.ndim != 2 or positions.shape[1] != 3 or len(positions) == 0:
         raise ValueError(f"nodes: the shape must be (n, 3), got {positions.shape}")
-    bad = np.flatnonzero(~np.isfinite(positions).all(axis=1))
+    bad = np.flatnonzero(~(np.abs(positions) < _FARTHEST).all(axis=1))
     if bad.size:
         raise ValueError(
-            f"nodes: {bad.size} of {len(positions)} positions are not finite, {_some(bad)}"
-        )
-    if np.abs(positions).max() > _FARTHEST:
-        raise ValueError(
-            f"nodes: positions need coordinates below {_FARTHEST:g} m, got "
-            f"{np.abs(positions).max():.3g} m"
+            f"nodes: {bad.size} of {len(positions)} positions are not finite, or beyond "
+            f"{_FARTHEST:g} m: nodes {_numbers(bad)}"
         )
     return positions
 
@@ -82,13 +70,6 @@ def as_matrix(
         The number of nodes n.
     check : callable, optional
         Raises if the matrix is wrong otherwise.
-
-    Raises
-    ------
-    TypeError
-        If `matrix` does not hold real numbers.
-    ValueError
-        If the size does not fit the nodes, an entry is not finite, or it is not symmetric.
     """
     size = 3 * node_count
     known = _checked.get((label, id(matrix)))
@@ -109,32 +90,15 @@ def as_matrix(
 
 
 def check_same_mesh(nodes: np.ndarray, others: np.ndarray, label: str = "modal basis") -> None:
-    """Refuse what belongs to other nodes (n, 3) than those of the rotor; `label` names it.
-
-    Raises
-    ------
-    ValueError
-        If the numbers of nodes or their positions differ.
-    """
-    if others.shape != nodes.shape:
-        raise ValueError(
-            f"{label} from another mesh: the rotor has other nodes ({len(others)} nodes in the "
-            f"{label.split()[-1]}, {len(nodes)} in the rotor); compute the {label} with this rotor"
-        )
-    distance = np.linalg.norm(nodes - others, axis=1).max()
+    """Refuse what belongs to other nodes (n, 3) than those of the rotor; `label` names it."""
+    same = others.shape == nodes.shape
+    distance = np.linalg.norm(nodes - others, axis=1).max() if same else np.inf
     if distance > _POSITION_TOLERANCE * np.ptp(nodes, axis=0).max():
         raise ValueError(
-            f"{label} from another mesh: node positions differ by up to {distance:.3g} m; compute "
-            f"the {label} with this rotor"
+            f"{label} from another mesh: the rotor has other nodes ({len(others)} nodes in the "
+            f"{label.split()[-1]}, {len(nodes)} in the rotor, up to {distance:.3g} m apart); "
+            f"compute the {label} with this rotor"
         )
-
-
-def without_nodes(matrix: sp.csr_array, nodes: np.ndarray) -> sp.csr_array:
-    """Return a matrix (3n, 3n) with the rows and columns of `nodes` set to zero."""
-    factors = np.ones((matrix.shape[0] // 3, 3))
-    factors[nodes] = 0.0
-    mask = sp.diags_array(factors.ravel())
-    return sp.csr_array(mask @ matrix @ mask)
 
 
 def in_all_directions(matrix: sp.csr_array) -> sp.csr_array:
@@ -163,20 +127,20 @@ def frozen(matrix: sp.csr_array) -> sp.csr_array:
 
 def _check_mass(mass: sp.csr_array) -> None:
     """Raise ValueError unless `mass` is a solid's mass matrix: I₃ blocks (24), no empty node."""
-    if not _has_identity_blocks(mass):
-        raise ValueError(_explain_blocks(mass))
-    diagonal = mass.diagonal()[::3]
-    negative = np.flatnonzero(diagonal < 0.0)
-    if negative.size:
+    difference = in_all_directions(sp.csr_array(mass[::3, ::3])) - mass
+    if _largest(difference) > BLOCK_TOLERANCE * _largest(mass):
         raise ValueError(
-            f"mass matrix: {negative.size} nodes have a negative mass, {_some(negative)}; "
-            "it must be positive definite"
+            "mass matrix: it does not consist of multiples of the 3×3 identity, one for each pair "
+            "of nodes, as displacement-based solid elements give; check that the coordinates are "
+            "ordered x0 y0 z0 x1 …, all elements are solids with three displacements per node, "
+            "every lumped mass is the same in x, y and z, and no directions were condensed or fixed"
         )
-    empty = np.flatnonzero(diagonal == 0.0)
+    empty = np.flatnonzero(mass.diagonal()[::3] <= 0.0)
     if empty.size:
         raise ValueError(
-            f"mass matrix: {empty.size} nodes have no mass, {_some(empty)}; remove nodes that "
-            "belong to no element (a mesh made second order twice has some), or condense them"
+            f"mass matrix: {empty.size} nodes have no mass or a negative one, nodes "
+            f"{_numbers(empty)}; remove nodes that belong to no element (a mesh made second order "
+            "twice has some), or condense them"
         )
     total = mass[::3, ::3].sum()
     if total <= 0.0:
@@ -195,15 +159,7 @@ def _check_stiffness(stiffness: sp.csr_array) -> None:
 
 
 def as_node_numbers(name: str, nodes: Any, node_count: int | None = None) -> np.ndarray:
-    """Return the node numbers of interface `name`, shape (k,), below `node_count` if given.
-
-    Raises
-    ------
-    TypeError
-        If they are not integers.
-    ValueError
-        If there are none, one does not exist, or one is listed twice.
-    """
+    """Return the node numbers of interface `name`, shape (k,), below `node_count` if given."""
     numbers = checks.array(nodes, f"interface {name!r}: nodes", dtype=int)
     if numbers.size == 0:
         raise ValueError(f"interface {name!r} has no nodes; check the face name or the node list")
@@ -282,88 +238,33 @@ def _to_csr(label: str, matrix: Any) -> sp.csr_array:
 
 def _check_size(label: str, shape: tuple[int, int], node_count: int) -> None:
     size = 3 * node_count
-    if shape == (size, size):
-        return
     if shape in ((2 * size, 2 * size), (7 * node_count, 7 * node_count)):
         raise ValueError(
             f"{label}: {shape[0] // node_count} coordinates for each of {node_count} nodes mean "
             "rotation-carrying nodes (shells, beams); a solid rotor needs solid elements with "
             "three displacements per node"
         )
-    raise ValueError(
-        f"{label}: the shape must be ({size}, {size}), three displacements for each of "
-        f"{node_count} nodes, got {shape}"
-    )
+    if shape != (size, size):
+        raise ValueError(
+            f"{label}: the shape must be ({size}, {size}), three displacements for each of "
+            f"{node_count} nodes, got {shape}"
+        )
 
 
 def _symmetrised(label: str, matrix: sp.csr_array) -> sp.csr_array:
     transposed = sp.csr_array(matrix.T)
-    largest = _largest(matrix)
-    alike = _alike(matrix, transposed)
-    if alike:
-        difference = _largest_of(matrix.data - transposed.data)
-    else:
-        difference = _largest(matrix - transposed)
+    largest, difference = _largest(matrix), _largest(matrix - transposed)
     if difference > SYMMETRY_TOLERANCE * largest:
         raise ValueError(
             f"{label}: is not symmetric, entries differ by {difference:.3g} with a largest entry "
             f"of {largest:.3g}; many exports write one triangle only: then pass "
             "A + A.T - diag(A)"
         )
-    if not alike:
-        return sp.csr_array(0.5 * matrix + 0.5 * transposed)
-    mean = transposed.data
-    mean += matrix.data
-    mean *= 0.5
-    return transposed
-
-
-def _has_identity_blocks(mass: sp.csr_array) -> bool:
-    blocks = in_all_directions(sp.csr_array(mass[::3, ::3]))
-    difference = blocks.data - mass.data if _alike(mass, blocks) else (mass - blocks).data
-    return _largest_of(difference) <= BLOCK_TOLERANCE * _largest(mass)
-
-
-def _explain_blocks(mass: sp.csr_array) -> str:
-    node_count = mass.shape[0] // 3
-    order = np.arange(3 * node_count).reshape(3, node_count).T.ravel()
-    if _has_identity_blocks(mass[order][:, order]):
-        return (
-            "mass matrix: the coordinates are ordered x0 x1 … y0 y1 … z0 z1 …, but "
-            "x0 y0 z0 x1 … is needed; with p = np.arange(3*n).reshape(3, n).T.ravel() pass "
-            "M[p][:, p] and K[p][:, p] (and the damping likewise)"
-        )
-    if _largest(mass - sp.diags_array(mass.diagonal())) == 0.0:
-        triples = mass.diagonal().reshape(-1, 3)
-        differing = np.flatnonzero(np.ptp(triples, axis=1) > BLOCK_TOLERANCE * _largest(mass))
-        return (
-            f"mass matrix: a lumped matrix with direction-dependent masses at {differing.size} "
-            f"nodes, {_some(differing)}, the first with {triples[differing[0]].tolist()} kg in "
-            "x, y, z; a rotor turns these directions into each other, so give every node one mass"
-        )
-    return (
-        "mass matrix: it does not consist of multiples of the 3×3 identity, one for each pair of "
-        "nodes, as displacement-based solid elements give; check that all elements are solids "
-        "with three displacements per node and that no directions were condensed or fixed"
-    )
-
-
-def _alike(first: sp.csr_array, second: sp.csr_array) -> bool:
-    """Return whether two matrices have their entries at the same places."""
-    same = np.array_equal(first.indptr, second.indptr)
-    return same and np.array_equal(first.indices, second.indices)
+    return sp.csr_array(0.5 * (matrix + transposed)) if difference else matrix.copy()
 
 
 def _largest(matrix: sp.csr_array) -> float:
-    return _largest_of(matrix.data)
-
-
-def _largest_of(values: np.ndarray) -> float:
-    return float(max(values.max(initial=0.0), -values.min(initial=0.0)))
-
-
-def _some(nodes: np.ndarray) -> str:
-    return f"nodes {_numbers(nodes)}"
+    return float(max(matrix.data.max(initial=0.0), -matrix.data.min(initial=0.0)))
 
 
 def _numbers(values: np.ndarray) -> str:

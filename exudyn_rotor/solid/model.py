@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,28 +11,14 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.solid.elements import SolidElements
 
-StressRecovery = Callable[[np.ndarray], np.ndarray]
 NodeSet = tuple[Sequence[int], Sequence[float] | None]
 
 
 @dataclass(frozen=True, eq=False)
 class FiniteElementModel:
-    """Arrays of one finite-element model as its source gave them.
+    """Arrays of one finite-element model as its source gave them, as of ``SolidRotor``.
 
-    Attributes
-    ----------
-    nodes : array_like, shape (n, 3)
-        Reference positions [m].
-    mass, stiffness, damping : array_like or sparse, shape (3n, 3n)
-        Assembled matrices; the damping may be None.
-    node_sets : mapping of str to (nodes, weights)
-        Node numbers and their weights of every interface; weights None means equal weights.
-    triangles : array_like of int, shape (t, 3) or (t, 6)
-        Surface for drawing.
-    stress_recovery : callable or None
-        See :class:`exudyn_rotor.SolidRotor`.
-    elements : SolidElements or None
-        What matrices of a static stress are assembled on.
+    `node_sets` are node numbers and weights of every interface; weights None means equal ones.
     """
 
     nodes: Any
@@ -41,7 +27,6 @@ class FiniteElementModel:
     damping: Any = None
     node_sets: Mapping[str, NodeSet] = field(default_factory=dict)
     triangles: Any = ()
-    stress_recovery: StressRecovery | None = None
     elements: SolidElements | None = None
 
     @classmethod
@@ -55,7 +40,6 @@ class FiniteElementModel:
             stiffness=elements.stiffness_matrix(),
             node_sets=node_sets,
             triangles=triangles,
-            stress_recovery=elements.nodal_stress,
             elements=elements,
         )
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -13,18 +12,12 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.solid import units
 from exudyn_rotor.solid.elements import Block, SolidElements
+from exudyn_rotor.solid.fem_interface import is_named
 from exudyn_rotor.solid.model import FiniteElementModel, NodeSet
 from exudyn_rotor.solid.surface import area_weights
 
-# Face names that Netgen invents for faces without a name.
-_INVENTED_NAME = re.compile(r"(default|bc_\d+)?")
 _TETRAHEDRA = {20: 4, 21: 10}  # Netgen's types of elements, and their nodes
 _MESHIO_ORDER = [0, 1, 2, 3, 4, 7, 5, 6, 8, 9]  # of Netgen's nodes
-
-
-def is_named(face: str) -> bool:
-    """Tell whether a user gave this face name, rather than Netgen."""
-    return _INVENTED_NAME.fullmatch(face) is None
 
 
 def assemble_model(
@@ -39,21 +32,13 @@ def assemble_model(
     checks.flag(check_units, "check_units")
     _prepare_mesh(mesh, order)
     regions = mesh.GetMaterials()
-    by_region = units.materials_by_region(regions, materials)
-    if check_units:
-        for name, material in by_region.items():
-            units.check_material_units(name, material)
+    by_region = units.materials_by_region(regions, materials, check_units)
     tetrahedra, region_numbers = _tetrahedra(mesh)
     nodes = np.array(mesh.ngmesh.Coordinates(), dtype=float)
     nodes = nodes if order == 2 else nodes[: mesh.nv]
     _check_used(tetrahedra, len(nodes))
-    elements = SolidElements(
-        nodes,
-        [Block("tetra10" if order == 2 else "tetra", tetrahedra, region_numbers)],
-        regions,
-        np.array([units.lame_parameters(by_region[name]) for name in regions]),
-        np.array([by_region[name]["density"] for name in regions]),
-    )
+    blocks = [Block("tetra10" if order == 2 else "tetra", tetrahedra, region_numbers)]
+    elements = SolidElements.of_materials(nodes, blocks, regions, by_region)
     triangles, faces = _triangles(mesh, order)
     return FiniteElementModel.of_elements(
         elements, _node_sets(nodes, triangles, faces, interfaces), triangles

@@ -42,24 +42,17 @@ class PointMass:
     distance: float
 
     def __post_init__(self) -> None:
-        checked = {
-            "position": checks.vector(self.position, "position", "m"),
-            "node": checks.count(self.node, "node"),
-            "mass": checks.number(self.mass, "mass", "kg"),
-            "distance": checks.number(self.distance, "distance", "m", least=0.0),
-        }
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)
+        checks.keep(
+            self,
+            position=checks.vector(self.position, "position", "m"),
+            node=checks.count(self.node, "node"),
+            mass=checks.number(self.mass, "mass", "kg"),
+            distance=checks.number(self.distance, "distance", "m", least=0.0),
+        )
 
 
 def add_nodal_mass(matrix: sp.csr_array, node: int, mass: float) -> sp.csr_array:
-    """Return the mass matrix `matrix` with `mass` [kg] added to all three directions of `node`.
-
-    Raises
-    ------
-    ValueError
-        If the mass is zero or not finite, or takes away more than the node carries.
-    """
+    """Return the mass matrix `matrix` with `mass` [kg] added to all three directions of `node`."""
     if checks.number(mass, "mass", "kg") == 0.0:
         raise ValueError(f"mass: needs a number [kg] other than zero, got {mass}")
     if mass < 0.0:

@@ -1,11 +1,13 @@
-"""The rigid motions that a stiffness matrix leaves free."""
+"""The rigid motions that a stiffness matrix leaves free, of the whole and of parts of a model."""
 
 from __future__ import annotations
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.sparse.csgraph import breadth_first_order, connected_components
 
-from exudyn_rotor.theory.nodal import rotations, translations
+from exudyn_rotor.solid.elements import SolidElements
+from exudyn_rotor.theory.nodal import coupled, rotations, translations
 
 # Limits of the relative residual ‖K r‖ / ‖ |K| |r| ‖ of a rigid motion r. Measured on meshes from
 # 15 000 to 108 000 coordinates, the same in SI and in mm and tonnes: a free motion leaves 1e-16;
@@ -17,14 +19,11 @@ FREE_BELOW = 1e-9
 HELD_ABOVE = 1e-5
 LOCALLY_HELD_ABOVE = 1e-12
 LOCAL_RATIO = 1e-3
-# the same ratio in the rows of one node, from which a support counts as acting there: for certain,
-# with full precision, and in terms of rounding, which is much the same at all nodes
-_SUPPORTED_ABOVE = 1e-6
-_SOFTLY_SUPPORTED_ABOVE = 1e-12
-_ABOVE_ROUNDING = 10.0
-# median cosine of forces with the motion that they resist: 0 of rounding, 1 of springs on all nodes
-# and 0.58 of springs along one direction
-_RESISTING = 0.3
+_LISTED = 6  # parts that a message describes
+# springs of clamped nodes over the largest diagonal entry of the stiffness: they move by less than
+# 1e-10 of the others, and dense eigenvalues, whose error is relative to the stiffest spring, keep
+# four digits; above a share of it no spring to the ground means anything else
+_SPRING, _STIFFER = 1e6, 1e4
 
 
 def rigid_basis(nodes: np.ndarray) -> np.ndarray:
@@ -43,13 +42,8 @@ def rigid_residuals(nodes: np.ndarray, stiffness: sp.csr_array) -> tuple[np.ndar
     """Return how strongly `stiffness` resists the rigid motions, as a whole and in most rows.
 
     The motions are combined such that each is held or free by itself (singular vectors of K R).
-    Forces K r are taken relative to |K| |r|, the terms that have to cancel, so that units and
-    mesh size do not matter.
-
-    Returns
-    -------
-    residuals, typical : ndarray, shape (r,)
-        ‖K r‖ / ‖ |K| |r| ‖, and the median over the rows of |K r| / (|K| |r|).
+    Returned are ‖K r‖ / ‖ |K| |r| ‖, and the median over the rows of |K r| / (|K| |r|), both (r,):
+    forces relative to the terms that have to cancel, whatever the units and the mesh size.
     """
     basis = rigid_basis(nodes)
     _, _, combinations = np.linalg.svd(stiffness @ basis, full_matrices=False)
@@ -60,56 +54,8 @@ def rigid_residuals(nodes: np.ndarray, stiffness: sp.csr_array) -> tuple[np.ndar
     return residuals, np.median(_ratio(forces, terms), axis=0)
 
 
-def leaves_free(nodes: np.ndarray, stiffness: sp.csr_array) -> bool:
-    """Return whether `stiffness` clearly leaves a rigid motion of these nodes free."""
-    residuals, typical = rigid_residuals(nodes, stiffness)
-    return bool(np.any((residuals < FREE_BELOW) & ~_locally_held(residuals, typical)))
-
-
 def _locally_held(residuals: np.ndarray, typical: np.ndarray) -> np.ndarray:
     return (typical < LOCAL_RATIO * residuals) & (residuals > LOCALLY_HELD_ABOVE)
-
-
-def unsupported_nodes(nodes: np.ndarray, stiffness: sp.csr_array) -> np.ndarray:
-    """Return at which nodes `stiffness` balances all rigid motions, shape (n,), bool.
-
-    The others are held, or next to held ones, or carry springs to the ground: however soft, these
-    take up the whole net load.
-    """
-    residuals, cosines = _nodal_residuals(nodes, stiffness)
-    limit = max(_SOFTLY_SUPPORTED_ABOVE, _ABOVE_ROUNDING * _rounding(residuals, cosines))
-    return residuals <= min(_SUPPORTED_ABOVE, limit)
-
-
-def lost_digits(nodes: np.ndarray, stiffness: sp.csr_array) -> float:
-    """Return the relative rounding of a stiffness matrix.
-
-    This is 1e-16, or about 0.4·10⁻ᵈ where an export wrote d digits.
-    """
-    return _rounding(*_nodal_residuals(nodes, stiffness))
-
-
-def _nodal_residuals(nodes: np.ndarray, stiffness: sp.csr_array) -> tuple[np.ndarray, np.ndarray]:
-    """Return ‖K R‖ / ‖ |K| |R| ‖ at every node, R the rigid motions, and the cosine of K R and R.
-
-    Both have the shape (n,).
-    """
-    basis = rigid_basis(nodes)
-    rows = len(nodes), -1
-    forces, motions = (stiffness @ basis).reshape(rows), basis.reshape(rows)
-    size = np.linalg.norm(forces, axis=1)
-    terms = np.linalg.norm((abs(stiffness) @ np.abs(basis)).reshape(rows), axis=1)
-    work = np.sum(forces * motions, axis=1)
-    return _ratio(size, terms), _ratio(work, size * np.linalg.norm(motions, axis=1))
-
-
-def _rounding(residuals: np.ndarray, cosines: np.ndarray) -> float:
-    """Return what rounding leaves at most nodes that are not held; there may be few of them."""
-    loose = residuals <= _SUPPORTED_ABOVE
-    # else springs act on most nodes, and rounding does not show
-    if not loose.any() or np.median(cosines[loose]) > _RESISTING:
-        return 0.0
-    return float(np.median(residuals[loose]))
 
 
 def count_rigid_motions(
@@ -117,32 +63,21 @@ def count_rigid_motions(
 ) -> int:
     """Return how many of the six rigid motions `stiffness` leaves free.
 
-    Parameters
-    ----------
-    nodes : ndarray, shape (n, 3)
-        Reference positions [m].
-    stiffness : scipy.sparse.csr_array, shape (3n, 3n)
-    grounded : bool, optional
-        What the user knows: True if springs to the ground are inside the matrix, False if not.
-        Needed only if the matrix itself does not tell.
-
-    Returns
-    -------
-    int
-        The dimension of the null space of K R, R the six rigid motions. A rotation that displaces
-        no node (about a line that holds all nodes) counts as free.
-
-    Raises
-    ------
-    ValueError
-        If a motion is neither clearly free nor clearly held and `grounded` is None, or if
-        `grounded` contradicts the matrix.
+    A rotation that displaces no node (about a line that holds all nodes) counts as free. `grounded`
+    is what the user knows: True if springs to the ground are inside the matrix, False if not;
+    needed only if the matrix itself does not tell. ValueError if it contradicts the matrix.
     """
     residuals, typical = rigid_residuals(nodes, stiffness)
     held = (residuals > HELD_ABOVE) | _locally_held(residuals, typical)
     doubtful = (residuals >= FREE_BELOW) & ~held
     if grounded is None and np.any(doubtful):
-        raise ValueError(_doubt(residuals[doubtful]))
+        raise ValueError(
+            f"stiffness matrix: {np.count_nonzero(doubtful)} rigid motions are neither free nor "
+            f"held (relative residual {residuals[doubtful].max():.2g}, free is below "
+            f"{FREE_BELOW:g}, held above {HELD_ABOVE:g}). Either the matrix lost digits in an "
+            "export: write all 16 digits, or pass grounded=False to take it as free. Or very soft "
+            "springs to the ground act on most nodes: pass grounded=True"
+        )
     if grounded is False and np.any(held):
         raise ValueError(
             f"stiffness matrix: grounded=False, but {np.count_nonzero(held)} rigid motions are "
@@ -157,15 +92,90 @@ def count_rigid_motions(
     return 6 - int(np.count_nonzero(held | doubtful if grounded else held))
 
 
-def _doubt(residuals: np.ndarray) -> str:
+def _ratio(values: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+    return np.divide(values, sizes, out=np.zeros_like(values), where=sizes > 0.0)
+
+
+def loose_parts(nodes: np.ndarray, stiffness: sp.csr_array) -> list[np.ndarray]:
+    """Return node numbers of the parts that the stiffness does not connect, largest first.
+
+    None are returned if all nodes are connected, or if springs to the ground hold every part.
+    """
+    # a node has three rows: every third row pointer starts a node
+    pointers, columns = stiffness.indptr[::3].copy(), stiffness.indices // 3
+    graph = sp.csr_array((np.ones(columns.size), columns, pointers), shape=2 * (len(nodes),))
+    # the pattern is symmetric; one search is a tenth of the cost of all components
+    if len(breadth_first_order(graph, 0, return_predecessors=False)) == len(nodes):
+        return []
+    _, numbers = connected_components(graph, directed=False)
+    order = np.argsort(numbers, kind="stable")
+    parts = np.split(order, np.cumsum(np.bincount(numbers))[:-1])
+    parts.sort(key=len, reverse=True)
+    return parts if any(_is_free(nodes, stiffness, part) for part in parts) else []
+
+
+def _is_free(nodes: np.ndarray, stiffness: sp.csr_array, part: np.ndarray) -> bool:
+    """Return whether a rigid motion of a part is clearly free."""
+    rows = (3 * part[:, None] + np.arange(3)).ravel()
+    residuals, typical = rigid_residuals(nodes[part], stiffness[rows][:, rows])
+    return bool(np.any((residuals < FREE_BELOW) & ~_locally_held(residuals, typical)))
+
+
+def described_parts(
+    parts: list[np.ndarray],
+    nodes: np.ndarray,
+    mass: sp.csr_array,
+    elements: SolidElements | None,
+) -> list[str]:
+    """Return materials, number of nodes, mass, box and its middle of each part as text."""
+    return [_described(part, nodes, mass, elements) for part in parts]
+
+
+def _described(
+    part: np.ndarray, nodes: np.ndarray, mass: sp.csr_array, elements: SolidElements | None
+) -> str:
+    names = () if elements is None else elements.materials_at(part)
+    weight = mass[3 * part].sum()
+    lowest, highest = nodes[part].min(axis=0), nodes[part].max(axis=0)
+    sides = " × ".join(f"{side:.3g}" for side in highest - lowest)
+    # a micrometre per metre is precise enough to find a part
+    size = np.ptp(nodes) or 1.0
+    center = np.round(0.5 * (lowest + highest) / size, 6) * size
+    place = ", ".join(f"{x:.3g}" for x in center)
     return (
-        f"stiffness matrix: {residuals.size} rigid motions are neither free nor held (relative "
-        f"residual {residuals.max():.2g}, free is below {FREE_BELOW:g}, held above "
-        f"{HELD_ABOVE:g}). Either the matrix lost digits in an export: write all 16 digits, or "
-        "pass grounded=False to take it as free. Or very soft springs to the ground act on most "
-        "nodes: pass grounded=True"
+        " and ".join(repr(name) for name in names)
+        + (": " if names else "")
+        + f"{part.size} nodes, {weight:.3g} kg, {sides} m about ({place}) m"
     )
 
 
-def _ratio(values: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    return np.divide(values, sizes, out=np.zeros_like(values), where=sizes > 0.0)
+def check_connected(
+    nodes: np.ndarray,
+    mass: sp.csr_array,
+    stiffness: sp.csr_array,
+    elements: SolidElements | None,
+) -> None:
+    """Raise ValueError if the model falls into parts that move by themselves."""
+    parts = loose_parts(nodes, stiffness)
+    if not parts:
+        return
+    how = "couple them by springs inside the stiffness matrix"
+    if elements is not None:
+        how = "make one solid of them before meshing, OCCGeometry(netgen.occ.Glue([a, b]))"
+    told = "; ".join(described_parts(parts[:_LISTED], nodes, mass, elements))
+    raise ValueError(
+        f"the model falls into {len(parts)} parts that nothing connects: "
+        f"{told}{', …' if len(parts) > _LISTED else ''}. Parts that touch are not connected by "
+        f"that; {how}, or pass allow_parts=True if they are to move by themselves"
+    )
+
+
+def holding_spring(stiffness: sp.csr_array) -> float:
+    """Return the spring [N/m] that holds clamped coordinates."""
+    return float(_SPRING * stiffness.diagonal()[~clamped_coordinates(stiffness)].max())
+
+
+def clamped_coordinates(stiffness: sp.csr_array) -> np.ndarray:
+    """Return which coordinates are clamped (3n,): those on nothing but a stiff spring."""
+    joined, diagonal = coupled(stiffness), stiffness.diagonal()
+    return ~joined & joined.any() & (diagonal > _STIFFER * diagonal[joined].max(initial=0.0))

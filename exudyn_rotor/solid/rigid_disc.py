@@ -27,7 +27,7 @@ from exudyn_rotor.theory.nodal import rotations, translations
 
 # springs of a rigid section over its own stiffness: a shaft 40 diameters long errs by 6e-6 in its
 # first frequency; stiffer ones cost digits of every static solution
-_STIFF = 1e2
+STIFF = 1e2
 # nodes that tell the mean motion; a rigid section needs no more
 _MEAN_NODES = 12
 # of the largest second moment, and of the largest arm: rounding of what was given
@@ -87,8 +87,7 @@ class RigidDisc:
             "positions": checks.array(self.positions, "positions", "m", shape=(nodes.size, 3)),
             "spring": checks.number(self.spring, "spring", "N/m", above=0.0),
         }
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)
+        checks.keep(self, **checked)
         self._check_arms()
 
     @property
@@ -113,9 +112,6 @@ class RigidDisc:
         arms = self.positions[self._some] - self.center
         fields = np.column_stack([np.ones(len(arms)), arms])
         return np.linalg.pinv(fields, rcond=_ROUNDING)
-
-    def _checked_count(self, node_count: int) -> int:
-        return checks.count(node_count, "node_count", least=int(self.nodes.max()) + 1)
 
     def _check_arms(self) -> None:
         arms = (self.positions - self.center)[self._some]
@@ -142,7 +138,7 @@ class RigidDisc:
 
     def mass_matrix(self, node_count: int) -> sp.csr_array:
         """Return what the disc adds to the mass matrix, shape (3n, 3n) [kg]."""
-        node_count = self._checked_count(node_count)
+        checks.count(node_count, "node_count", least=int(self.nodes.max()) + 1)
         a, b = self._affine[0], self._affine[1:]
         scalar = self.mass * np.outer(a, a) + b.T @ self.second_moments @ b
         some = self.nodes[self._some]
@@ -153,7 +149,7 @@ class RigidDisc:
 
     def stiffness_matrix(self, node_count: int) -> sp.csr_array:
         """Return the springs that hold the section rigid, shape (3n, 3n) [N/m]."""
-        node_count = self._checked_count(node_count)
+        checks.count(node_count, "node_count", least=int(self.nodes.max()) + 1)
         every = np.arange(self.nodes.size)
         follow = self._rigid(every) @ np.linalg.pinv(self._rigid(self._some))
         identity = sp.eye_array(3 * self.nodes.size, format="csr")
@@ -165,28 +161,19 @@ class RigidDisc:
         return sp.csr_array(0.5 * (matrix + matrix.T))
 
 
-def disc_on(
-    nodes: np.ndarray,
-    stiffness: sp.csr_array,
-    axis: SpinAxis,
-    center: np.ndarray,
-    section: np.ndarray,
-    mass: float,
-    inertia: ArrayLike,
-) -> RigidDisc:
-    """Return a disc on the nodes `section` of a model; `inertia` as in ``SolidRotor.add_disc``."""
+def as_tensor(inertia: ArrayLike, axis: SpinAxis) -> np.ndarray:
+    """Return the tensor (3, 3), mesh axes, of `inertia` as in ``SolidRotor.add_disc``."""
     values = checks.array(inertia, "inertia", "kg m²")
     if values.shape == (2,):
         polar, transverse = values
         along = np.outer(axis.direction, axis.direction)
-        values = polar * along + transverse * (np.eye(3) - along)
-    elif values.shape != (3, 3):
+        return polar * along + transverse * (np.eye(3) - along)
+    if values.shape != (3, 3):
         raise ValueError(
             "inertia: needs two numbers, polar and transverse, or a tensor of the shape (3, 3) "
             f"[kg m²], got the shape {values.shape}"
         )
-    stiffest = stiffness.diagonal().reshape(-1, 3)[section].max()
-    return RigidDisc(center, mass, values, section, nodes[section], _STIFF * stiffest)
+    return values
 
 
 def _checked_inertia(inertia: np.ndarray) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
@@ -13,18 +13,26 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.solid import matrices, units
 from exudyn_rotor.solid.carried_prestress import Prestress
-from exudyn_rotor.solid.clamp import checked_directions, held_directions, holding_spring
 from exudyn_rotor.solid.elements import SolidElements
 from exudyn_rotor.solid.interface import Interface
-from exudyn_rotor.solid.model import FiniteElementModel, StressRecovery
-from exudyn_rotor.solid.parts import check_connected
+from exudyn_rotor.solid.model import FiniteElementModel
 from exudyn_rotor.solid.point_mass import PointMass, add_nodal_mass
-from exudyn_rotor.solid.rigid import count_rigid_motions, rigid_basis
-from exudyn_rotor.solid.rigid_disc import RigidDisc, disc_on
-from exudyn_rotor.solid.section import outer_section
-from exudyn_rotor.solvers.choice import SOLVERS
-from exudyn_rotor.solvers.inertia_relief import free_rigid_motions
+from exudyn_rotor.solid.rigid import (
+    check_connected,
+    count_rigid_motions,
+    holding_spring,
+    rigid_basis,
+)
+from exudyn_rotor.solid.rigid_disc import STIFF, RigidDisc, as_tensor
+from exudyn_rotor.solid.surface import outer_section
+from exudyn_rotor.solvers.inertia_relief import SOLVERS
 from exudyn_rotor.theory.axis import SpinAxis
+
+LOSS_LEFT_OUT = (
+    "structural damping, with_damping(loss=η), belongs to one frequency at a time: only "
+    "harmonic_response and unbalance_response take it. {} without it; with_damping(stiffness=η/ν) "
+    "is viscous damping that is equal at the frequency ν [rad/s] seen in the rotor frame"
+)
 
 AxisLike = SpinAxis | str | ArrayLike
 Rotor = TypeVar("Rotor", bound="FiniteElementRotor")
@@ -41,13 +49,12 @@ class FiniteElementRotor:
     damping: sp.csr_array | None = None
     interfaces: Mapping[str, Interface] = field(default_factory=dict)
     triangles: np.ndarray = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
-    stress_recovery: StressRecovery | None = None
     point_masses: tuple[PointMass, ...] = ()
     rigid_motions: int = 6
     elements: SolidElements | None = None
     carried_prestress: Prestress | None = None
-    mass_damping: sp.csr_array | None = None
-    structural_damping: sp.csr_array | None = None
+    mass_damping: float = 0.0
+    structural_damping: float = 0.0
     discs: tuple[RigidDisc, ...] = ()
     solver: str = "auto"
 
@@ -64,19 +71,18 @@ class FiniteElementRotor:
             "rigid_motions": checks.count(self.rigid_motions, "rigid_motions", most=6),
             "solver": checks.choice(self.solver, "solver", SOLVERS),
             "discs": checks.instances(self.discs, "discs", RigidDisc),
+            "mass_damping": checks.number(self.mass_damping, "mass_damping", "1/s", least=0.0),
+            "structural_damping": checks.number(
+                self.structural_damping, "structural_damping", least=0.0
+            ),
         }
-        for name in ("damping", "mass_damping", "structural_damping"):
-            if getattr(self, name) is not None:
-                label = "damping matrix" if name == "damping" else name
-                checked[name] = matrices.as_matrix(label, getattr(self, name), len(nodes))
-        if self.stress_recovery is not None:
-            checks.function(self.stress_recovery, "stress_recovery")
+        if self.damping is not None:
+            checked["damping"] = matrices.as_matrix("damping matrix", self.damping, len(nodes))
         if self.elements is not None:
             checks.instance(self.elements, "elements", SolidElements)
         if self.carried_prestress is not None:
             checks.instance(self.carried_prestress, "carried_prestress", Prestress)
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)
+        checks.keep(self, **checked)
 
     @classmethod
     def _of_model(
@@ -110,7 +116,6 @@ class FiniteElementRotor:
                 for name, node_set in model.node_sets.items()
             },
             triangles=model.triangles,
-            stress_recovery=model.stress_recovery,
             rigid_motions=count_rigid_motions(nodes, stiffness, grounded),
             elements=model.elements,
         )
@@ -119,6 +124,14 @@ class FiniteElementRotor:
     def node_count(self) -> int:
         """Number of nodes n."""
         return len(self.nodes)
+
+    @property
+    def stress_recovery(self) -> Callable[[np.ndarray], np.ndarray] | None:
+        """Maps displacement columns (3n, k) to nodal stress (n, 6, k) [Pa]; None without elements.
+
+        Components xx, yy, zz, yz, xz, xy in mesh axes.
+        """
+        return None if self.elements is None else self.elements.nodal_stress
 
     @property
     def total_mass(self) -> float:
@@ -134,6 +147,16 @@ class FiniteElementRotor:
     def grounded(self) -> bool:
         """Whether the stiffness matrix holds any rigid motion (springs to the ground inside)."""
         return self.rigid_motions < 6
+
+    @property
+    def centrifugal_load(self) -> np.ndarray:
+        """Centrifugal nodal load ``f_c = M x_⊥`` per ω², shape (3n,) [N s²]."""
+        return self.mass @ self.axis.radial(self.nodes).ravel()
+
+    @property
+    def euler_load(self) -> np.ndarray:
+        """Euler nodal load ``−M ẽx`` per ω̇, shape (3n,) [N s²]."""
+        return -self.mass @ np.cross(self.axis.direction, self.nodes - self.axis.point).ravel()
 
     @property
     def mass_kind(self) -> str:
@@ -186,9 +209,7 @@ class FiniteElementRotor:
         ValueError
             If the name is taken, or nodes or weights are not valid.
         """
-        if checks.label(name, "name") in self.interfaces:
-            raise ValueError(f"interface {name!r} exists already; choose another name")
-        added = _interface(name, self.nodes, nodes, weights)
+        added = _interface(self._new_name(name), self.nodes, nodes, weights)
         return replace(self, interfaces={**self.interfaces, name: added})
 
     def interface_at(self: Rotor, name: str, position: float, width: float) -> Rotor:
@@ -215,9 +236,13 @@ class FiniteElementRotor:
         added = self._section(name, position, width)
         return replace(self, interfaces={**self.interfaces, name: added})
 
-    def _section(self, name: str, position: float, width: float) -> Interface:
+    def _new_name(self, name: str) -> str:
         if checks.label(name, "name") in self.interfaces:
             raise ValueError(f"interface {name!r} exists already; choose another name")
+        return name
+
+    def _section(self, name: str, position: float, width: float) -> Interface:
+        name = self._new_name(name)
         position = checks.number(position, "position", "m")
         width = checks.number(width, "width", "m", above=0.0)
         numbers, weights = outer_section(self.nodes, self.triangles, self.axis, position, width)
@@ -273,8 +298,10 @@ class FiniteElementRotor:
                 f"{np.round(place, 9).tolist()} m; add one disc with the inertia of both, or use "
                 "narrower bands"
             )
-        disc = disc_on(self.nodes, self.stiffness, self.axis, center, nodes, mass, inertia)
         count = self.node_count
+        spring = STIFF * self.stiffness.diagonal().reshape(-1, 3)[nodes].max()
+        tensor = as_tensor(inertia, self.axis)
+        disc = RigidDisc(center, mass, tensor, nodes, self.nodes[nodes], spring)
         added = {} if name is None else {name: section}
         return replace(
             self,
@@ -306,9 +333,7 @@ class FiniteElementRotor:
             moved[name] = interface.centered_on(self.axis.project(interface.center))
         return replace(self, interfaces={**self.interfaces, **moved})
 
-    def clamped(
-        self: Rotor, names: str | Sequence[str], directions: str | Sequence[str] | None = None
-    ) -> Rotor:
+    def clamped(self: Rotor, names: str | Sequence[str]) -> Rotor:
         """Return the rotor with all nodes of interfaces held fixed, e.g. a blade at its root.
 
         The rotor is then grounded in its own frame: it needs a frame whose motion is prescribed.
@@ -317,51 +342,35 @@ class FiniteElementRotor:
         Parameters
         ----------
         names : str or sequence of str
-        directions : str or sequence of str, optional
-            Hold these directions only: of {'x', 'y', 'z'}, mesh axes, or of {'radial',
-            'tangential', 'axial'} about the spin axis. All by default.
 
         Raises
         ------
         ValueError
-            If an interface or direction is unknown, none is given, all its nodes are on one line
-            and held in all directions, or the rotor carries a prestress.
+            If an interface is unknown, none is given, all its nodes are on one line, or the rotor
+            carries a prestress.
         """
         check_unstressed(self)
         names = checks.labels(names, "names", self.interfaces)
-        chosen = checked_directions(directions)
         if not names:
             raise ValueError(
                 f"names: needs one interface or more of {list(self.interfaces)}, got none"
             )
         held = np.unique(np.concatenate([self.interfaces[name].nodes for name in names]))
-        holds_all = len(chosen) == 3
-        if holds_all and rigid_basis(self.nodes[held]).shape[1] < 6:
+        if rigid_basis(self.nodes[held]).shape[1] < 6:
             raise ValueError(
                 f"clamped: the {held.size} nodes of {list(names)} lie on one line and cannot hold "
                 "rotations about it; clamp three nodes or more that do not"
             )
-        columns = held_directions(self.nodes, self.axis, held, chosen)
-        free = sp.csr_array(sp.eye_array(self.nodes.size) - columns @ columns.T)
-        spring = holding_spring(columns, self.stiffness)
-        stiffness = matrices.frozen(
-            sp.csr_array(free @ self.stiffness @ free + spring * (columns @ columns.T))
-        )
-        elements = self.elements
-        if elements is not None:
-            elements = elements.holding(held) if holds_all else elements.holding_directions(free)
+        moves = np.ones(self.nodes.shape)
+        moves[held] = 0.0
+        free = sp.diags_array(moves.ravel(), format="csr")
+        springs = sp.diags_array((1.0 - moves.ravel()) * holding_spring(self.stiffness))
         return replace(
             self,
-            stiffness=stiffness,
-            rigid_motions=self._left_free(columns),
-            elements=elements,
+            stiffness=matrices.frozen(sp.csr_array(free @ self.stiffness @ free + springs)),
+            rigid_motions=0,
+            elements=None if self.elements is None else self.elements.holding(free),
         )
-
-    def _left_free(self, held: sp.csr_array) -> int:
-        """Return how many rigid motions stay free where the directions `held` (3n, d) are."""
-        free = free_rigid_motions(self.nodes, self.mass, self.stiffness, self.rigid_motions)
-        sizes, most = (np.linalg.svd(X, compute_uv=False) for X in (held.T @ free, free))
-        return self.rigid_motions - int(np.count_nonzero(sizes > 1e-9 * most.max(initial=0.0)))
 
     def __repr__(self) -> str:
         return (

@@ -31,25 +31,9 @@ _ADVICE = (
 
 
 def materials_by_region(
-    regions: Sequence[str], materials: Mapping[str, Any]
+    regions: Sequence[str], materials: Mapping[str, Any], check_units: bool
 ) -> dict[str, Material]:
-    """Return one checked material for every region name of a mesh.
-
-    Parameters
-    ----------
-    regions : sequence of str
-        Region names of the mesh.
-    materials : mapping
-        Region name → ``{'youngsModulus': Pa, 'poissonsRatio': 1, 'density': kg/m³}``, or one such
-        dict by itself for a mesh with one material.
-
-    Raises
-    ------
-    TypeError
-        If `materials` is not a dictionary.
-    ValueError
-        If a region has no material, or a material cannot be.
-    """
+    """Return one checked material for every region name; `materials` as of ``from_ngsolve``."""
     checks.mapping(materials, "materials", "material")
     names = sorted(set(regions))
     if any(key in materials for key in MATERIAL_KEYS):
@@ -65,17 +49,13 @@ def materials_by_region(
             f"materials: the mesh regions {missing} have no material; "
             f"given are {sorted(materials)}, the mesh has {names}"
         )
-    return {name: _checked_material(name, materials[name]) for name in names}
+    checked = {name: _checked_material(name, materials[name]) for name in names}
+    for name, material in checked.items() if check_units else ():
+        _check_material_units(name, material)
+    return checked
 
 
-def lame_parameters(material: Material) -> tuple[float, float]:
-    """Return λ and μ [Pa]."""
-    modulus, ratio = material["youngsModulus"], material["poissonsRatio"]
-    shear = modulus / (2 * (1 + ratio))
-    return 2 * shear * ratio / (1 - 2 * ratio), shear
-
-
-def check_material_units(name: str, material: Material) -> None:
+def _check_material_units(name: str, material: Material) -> None:
     """Raise ValueError if the material `name` cannot be in SI units."""
     density = material["density"]
     speed = np.sqrt(material["youngsModulus"] / density)
@@ -92,11 +72,7 @@ def check_material_units(name: str, material: Material) -> None:
 
 
 def check_model_units(nodes: np.ndarray, total_mass: float) -> None:
-    """Raise ValueError if size [m] and mass [kg] of a model cannot be in SI units.
-
-    It warns where they hardly are: of a small rotor in mm. The mean density is not checked
-    where the bounding box has no volume.
-    """
+    """Raise ValueError if size [m] and mass [kg] of a model cannot be in SI, warn if hardly."""
     extent = np.ptp(nodes, axis=0)
     size = f"{total_mass:.3g} kg in a box of {' × '.join(f'{side:.3g}' for side in extent)} m"
     if total_mass > LARGEST_MASS:
@@ -140,8 +116,6 @@ def _inside(value: float, limits: tuple[float, float]) -> bool:
 
 
 def _guess(density: float) -> str:
-    if density < 1e-7:
-        return "mm and tonnes?"
-    if density < 1e-3:
-        return "mm and kg?"
-    return "mixed units?"
+    return (
+        "mm and tonnes?" if density < 1e-7 else "mm and kg?" if density < 1e-3 else "mixed units?"
+    )

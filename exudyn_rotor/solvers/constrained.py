@@ -38,19 +38,28 @@ class ConstrainedInverse:
 
     def __init__(self, relief: InertiaRelief, constraints: sp.csr_array) -> None:
         self._relief, self._constraints = relief, constraints
+        self.iterative = relief.iterative
+        self.start = relief.start
         self._flexibility = relief.solve(constraints.T.toarray())
-        self._held = constraints @ relief.rigid
-        self._factor_small_system(constraints @ self._flexibility)
+        held = constraints @ relief.rigid
+        flexibility = constraints @ self._flexibility
+        matrix = np.block([[flexibility, -held], [held.T, np.zeros((held.shape[1],) * 2)]])
+        # forces and displacements have different units: bring all entries to one or less
+        stiff = 1.0 / np.sqrt(self._flexibilities(flexibility, held))
+        loose = 1.0 / np.linalg.norm(stiff[:, None] * held, axis=0)
+        self._scale = np.concatenate([stiff, loose])
+        scaled = self._scale[:, None] * matrix * self._scale
+        if not np.linalg.cond(scaled) < 1.0 / _SMALLEST_RECIPROCAL_CONDITION:
+            raise ValueError(
+                "the interfaces depend on each other or do not hold the rotor's rigid motions; "
+                "leave out one of two interfaces with the same nodes, or add an interface"
+            )
+        self._factor = la.lu_factor(scaled)
 
     def solve(self, load: np.ndarray) -> np.ndarray:
         """Return the displacement of a load, both (3n,) or (3n, k), with ``C u = 0``."""
         elastic, resultant = self._relief.solve(load), self._relief.rigid.T @ load
         return elastic + self._correction(self._constraints @ elastic, resultant)
-
-    @property
-    def iterative(self) -> bool:
-        """Whether there is no factor; modes are to be found by :meth:`precondition`."""
-        return self._relief.iterative
 
     def precondition(self, load: np.ndarray) -> np.ndarray:
         """Return roughly what :meth:`solve` does, for shape (3n, k), with ``C u = 0``."""
@@ -58,29 +67,12 @@ class ConstrainedInverse:
         _, reaction = self._balance(self._flexibility.T @ load, self._relief.rigid.T @ load)
         load = load - self._constraints.T @ reaction
         elastic = self._relief.precondition(load)
-        gap = self._constraints @ elastic
-        return elastic + self._correction(gap, self._relief.rigid.T @ load)
-
-    def start(self, count: int) -> np.ndarray:
-        """Return `count` motions (3n, count) near the lowest modes without constraints."""
-        return self._relief.start(count)
+        return elastic + self._correction(self._constraints @ elastic, self._relief.rigid.T @ load)
 
     def prescribe(self, values: np.ndarray) -> np.ndarray:
         """Return the unloaded displacement (3n, k) with ``C u = d`` for `values` (c, k)."""
-        return self._correction(-values, self._no_resultant(values))
-
-    def prescribed_terms(self, values: np.ndarray) -> np.ndarray:
-        """Return the sum (k,) of the norms of the terms that :meth:`prescribe` adds.
-
-        The displacements of close constraints are small differences of such terms, each of which
-        has its own rounding error. Their sum over the norm of the displacement is the condition.
-        """
-        rigid, reaction = self._balance(-values, self._no_resultant(values))
-        elastic = np.linalg.norm(self._flexibility, axis=0) @ np.abs(reaction)
-        return np.linalg.norm(self._relief.rigid, axis=0) @ np.abs(rigid) + elastic
-
-    def _no_resultant(self, values: np.ndarray) -> np.ndarray:
-        return np.zeros((self._held.shape[1], values.shape[1]))
+        resultant = np.zeros((self._relief.rigid.shape[1], values.shape[1]))
+        return self._correction(-values, resultant)
 
     def _correction(self, gap: np.ndarray, resultant: np.ndarray) -> np.ndarray:
         """Return ``R q − G Cᵀ λ`` that closes the gap and balances the resultant."""
@@ -94,24 +86,7 @@ class ConstrainedInverse:
         reaction, rigid = np.split((scaled.T * self._scale).T, [len(gap)])
         return rigid, reaction
 
-    def _factor_small_system(self, flexibility: np.ndarray) -> None:
-        held = self._held
-        matrix = np.block(
-            [[flexibility, -held], [held.T, np.zeros((held.shape[1], held.shape[1]))]]
-        )
-        # forces and displacements have different units: bring all entries to one or less
-        stiff = 1.0 / np.sqrt(self._flexibilities(flexibility))
-        loose = 1.0 / np.linalg.norm(stiff[:, None] * held, axis=0)
-        self._scale = np.concatenate([stiff, loose])
-        scaled = self._scale[:, None] * matrix * self._scale
-        if not np.linalg.cond(scaled) < 1.0 / _SMALLEST_RECIPROCAL_CONDITION:
-            raise ValueError(
-                "the interfaces depend on each other or do not hold the rotor's rigid motions; "
-                "leave out one of two interfaces with the same nodes, or add an interface"
-            )
-        self._factor = la.lu_factor(scaled)
-
-    def _flexibilities(self, flexibility: np.ndarray) -> np.ndarray:
+    def _flexibilities(self, flexibility: np.ndarray, held: np.ndarray) -> np.ndarray:
         """Return the flexibility of each constraint, or more than rounding leaves of none.
 
         Forces on the mean motion of all nodes may deform nothing, as those of inertia do not.
@@ -122,4 +97,4 @@ class ConstrainedInverse:
         at = self._constraints.indices[np.argmax(np.abs(self._constraints.data))]
         node = np.eye(1, len(rigid), at)[0]
         of_node = node @ self._relief.solve(node) / np.sum(rigid[at] ** 2)
-        return np.maximum(own, _STIFF * of_node * np.sum(self._held**2, axis=1))
+        return np.maximum(own, _STIFF * of_node * np.sum(held**2, axis=1))

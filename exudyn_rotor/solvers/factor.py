@@ -1,32 +1,92 @@
-"""One factorisation of a symmetric positive definite matrix, for many solves."""
+"""One factorisation of a symmetric positive definite matrix: its memory, solves and rounding."""
 
 from __future__ import annotations
 
+import os
+import weakref
 from collections.abc import Callable
 from contextlib import nullcontext
+from importlib.util import find_spec
+from pathlib import Path
 
 import ngsolve
 import numpy as np
+import psutil
 import scipy.linalg as la
 import scipy.sparse as sp
 from ngsolve.la import SparseMatrixd
-
-from exudyn_rotor.solvers import pardiso
 
 Solve = Callable[[np.ndarray], np.ndarray]
 
 # below this size LAPACK is faster than handing the matrix over
 DENSE_SIZE = 600
+# above this size Pardiso is quicker than handing the matrix to NGSolve
+PARDISO_SIZE = 10_000
 # below this size starting the threads costs more than they gain in one solve
 _THREADED_SIZE = 50_000
 # measured: a held stiffness leaves 1e-12 to 1e-10 (condition up to 1e11), a singular one 0.1
 _RESIDUAL_LIMIT = 1e-6
 _PROBE_STEPS = 6
 _SEED = 20
+# bytes that a factor takes beside its entries, for every entry of the matrix
+_PER_ENTRY = 30.0
+# Pardiso: numbers of its parameters, counted from one, with their values (own parameters, METIS on
+# all threads, no pivoting), a kind of matrix, phases, and numbers of errors
+_PARAMETERS = {1: 1, 2: 3, 10: 0}
+_POSITIVE_DEFINITE, _FACTORISE, _SOLVE = 2, 12, 33
+_NO_MEMORY = (-2, -9)
+# multiple of eps ‖K‖∞ ‖u‖, which was 1 to 5 times that for 15 000 to 200 000 coordinates
+_ROUNDING = 100.0
+_EPS = np.finfo(float).eps
+# limit and use of the control group of a container (Linux)
+_GROUP = "/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"
+
+
+def row_norm(matrix: sp.csr_array) -> float:
+    """Return the largest row sum of absolute values, ``‖A‖∞``."""
+    sizes = sp.csr_array((np.abs(matrix.data), matrix.indices, matrix.indptr), shape=matrix.shape)
+    return float((sizes @ np.ones(matrix.shape[1])).max(initial=0.0))
+
+
+def rounding_unit(stiffness: sp.csr_array, precision: float = _EPS) -> float:
+    """Return the rounding error to allow in ``K u`` for a displacement of norm 1 [N]."""
+    return _ROUNDING * precision * row_norm(stiffness)
 
 
 class NotPositiveDefiniteError(ValueError):
     """The matrix has a zero or negative eigenvalue."""
+
+
+class TooLittleMemoryError(MemoryError):
+    """What is to be computed needs more memory than is available."""
+
+
+def available_memory() -> float:
+    """Return the bytes that can be allocated before the operating system swaps or kills."""
+    available = float(psutil.virtual_memory().available)
+    limit, used = (Path(name) for name in _GROUP)
+    if limit.is_file() and limit.read_text().strip().isdigit():  # 'max' where there is no limit
+        available = min(available, float(limit.read_text()) - float(used.read_text()))
+    return max(available, 0.0)
+
+
+def factor_entries(size: int) -> float:
+    """Return about how many entries the factor of `size` coordinates of a solid rotor has.
+
+    The power is that of nested dissection in three dimensions (George, SIAM J. Numer. Anal. 10
+    (1973)), the number that of discs on shafts of 20,000 to 200,000 coordinates.
+    """
+    return 11.0 * size ** (4.0 / 3.0)
+
+
+def factor_bytes(matrix: sp.csr_array) -> float:
+    """Return about how much memory the factor of a stiffness matrix takes [bytes]."""
+    return 8.0 * factor_entries(matrix.shape[0]) + _PER_ENTRY * matrix.nnz
+
+
+def has_pardiso() -> bool:
+    """Return whether pypardiso is installed: the extra 'mkl'."""
+    return find_spec("pypardiso") is not None
 
 
 class SparseCholesky:
@@ -34,39 +94,34 @@ class SparseCholesky:
 
     Large matrices go to Pardiso where it is installed, else to NGSolve's ``sparsecholesky``
     (fill-reducing, threaded), small ones to LAPACK. The residual of a random right-hand side shows
-    a singular matrix. NGSolve's variant is an LDLᵀ that accepts negative pivots in silence: a
-    negative Ritz value of ``A⁻¹`` in a small Krylov space proves an indefinite matrix (it lies
-    inside the spectrum). A negative eigenvalue in the middle of the spectrum of ``A`` can pass.
+    a singular matrix, and inverse iteration a negative eigenvalue near zero; one that is far from
+    zero can pass where NGSolve made the factor.
 
     Parameters
     ----------
     matrix : scipy.sparse array, shape (n, n)
         Symmetric positive definite; only one triangle is factorised.
-    ordered : pardiso.Ordered, optional
-        The matrix as :func:`ordered` returns it.
-
-    Attributes
-    ----------
-    uses_pardiso : bool
-        Whether Pardiso made the factor.
 
     Raises
     ------
     NotPositiveDefiniteError
         If a diagonal entry is not positive or the probe fails.
+    TooLittleMemoryError
+        If Pardiso gets too little memory.
     """
 
-    def __init__(self, matrix: sp.sparray, ordered: pardiso.Ordered | None = None) -> None:
+    def __init__(self, matrix: sp.sparray) -> None:
         self.shape = matrix.shape
         matrix = sp.csr_array(matrix)
+        size = self.shape[0]
         if not np.all(matrix.diagonal() > 0.0):
             raise NotPositiveDefiniteError("the matrix has a diagonal entry that is not positive")
-        self.uses_pardiso = pardiso.is_used(self.shape[0])
-        if self.uses_pardiso:
-            self._solve = _by_pardiso(pardiso.Ordered(matrix) if ordered is None else ordered)
+        if size <= DENSE_SIZE:
+            self._solve = _dense(matrix)
         else:
-            self._solve = _dense(matrix) if self.shape[0] <= DENSE_SIZE else _sparse(matrix)
-        if self.shape[0]:
+            by_pardiso = size > PARDISO_SIZE and has_pardiso()
+            self._solve = _by_pardiso(matrix) if by_pardiso else _by_ngsolve(matrix)
+        if size:
             self._probe(matrix)
 
     def solve(self, right: np.ndarray) -> np.ndarray:
@@ -82,13 +137,11 @@ class SparseCholesky:
             raise NotPositiveDefiniteError(
                 f"the matrix is singular: a solve leaves the relative residual {residual:.1e}"
             )
-        if self.uses_pardiso:  # without negative pivots
-            return
-        lowest = _ritz_values(self._solve, start)[0]
-        if lowest <= 0.0:
-            raise NotPositiveDefiniteError(
-                f"the matrix is indefinite: its inverse has the Ritz value {lowest:.1e}"
-            )
+        for _ in range(_PROBE_STEPS):  # NGSolve's LDLᵀ accepts negative pivots in silence
+            start = self._solve(start)
+            start /= np.linalg.norm(start)
+        if start @ self._solve(start) <= 0.0:
+            raise NotPositiveDefiniteError("the matrix is indefinite")
 
 
 def _dense(matrix: sp.csr_array) -> Solve:
@@ -101,16 +154,43 @@ def _dense(matrix: sp.csr_array) -> Solve:
     return lambda right: la.cho_solve(factor, right)
 
 
-def _by_pardiso(ordered: pardiso.Ordered) -> Solve:
+def _by_pardiso(matrix: sp.csr_array) -> Solve:
+    # idle threads of MKL sleep after a millisecond; else each keeps a core busy for 200
+    os.environ.setdefault("KMP_BLOCKTIME", "1")
+    from pypardiso import PyPardisoSolver, ps
+    from pypardiso.pardiso_wrapper import PyPardisoError
+
+    # else every solver looks for the library in all folders of the environment
+    os.environ.setdefault("PYPARDISO_MKL_RT", ps.libmkl._name)
+    solver = PyPardisoSolver(mtype=_POSITIVE_DEFINITE)
+    for number, value in _PARAMETERS.items():
+        solver.set_iparm(number, value)
+    upper = sp.csr_matrix(sp.triu(matrix, format="csr"))
+    upper.sort_indices()
+    solver.set_phase(_FACTORISE)
     try:
-        return ordered.factor()
-    except pardiso.PivotError as error:
+        solver._call_pardiso(upper, np.zeros((upper.shape[0], 1)))
+    except PyPardisoError as error:
+        if error.value in _NO_MEMORY:
+            raise TooLittleMemoryError(
+                f"Pardiso has too little memory for {upper.shape[0]} coordinates; use a coarser "
+                "mesh"
+            ) from error
         raise NotPositiveDefiniteError(
             f"the matrix has a pivot that is not positive ({error})"
         ) from error
+    solver.set_phase(_SOLVE)
+
+    def solve(right: np.ndarray) -> np.ndarray:
+        if right.size == 0:
+            return np.zeros_like(right)
+        return solver._call_pardiso(upper, np.asfortranarray(right))
+
+    weakref.finalize(solve, solver.free_memory, everything=True)
+    return solve
 
 
-def _sparse(matrix: sp.csr_array) -> Solve:
+def _by_ngsolve(matrix: sp.csr_array) -> Solve:
     # sparsecholesky reads the lower triangle only
     lower = sp.coo_array(sp.tril(matrix))
     rows, columns = (index.astype(np.int32) for index in lower.coords)
@@ -122,9 +202,7 @@ def _sparse(matrix: sp.csr_array) -> Solve:
 
     def solve(vector: np.ndarray) -> np.ndarray:
         if vector.ndim == 2:
-            columns = vector.T
-            solved = [solve(column) for column in columns]
-            return np.column_stack(solved or [vector])
+            return np.column_stack([solve(column) for column in vector.T] or [vector])
         # new ones each time: several threads may share a factor
         right, solution = ngsolve.BaseVector(len(vector)), ngsolve.BaseVector(len(vector))
         right.FV().NumPy()[:] = vector
@@ -133,21 +211,3 @@ def _sparse(matrix: sp.csr_array) -> Solve:
         return solution.FV().NumPy().copy()
 
     return solve
-
-
-def _ritz_values(operator: Solve, start: np.ndarray) -> np.ndarray:
-    """Return the Ritz values of a symmetric operator in the Krylov space of a unit vector."""
-    basis, images = [], []
-    vector = start
-    for _ in range(min(_PROBE_STEPS, start.size)):
-        basis.append(vector)
-        images.append(operator(vector))
-        vector = images[-1].copy()
-        # twice, because one Gram–Schmidt pass loses orthogonality
-        for previous in 2 * basis:
-            vector -= previous * (previous @ vector)
-        length = np.linalg.norm(vector)
-        if length <= 1e-12 * np.linalg.norm(images[-1]):
-            break
-        vector /= length
-    return np.linalg.eigvalsh(np.array(basis) @ np.array(images).T)

@@ -17,11 +17,8 @@ _LEFT = 0.5  # share of the work along a step that may be left
 def step_share(slope: Callable[[float], float]) -> float:
     """Return the share of a step to go, by bisection.
 
-    Parameters
-    ----------
-    slope : callable
-        Slope of the potential along the step, by the share of it: below zero at its beginning,
-        unless the forces have no potential, and then the whole step is taken.
+    `slope` is that of the potential along the step, by the share of it: below zero at its
+    beginning, unless the forces have no potential, and then the whole step is taken.
     """
     first, low, high = slope(0.0), 0.0, 1.0
     if first >= 0.0 or slope(high) <= _LEFT * abs(first):

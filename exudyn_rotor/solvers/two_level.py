@@ -1,14 +1,15 @@
-"""A preconditioner for second-order elements: smoothing, and the linear elements of the same mesh.
+"""Iteration without a factor of the whole: linear elements of the same mesh, and smoothing.
 
-One cycle approximates the elastic inverse of a stiffness K. Chebyshev iteration with the 3 × 3
-blocks of the nodes takes out what varies from node to node. The rest is left to displacements
-``P c`` that are linear in every element, an eighth of the coordinates, where ``PᵀKP`` is
-factorised. For compact solids of steel conjugate gradients then need about 25 iterations for ten
-digits on any mesh; for nearly incompressible materials and flat elements some times as many, and
-for plates and blades of one element through the thickness too many: linear elements hardly bend.
+One cycle approximates the elastic inverse of the stiffness K of second-order elements. Chebyshev
+iteration with the 3 × 3 blocks of the nodes takes out what varies from node to node. The rest is
+left to displacements ``P c`` that are linear in every element, an eighth of the coordinates, where
+``PᵀKP`` is factorised. For compact solids of steel conjugate gradients then need about 25
+iterations for ten digits on any mesh; for nearly incompressible materials and flat elements some
+times as many, and for plates and blades of one element through the thickness too many: linear
+elements hardly bend.
 
-Source: Saad, "Iterative methods for sparse linear systems", 2nd ed., Alg. 12.1 (Chebyshev) and
-Sect. 13.4 (cycles).
+Sources: Saad, "Iterative methods for sparse linear systems", 2nd ed., Alg. 9.1 (conjugate
+gradients), Alg. 12.1 (Chebyshev) and Sect. 13.4 (cycles).
 """
 
 from __future__ import annotations
@@ -19,8 +20,9 @@ import numpy as np
 import pyngcore
 import scipy.linalg as la
 import scipy.sparse as sp
+import scipy.sparse.linalg as sla
 
-from exudyn_rotor.solvers import lanczos
+from exudyn_rotor.solvers import modes
 from exudyn_rotor.solvers.factor import Solve
 
 # smoothed are eigenvalues of the block-scaled stiffness from the largest down to this share of it
@@ -32,6 +34,9 @@ _MARGIN = 1.1
 _DEFINITE = 1e-12
 _START_TOLERANCE = 1e-2
 _SEED = 12
+_MOST_STEPS = 500
+_ROUGHLY = 1e-6  # share of a load that is left at first
+_ROUNDING_SHARE = 0.1  # of the rounding of K u that a factorisation leaves as well
 
 
 class TwoLevel:
@@ -47,8 +52,6 @@ class TwoLevel:
     factorised : callable
         ``factorised(PᵀKP, PᵀMP, rigid motions)`` returns the elastic inverse of linear elements.
 
-    Notes
-    -----
     Cycles are done in single precision, the linear elements excepted; what uses them sees the
     rounding as a slightly worse approximation.
     """
@@ -56,12 +59,14 @@ class TwoLevel:
     def __init__(self, stiffness, mass, rigid, interpolation, factorised) -> None:
         self._interpolation = interpolation
         self._restriction = sp.csr_array(interpolation.T)
-        self._coarse_stiffness = _definite(self._restriction @ (stiffness @ interpolation))
-        self._coarse_mass = sp.csr_array(self._restriction @ (mass @ interpolation))
-        self._coarse_solve: Solve = factorised(
-            self._coarse_stiffness,
-            self._coarse_mass,
-            _orthonormal(rigid[: interpolation.shape[1]], self._coarse_mass),
+        linear = self._restriction @ (stiffness @ interpolation)
+        definite = sp.diags_array(_DEFINITE * linear.diagonal())
+        self._linear_stiffness = sp.csr_array(linear + definite)
+        self._linear_mass = sp.csr_array(self._restriction @ (mass @ interpolation))
+        motions = rigid[: interpolation.shape[1]]
+        values, turn = np.linalg.eigh(motions.T @ (self._linear_mass @ motions))
+        self._linear_solve: Solve = factorised(
+            self._linear_stiffness, self._linear_mass, motions @ (turn / np.sqrt(values))
         )
         entries = stiffness.data.astype(np.float32), stiffness.indices, stiffness.indptr
         self._stiffness = sp.csr_array(entries, shape=stiffness.shape)
@@ -80,33 +85,32 @@ class TwoLevel:
             return np.hstack(list(executor.map(self._cycle, parts)))
 
     def start(self, count: int) -> np.ndarray:
-        """Return the lowest modes (m, count) of the linear elements, and some random motions."""
-        size = self._coarse_mass.shape[0]
-        if lanczos.is_small(size, count):
-            matrices = (X.toarray() for X in (self._coarse_stiffness, self._coarse_mass))
-            modes = la.eigh(*matrices, subset_by_index=[0, min(count, size) - 1])[1]
+        """Return the lowest modes (m, count) of the linear elements."""
+        stiffness, mass = self._linear_stiffness, self._linear_mass
+        size = mass.shape[0]
+        if modes.is_small(size, count):
+            dense = stiffness.toarray(), mass.toarray()
+            found = la.eigh(*dense, subset_by_index=[0, min(count, size) - 1])[1]
         else:
-            modes = lanczos.lanczos_modes(
-                self._coarse_mass, self._coarse_solve, count, _START_TOLERANCE
-            )[1]
-        return self._interpolation @ modes
+            found = modes.lanczos_modes(mass, self._linear_solve, count, _START_TOLERANCE)[1]
+        return self._interpolation @ found
 
     def _cycle(self, load: np.ndarray) -> np.ndarray:
         load = load.astype(np.float32)
-        before, change = self._smoothed(load)
-        rest = load - self._stiffness @ (before + change)
-        linear = self._coarse_solve(self._restriction @ rest.astype(float))
+        before = self._smoothed(load)
+        rest = load - self._stiffness @ before
+        linear = self._linear_solve(self._restriction @ rest.astype(float))
         linear = (self._interpolation @ linear).astype(np.float32)
         after = self._smoothed(rest - self._stiffness @ linear)
-        return (before + change + linear + after[0] + after[1]).astype(float)
+        return (before + linear + after).astype(float)
 
-    def _smoothed(self, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _smoothed(self, load: np.ndarray) -> np.ndarray:
         """Return two steps of Chebyshev iteration from zero."""
         ratio = self._middle / self._half
         factor = 1.0 / (2.0 * ratio - 1.0 / ratio)
-        again, new = np.float32(factor / ratio), np.float32(2.0 * factor / self._half)
+        again, new = np.float32(1.0 + factor / ratio), np.float32(2.0 * factor / self._half)
         first = np.float32(1.0 / self._middle) * (self._blocks @ load)
-        return first, again * first + new * (self._blocks @ (load - self._stiffness @ first))
+        return again * first + new * (self._blocks @ (load - self._stiffness @ first))
 
     def _largest_eigenvalue(self) -> float:
         vector = np.random.default_rng(_SEED).standard_normal(self._stiffness.shape[0])
@@ -131,10 +135,29 @@ def _inverse_blocks(stiffness: sp.csr_array) -> sp.csr_array:
     return sp.csr_array(inverse.astype(np.float32))
 
 
-def _definite(matrix: sp.csr_array) -> sp.csr_array:
-    return sp.csr_array(matrix + sp.diags_array(_DEFINITE * matrix.diagonal()))
+def conjugate_gradients(
+    stiffness: sp.csr_array, precondition: Solve, loads: np.ndarray, unit: float, tolerance: float
+) -> np.ndarray:
+    """Return the displacements (m, k) of ``K u = f``, to the precision of a factorisation.
 
-
-def _orthonormal(motions: np.ndarray, mass: sp.csr_array) -> np.ndarray:
-    values, vectors = np.linalg.eigh(motions.T @ (mass @ motions))
-    return motions @ (vectors / np.sqrt(values))
+    The loads must not push motions that K leaves free. `unit` is the rounding error of ``K u`` for
+    a displacement of norm 1 [N], `tolerance` the residual over the load, else ValueError.
+    """
+    inverse = sla.LinearOperator(
+        stiffness.shape, matvec=lambda load: precondition(load.reshape(-1, 1)).ravel(), dtype=float
+    )
+    solution = np.zeros_like(loads)
+    for load, found in zip(loads.T, solution.T, strict=True):
+        for share in (max(tolerance, _ROUGHLY), tolerance):  # what rounding leaves is known then
+            left = share * np.linalg.norm(load)
+            left += _ROUNDING_SHARE * unit * np.linalg.norm(found)
+            found[:], failed = sla.cg(
+                stiffness, load, found, rtol=0.0, atol=left, maxiter=_MOST_STEPS, M=inverse
+            )
+        if failed:
+            raise ValueError(
+                f"the iterative solution of static loads leaves more than {left:.1e} N after "
+                f"{_MOST_STEPS} steps; use rotor.with_solver('direct'), or a mesh with less flat "
+                "elements"
+            )
+    return solution

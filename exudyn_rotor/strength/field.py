@@ -19,6 +19,7 @@ from mpl_toolkits.mplot3d import Axes3D
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.calls import user_level
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.plotting import draw_surface
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -29,8 +30,7 @@ from exudyn_rotor.units import Units
 from exudyn_rotor.vtk import write_surface
 
 Nodes = slice | np.ndarray
-# xx, yy, zz, xy, yz, xz
-_PARAVIEW = [0, 1, 2, 5, 3, 4]
+_PARAVIEW = [0, 1, 2, 5, 3, 4]  # xx, yy, zz, xy, yz, xz
 
 
 @storable
@@ -98,7 +98,15 @@ class StressField(Result):
             If the rotor has no stress modes, or the selection is of another rotor.
         """
         checks.instance(reduced, "reduced", ReducedRotor, "SolidRotor.reduce makes one")
-        selection = _selection_of(reduced, selection)
+        how = "select_modes(reduced, formulation) makes one, add_rotor the other"
+        checks.instance(selection, "selection", (Selection, RotorBody), how)
+        if isinstance(selection, RotorBody):
+            selection = selection.selection
+        if not selection.is_of(reduced):
+            raise ValueError(
+                f"selection: it is of another rotor, {selection.source!r}, than {reduced!r}; take "
+                "the one that was added to the scene, or select_modes(reduced, formulation)"
+            )
         if reduced.shapes is None or reduced.shapes.stress is None:
             raise ValueError(
                 "reduced: the rotor was reduced without stress modes; use reduce(…, stress=True) "
@@ -149,23 +157,19 @@ class StressField(Result):
                 f"modal_coordinates: needs {count} modal coordinates, shape ({count},), got the "
                 f"shape {values.shape}; rows over time go to stress_history"
             )
-        nodes = self._nodes(nodes)
-        return self.constant[nodes] + speed**2 * self.rest[nodes] + self.modes[nodes] @ values
+        return self.history(values[None], np.array([speed]), nodes)[0]
 
-    def history(self, modal_coordinates: np.ndarray, speed: np.ndarray, nodes: Nodes) -> np.ndarray:
+    def history(
+        self, modal_coordinates: ArrayLike, speed: ArrayLike, nodes: Nodes = slice(None)
+    ) -> np.ndarray:
         """Return the stress of (s, m) coordinates at s speeds (s, n, 6) [Pa]; see :meth:`at`."""
         shape = (None, self.modes.shape[2])
         values = checks.array(modal_coordinates, "modal_coordinates", shape=shape)
         speed = checks.array(speed, "speed", "rad/s", shape=(len(values),))
-        nodes = self._nodes(nodes)
+        if not isinstance(nodes, slice):
+            nodes = checks.whole_numbers(nodes, "nodes", most=len(self.positions) - 1)
         dynamic = np.einsum("nck,sk->snc", self.modes[nodes], values, optimize=True)
         return dynamic + self.constant[nodes] + (speed**2)[:, None, None] * self.rest[nodes]
-
-    def _nodes(self, nodes: Nodes) -> Nodes:
-        """Return a slice, or node numbers that are there."""
-        if isinstance(nodes, slice):
-            return nodes
-        return checks.whole_numbers(nodes, "nodes", most=len(self.positions) - 1)
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return a row for each modal coordinate; `units` change nothing."""
@@ -178,16 +182,6 @@ class StressField(Result):
             "node": nodes,
             **{f"{axis} [m]": self.positions[nodes, i] for i, axis in enumerate("xyz")},
         }
-
-    def table(self) -> str:
-        """Return what a unit of every modal coordinate does, and where, as text."""
-        lines = ["coordinate   largest von Mises stress per unit [MPa]   node   place [m]"]
-        for index in range(self.modes.shape[2]):
-            sizes = 1e-6 * von_mises(self.modes[:, :, index])
-            node = int(np.argmax(sizes))
-            place = " ".join(f"{x:9.4f}" for x in self.positions[node])
-            lines.append(f"{index:10d}   {sizes[node]:39.4g}  {node:5d}   {place}")
-        return "\n".join(lines)
 
     def plot(self, modal_coordinates: ArrayLike, speed: float, ax: Axes3D | None = None) -> Axes3D:
         """Draw the von Mises stress on the surface [MPa]; see :meth:`at`.
@@ -235,26 +229,13 @@ def check_triangles(triangles: np.ndarray, count: int) -> None:
 
 
 def warn_without_static(field: StressField, speed: ArrayLike) -> None:
-    """Warn where stress at speed lacks the static part; called by what a user calls."""
+    """Warn where stress at speed lacks the static part."""
     fastest = np.max(np.abs(speed))
-    if field.has_static or fastest == 0.0:
-        return
-    warnings.warn(
-        f"stress at speeds up to {fastest:.6g} rad/s without the static centrifugal stress, which "
-        "the modes show in part only; reduce the rotor with reduce(…, stress=True, prestress=True)",
-        UserWarning,
-        stacklevel=3,
-    )
-
-
-def _selection_of(reduced: ReducedRotor, given: Selection | RotorBody) -> Selection:
-    """Return the selection given as such or by its rotor body, checked against `reduced`."""
-    how = "select_modes(reduced, formulation) makes one, add_rotor the other"
-    checks.instance(given, "selection", (Selection, RotorBody), how)
-    selection = given.selection if isinstance(given, RotorBody) else given
-    if not selection.is_of(reduced):
-        raise ValueError(
-            f"selection: it is of another rotor, {selection.source!r}, than {reduced!r}; take the "
-            "one that was added to the scene, or select_modes(reduced, formulation)"
+    if not field.has_static and fastest > 0.0:
+        warnings.warn(
+            f"stress at speeds up to {fastest:.6g} rad/s without the static centrifugal stress, "
+            "which the modes show in part only; reduce the rotor with reduce(…, stress=True, "
+            "prestress=True)",
+            UserWarning,
+            stacklevel=user_level(),
         )
-    return selection

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
-from tqdm import tqdm
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.results import Result, numbers, storable
@@ -102,18 +101,6 @@ class StressHistory(Result):
             "range of the first principal stress [Pa]": np.ptp(self.principal[:, :, 0], axis=0),
         }
 
-    def table(self) -> str:
-        """Return the nodes with a history, their places, peaks and ranges as text."""
-        ranges = 1e-6 * np.ptp(self.principal[:, :, 0], axis=0)
-        lines = ["   node   place [m]                      peak [MPa]  at [s]     range σ1 [MPa]"]
-        for node, span in zip(self.nodes, ranges, strict=True):
-            place = " ".join(f"{x:9.4f}" for x in self.positions[node])
-            lines.append(
-                f"{node:7d}   {place}  {1e-6 * self.peak[node]:11.4g}  "
-                f"{self.peak_time[node]:<9.4g}  {span:.4g}"
-            )
-        return "\n".join(lines)
-
     def plot(self, ax: Axes | None = None, count: int = 3) -> Axes:
         """Draw the von Mises stress [MPa] of the first `count` nodes over time.
 
@@ -183,15 +170,26 @@ def stress_history(
     >>> print(history.peak, history.von_mises[:, 0])
     [7. 7. 7. 7.] [5. 7.]
     """
-    time, coordinates, speed = _checked(field, time, modal_coordinates, speed)
-    chosen = None if nodes is None else _node_numbers(nodes, len(field.positions))
+    how = "make one with StressField.of(reduced, body)"
+    count_of_modes = checks.instance(field, "field", StressField, how).modes.shape[2]
+    time = checks.vector(time, "time", "s", size=None)
+    coordinates = checks.array(modal_coordinates, "modal_coordinates")
+    if not time.size or coordinates.shape != (time.size, count_of_modes):
+        raise ValueError(
+            f"modal_coordinates: needs one row of {count_of_modes} for each of the {time.size} "
+            f"instants of time, at least one, got the shape {coordinates.shape}"
+        )
+    speed = checks.array(speed, "speed", "rad/s")
+    if speed.shape not in ((), time.shape):
+        raise ValueError(
+            f"speed: needs one number, or one for each of the {time.size} times, got the shape "
+            f"{speed.shape}"
+        )
+    speed = np.broadcast_to(speed, time.shape)
     count = checks.count(count, "count", least=1)
     warn_without_static(field, speed)
     peak, when = _envelope(field, coordinates, speed)
-    if chosen is None:
-        chosen = np.argsort(peak)[::-1][:count]
-    else:
-        chosen = chosen[np.argsort(peak[chosen])[::-1]]
+    chosen = np.argsort(peak)[::-1][:count] if nodes is None else _highest_first(nodes, peak)
     return StressHistory(
         time=time,
         speed=speed,
@@ -204,37 +202,11 @@ def stress_history(
     )
 
 
-def _checked(
-    field: StressField, time: ArrayLike, coordinates: ArrayLike, speed: ArrayLike | float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    how = "make one with StressField.of(reduced, body)"
-    count = checks.instance(field, "field", StressField, how).modes.shape[2]
-    time = checks.vector(time, "time", "s", size=None)
-    coordinates = checks.array(coordinates, "modal_coordinates")
-    if time.size == 0:
-        raise ValueError("time: needs at least one instant, got none")
-    if coordinates.shape != (time.size, count):
-        raise ValueError(
-            f"modal_coordinates: needs one row of {count} for each of the {time.size} instants of "
-            f"time, got the shape {coordinates.shape}"
-        )
-    speed = checks.array(speed, "speed", "rad/s")
-    if speed.shape not in ((), time.shape):
-        raise ValueError(
-            f"speed: needs one number, or one for each of the {time.size} times, got the shape "
-            f"{speed.shape}"
-        )
-    return time, coordinates, np.broadcast_to(speed, time.shape)
-
-
-def _node_numbers(nodes: Sequence[int], total: int) -> np.ndarray:
-    """Return chosen node numbers as an array; a message names the first that does not fit."""
-    if isinstance(nodes, np.ndarray) and nodes.dtype.kind == "b":
-        raise TypeError("nodes: needs node numbers, got a mask; use np.flatnonzero(mask)")
-    numbers = checks.whole_numbers(nodes, "nodes", most=total - 1)
-    if numbers.size == 0:
-        raise ValueError(f"nodes: needs node numbers from 0 to {total - 1}, got none")
-    return numbers
+def _highest_first(nodes: Sequence[int], peak: np.ndarray) -> np.ndarray:
+    chosen = checks.whole_numbers(nodes, "nodes", most=len(peak) - 1)
+    if not chosen.size:
+        raise ValueError(f"nodes: needs node numbers from 0 to {len(peak) - 1}, got none")
+    return chosen[np.argsort(peak[chosen])[::-1]]
 
 
 def _envelope(
@@ -244,7 +216,7 @@ def _envelope(
     total = len(field.positions)
     width = max(1, _CHUNK // (6 * len(coordinates)))
     peak, when = np.zeros(total), np.zeros(total, dtype=np.int64)
-    for start in tqdm(range(0, total, width), desc="stress", disable=total < 20 * width):
+    for start in range(0, total, width):
         rows = slice(start, start + width)
         values = von_mises(field.history(coordinates, speed, rows))
         when[rows] = np.argmax(values, axis=0)

@@ -124,11 +124,6 @@ class SpinAxis:
         points = _points(points)
         return points - self.project(points)
 
-    def turned(self, rotation: ArrayLike) -> SpinAxis:
-        """Return this axis after the rotation matrix `rotation` (3, 3) about the origin."""
-        turn = checks.rotation(rotation)
-        return SpinAxis(turn @ self.direction, turn @ self.point)
-
 
 def _points(points: ArrayLike) -> np.ndarray:
     values = checks.array(points, "points", "m")

@@ -161,16 +161,9 @@ def suited_translation(
     ``'auto'`` is ``'free'``, but ``'none'`` for a rotor that its own stiffness matrix holds in its
     frame (`grounded`): no other is possible there, and its spin must be prescribed.
 
-    Supports, loads and joints come after the rotor, so nothing may depend on them. All translations
-    can represent the same displacements, where rigid motions that the frame does not hold are
-    modes, and yet only ``'free'`` cannot give another motion:
-
-    - with ``'none'`` the frame stands still. A load or spring on a coordinate of its node acts on
-      nothing, and these show nothing; with ``'in-plane'`` this holds along the axis.
-    - modes turn with the rotor. What stands or moves slowly in space, a sag or a flight, turns
-      backwards in their coordinates, and costs accuracy with the square of spin speed times step;
-      a rotor that travels far is lost.
-
+    All translations can represent the same displacements, where rigid motions that the frame does
+    not hold are modes, and yet only ``'free'`` cannot give another motion: loads on the frame's
+    node act, and what stands or moves slowly in space does not turn backwards in modes.
     :func:`exudyn_rotor.propose` takes the supports, too, and weighs the others.
 
     Raises

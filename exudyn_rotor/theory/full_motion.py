@@ -32,12 +32,7 @@ from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.invariants import Invariants, inverse_inertia
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.nodal import skew
-from exudyn_rotor.theory.stiffening import (
-    Stiffening,
-    euler_factors,
-    relief_factors,
-    tilt_factors,
-)
+from exudyn_rotor.theory.stiffening import Stiffening, work_factors
 
 _ROUNDING = 1e-13  # of their upper bound: what P leaves of moments that are zero
 Factors = tuple[np.ndarray, np.ndarray]
@@ -108,17 +103,19 @@ def full_stiffening(
     turns : ndarray, shape (2, 3), optional
         Angular accelerations of the prestress's inertia relief, for 'full'.
     """
-    zero = sp.csr_array(invariants.C.shape)
+    zero, e = sp.csr_array(invariants.C.shape), skew(invariants.direction)
+
+    def factors(field: np.ndarray, share: float) -> Factors:
+        V, W = work_factors(invariants, field)
+        return V, share * W
+
     if level == "full":
-        tilt = relief_factors(invariants, turns[0])
-        known = invariants.B is not None
-        euler = relief_factors(invariants, turns[1]) if known else euler_factors(invariants)
+        tilt, known = factors(skew(turns[0]), -1.0), invariants.B is not None
+        euler = factors(skew(turns[1]), -1.0) if known else factors(e, 1.0)
         B = invariants.B if known else zero
         return FullStiffening(invariants.K2, B, tilt, euler, invariants.K4)
-    tilt, euler = tilt_factors(invariants), euler_factors(invariants)
-    if level == "none":
-        tilt, euler = ((V, 0.0 * W) for V, W in (tilt, euler))
-    return FullStiffening(zero, zero, tilt, euler)
+    share = 0.0 if level == "none" else 1.0
+    return FullStiffening(zero, zero, factors(-e @ e, -share), factors(e, share))
 
 
 @dataclass(frozen=True, eq=False)
@@ -290,18 +287,17 @@ class FullMotion(Motion):
             force[self.modes] = self.spin_terms.load(self.formulation.spin.speed)
         return force
 
-    def varying_inertia(self, c: np.ndarray, omega: float) -> tuple[float, np.ndarray]:
-        """Return what adds to Θ (85), at the spin speed ω by K4, and ``Wc`` of (84)."""
+    def varying_inertia(self, c: np.ndarray) -> tuple[float, np.ndarray]:
+        """Return what adds to Θ (85), and ``Wc`` of (84)."""
         terms = self.spin_terms
-        inertia = (2.0 * terms.h + terms.C_hat @ c) @ c - 6.0 * omega**2 * self._fourth(c)
-        return float(inertia), terms.W @ c
+        return float((2.0 * terms.h + terms.C_hat @ c) @ c), terms.W @ c
 
     def varying_forces(self, t: float, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
         """Return (86), (87), the accelerations of (108) and App. A without weight, shape (size,).
 
         The elastic and damping forces are left out, and at constant speed all of (87).
         """
-        terms, now = self.spin_terms, self._state(t, q, q_t)
+        terms, now = self.spin_terms, self.at(t, q, q_t)
         omega, c, rate = now.omega, now.zeta, now.zeta_t
         force = np.zeros(self.size)
         if not self.formulation.is_constant_speed:
@@ -312,7 +308,7 @@ class FullMotion(Motion):
                 loads -= omega**4 * (terms.K4 @ c)
             force[self.modes] = loads
         if self.has_body_force:
-            self._add_body_force(now.zeta, now.body_acceleration, force)
+            self._add_body_force(c, self.body_acceleration(t, now.A), force)
         if self.formulation.has_spin:
             force[self._spin] += self._spin_torque(omega, c, rate)
         return force
@@ -323,8 +319,6 @@ class FullMotion(Motion):
         torque = -(1.0 if frozen else 2.0) * omega * (self._centrifugal(c) @ rate)
         if not frozen:
             torque -= rate @ (terms.B @ rate)
-        if terms.K4 is not None:
-            torque += self._fourth_share * omega**3 * (c @ (terms.K4 @ rate))
         return float(torque)
 
     def varying_jacobian(
@@ -338,7 +332,7 @@ class FullMotion(Motion):
         matrix = sp.csr_array((self.size, self.size))
         if self.formulation.is_constant_speed:
             return matrix
-        terms, now = self.spin_terms, self._state(t, q, q_t)
+        terms, now = self.spin_terms, self.at(t, q, q_t)
         omega = now.omega
         block = (-factor_q * omega**2) * terms.C_hat.sparse + (2.0 * factor_v * omega) * terms.G
         if now.omega_t:

@@ -22,7 +22,7 @@ Matrix = np.ndarray | sp.csr_array
 
 _OPTIONAL = ("K2", "B", "K4", "K2_estimated", "H", "K0")
 _UNIT = 1e-9  # a direction may differ from unit length by this much
-_EPSILON = np.array([skew(unit) for unit in np.eye(3)])  # ε_aik of (a × b)_i = ε_aik a_a b_k
+EPSILON = np.array([skew(unit) for unit in np.eye(3)])  # ε_aik of (a × b)_i = ε_aik a_a b_k
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +58,7 @@ class Invariants:
     K4 : shape (k, k), optional
         Stiffness per ω⁴ of a static displacement, as there.
     K2_estimated : shape (k, k), optional
-        Rough K2 where none was computed, see :mod:`exudyn_rotor.prestress.estimate`. It is in no
+        Rough K2 where none was computed, see :mod:`exudyn_rotor.prestress.carrying`. It is in no
         equation.
     H : shape (k, k), optional
         Structural damping: a motion ``e^{iνt}`` in the rotor frame has the stiffness
@@ -223,7 +223,7 @@ class Invariants:
         has no inertia does not turn.
         """
         _, P = moments_about(self, self.center)
-        momentum = np.einsum("aib,abk->ik", _EPSILON, P)
+        momentum = np.einsum("aib,abk->ik", EPSILON, P)
         return checks.read_only(inverse_inertia(self) @ momentum)
 
     def moved(self, origin: np.ndarray) -> Invariants:

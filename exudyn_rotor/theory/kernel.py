@@ -151,7 +151,6 @@ class Kernel:
         self._unbalance = self._products[1, count + 1 :]
         self._K4, self._displaced = terms.K4, np.zeros(count)
         self._share = 1.0 if frozen else 2.0  # of ω(h + Ĉζ)ᵀζ̇ in the torque (86)
-        self._fourth = 1.0 if frozen else 4.0  # of ω³ζᵀK4ζ̇ in it
         self._by_state = np.stack([terms.C_hat, terms.W, 2.0 * terms.G]).reshape(3, -1)
         # −ẽS*, S* and 2S*
         self._frame_by_state = -e @ S1, S1, 2.0 * S1
@@ -176,15 +175,12 @@ class Kernel:
         ends = np.cumsum([0, *(len(grid[0]) for grid in grids)])
         self._mass_parts = [self._mass[a:b] for a, b in pairwise(ends)]
 
-    def mass_entries(self, t: float, q: list, q_t: list) -> np.ndarray:
+    def mass_entries(self, t: float, q: list) -> np.ndarray:
         """Return the entries at :attr:`rows` and :attr:`columns`; valid until the next call."""
         self._update(t, q)
         parts = self._mass_parts
         if self._varies:
             parts[0][0] = self._state.dot(self._spin_inertia_row)
-            if self._K4 is not None:
-                fourth = float(self._displaced.dot(self._zeta))
-                parts[0][0] -= 6.0 * q_t[self._spin] ** 2 * fourth
             parts[1][:] = self._spin_coupling
         if self._motion.is_coupled:
             if self._spin is not None:
@@ -205,8 +201,6 @@ class Kernel:
             torque = -self._share * omega * float(self._centrifugal.dot(self._rate))
             if self._B is not None:
                 torque -= self._rate.dot(self._euler_torque)
-            if self._K4 is not None:
-                torque += self._fourth * omega**3 * float(self._displaced.dot(self._rate))
         if turning.has_body_force:
             if self.has_modal_forces:
                 self._modal_force += turning.modal
@@ -253,11 +247,6 @@ class Kernel:
         if self._B is not None:
             row += (2.0 * factor_v) * self._euler_torque
         corner = share * factor_v * centrifugal.dot(rate)
-        if self._K4 is not None:
-            displaced, by_rate = self._displaced, self._K4.dot(rate)
-            column += (4.0 * factor_v * omega**3) * displaced
-            row -= self._fourth * omega**3 * (factor_q * by_rate + factor_v * displaced)
-            corner -= 3.0 * self._fourth * factor_v * omega**2 * float(displaced.dot(rate))
         if turning.has_body_force:
             modal, by_deflection, torque = turning.slope()
             column -= factor_q * modal

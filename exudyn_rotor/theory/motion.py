@@ -18,9 +18,7 @@ share c/2Θ, where conserved momentum, ``(Θ + c)ω``, has c/Θ: spin fluctuatio
 speeds and angles err by c/2Θ, below 1e-4 for rotors in balance.
 
 A static displacement adds ``−½ω⁴ζᵀK4ζ`` to the Lagrangian function: the force ``−ω⁴K4ζ`` on the
-modes, and in the equation of the spin ``−6ω²ζᵀK4ζ`` of its inertia and the torque ``4ω³ζᵀK4ζ̇``.
-Conserved are the momentum with ``−2ω³ζᵀK4ζ`` and the energy with ``−(3/2)ω⁴ζᵀK4ζ``. A frozen spin
-gets the torque ``ω³ζᵀK4ζ̇`` alone, which takes the power of the force from it.
+modes. A free spin does not take it.
 
 Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
 """
@@ -28,8 +26,8 @@ Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -42,18 +40,24 @@ from exudyn_rotor.theory.kernel import ConstantPart, Kernel, constant_part
 from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.spin_terms import SpinTerms
 from exudyn_rotor.theory.stiffening import Stiffening
-from exudyn_rotor.theory.terms import Terms, terms_of
+from exudyn_rotor.theory.terms import Instant, Terms, terms_of
 
 
-@dataclass(frozen=True)
-class _State:
-    """One instant, split into its parts."""
+class Energy(NamedTuple):
+    """Energy of a rotor at an instant [J].
 
-    omega: float
-    omega_t: float  # prescribed part of the spin acceleration
-    zeta: np.ndarray
-    zeta_t: np.ndarray
-    body_acceleration: np.ndarray | None = None  # gravity less the frame's, rotor axes
+    Attributes
+    ----------
+    kinetic : float
+        In the inertial frame, the spin included.
+    elastic : float
+    weight : float
+        Potential of the weight; zero where the rotor stands as in its mesh, undeformed, at θ = 0.
+    """
+
+    kinetic: float
+    elastic: float
+    weight: float
 
 
 class Motion:
@@ -109,7 +113,7 @@ class Motion:
     >>> point = Invariants.of([[2.0, 0, 0]], unit, 9.0 * unit, None, unit, [0, 0, 1])
     >>> motion = Motion(point, Formulation("none", "free"), stiffening(point, "none"))
     >>> rest, spinning = np.zeros(4), np.array([1.0, 0, 0, 0])  # θ, then the displacements
-    >>> print(motion.forces(0.0, rest, spinning), motion.energy(0.0, rest, spinning))
+    >>> print(motion.forces(0.0, rest, spinning), motion.energy(0.0, rest, spinning).kinetic)
     [0. 2. 0. 0.] 2.0
     """
 
@@ -125,6 +129,11 @@ class Motion:
         self.invariants = checks.instance(invariants, "invariants", Invariants)
         self.formulation = checks.instance(formulation, "formulation", Formulation)
         self.spin_terms = SpinTerms.of(invariants, second_order)
+        if second_order.K4 is not None and formulation.has_spin:
+            raise ValueError(
+                "spin: a free spin does not take the stiffness per ω⁴ of a static displacement; "
+                "prescribe the spin, or compute the prestress with initial_displacement=False"
+            )
         self.orientation = np.eye(3)
         if orientation is not None:
             self.orientation = checks.rotation(orientation, "orientation")
@@ -203,13 +212,10 @@ class Motion:
     def mass_matrix(self, t: float, q: ArrayLike, q_t: ArrayLike | None = None) -> np.ndarray:
         """Return the mass matrix (65, 41–43, 84, 85), shape (size, size).
 
-        That of a free spin depends on its speed in `q_t`, zero by default, where there is a
-        stiffness per ω⁴.
+        It does not depend on the rates `q_t`.
         """
-        q = self._coordinates(q, "q")
-        q_t = np.zeros(self.size) if q_t is None else self._coordinates(q_t, "q_t")
         kernel, mass = self._kernel, self._constant_mass.copy()
-        values = kernel.mass_entries(_time(t), q.tolist(), q_t.tolist())
+        values = kernel.mass_entries(_time(t), self._coordinates(q, "q").tolist())
         mass[kernel.rows, kernel.columns] = mass[kernel.columns, kernel.rows] = values
         return mass
 
@@ -230,26 +236,37 @@ class Motion:
         by_v = -self._constant_part.damping - self._kernel.jacobian(_time(t), q, q_t, 0.0, 1.0)
         return by_q, by_v
 
-    def energy(self, t: float, q: ArrayLike, q_t: ArrayLike) -> float:
-        """Return kinetic plus elastic energy [J] of the free motion, gravity left out."""
-        q, q_t = self._coordinates(q, "q"), self._coordinates(q_t, "q_t")
-        zeta, omega = q[self.modes], float(np.sum(q_t[self._spin]))
-        kinetic = 0.5 * q_t @ (self.mass_matrix(t, q) @ q_t)
-        if not self.formulation.has_frozen_spin:
-            kinetic -= 1.5 * omega**4 * self._fourth(zeta)
-        return float(kinetic + 0.5 * zeta @ (self.invariants.K @ zeta))
+    def energy(
+        self, t: float, q: ArrayLike, q_t: ArrayLike, gravity: ArrayLike | None = None
+    ) -> Energy:
+        """Return the energy in the inertial frame, θ and τ unknowns or prescribed.
 
-    def momentum(self, t: float, q: ArrayLike, q_t: ArrayLike) -> np.ndarray:
-        """Return the generalised momenta, shape (size,): ``M q̇``, with a stiffness per ω⁴ less.
-
-        With a free spin, the entry of θ is the angular momentum about the spin axis relative to
-        the frame origin.
+        The kinetic energy is T of :mod:`exudyn_rotor.theory.motion`, from the velocities
+        ``τ̇ + A (ω ẽ r + Ψζ̇)``, less ``(3/2)ω⁴ζᵀK4ζ`` with a stiffness per ω⁴. `gravity` (3,) is
+        along inertial axes [m/s²], by default that of the equations.
         """
-        q_t = self._coordinates(q_t, "q_t")
-        momenta = self.mass_matrix(t, q) @ q_t
-        if not self.formulation.has_frozen_spin:
-            momenta[self._spin] -= 2.0 * q_t[self._spin] ** 3 * self._fourth(q[self.modes])
-        return momenta
+        now, q, q_t = self.at(t, q, q_t), np.asarray(q), np.asarray(q_t)
+        g = self.gravity if gravity is None else checks.vector(gravity, "gravity", "m/s²")
+        form, inv, terms = self.formulation, self.invariants, self.spin_terms
+        omega, zeta, zeta_t = now.omega, now.zeta, now.zeta_t
+        if form.moves_origin:
+            moved = form.translation
+            shift, rate = (np.asarray(f(t), dtype=float) for f in (moved.value, moved.rate))
+        else:
+            shift, rate = (self.free_directions @ x[self.translations] for x in (q, q_t))
+        # a frozen spin has the inertia of the undeformed rotor, so that its equations keep the sum
+        bent = np.zeros_like(zeta) if form.has_frozen_spin else zeta
+        kinetic = (
+            0.5 * inv.mass * rate @ rate
+            + rate @ now.A @ (inv.S @ zeta_t + omega * self.unbalance(zeta))
+            + 0.5 * omega**2 * self._spin_inertia(bent)
+            + omega * (terms.g + terms.W @ bent) @ zeta_t
+            + 0.5 * zeta_t @ (inv.M @ zeta_t)
+            - 1.5 * omega**4 * self._fourth(bent)
+        )
+        place = shift + (now.A - self.orientation) @ inv.center
+        weight = -g @ (inv.mass * place + now.A @ (inv.S @ zeta))
+        return Energy(float(kinetic), float(0.5 * zeta @ (inv.K @ zeta)), float(weight))
 
     def terms(self, t: float, q: ArrayLike, q_t: ArrayLike) -> Terms:
         """Return every block by its name and equation; see :mod:`exudyn_rotor.theory.terms`."""
@@ -260,9 +277,8 @@ class Motion:
 
         The row of θ that a prescribed spin removes: (84–86) times the accelerations.
         """
-        terms = self.spin_terms
+        terms, now = self.spin_terms, self.at(t, q, q_t)
         zeta_tt = checks.vector(zeta_tt, "zeta_tt", size=self.invariants.size)
-        now = self._state(t, q, q_t)
         inertia = self._spin_inertia(now.zeta) - 6.0 * now.omega**2 * self._fourth(now.zeta)
         torque = inertia * now.omega_t
         torque += (terms.g + terms.W @ now.zeta) @ zeta_tt
@@ -271,19 +287,40 @@ class Motion:
         if terms.K4 is not None:
             torque -= 4.0 * now.omega**3 * (now.zeta @ (terms.K4 @ now.zeta_t))
         if self.has_body_force:
-            torque -= self._unbalance(now.zeta) @ now.body_acceleration
+            torque -= self.unbalance(now.zeta) @ self.body_acceleration(t, now.A)
         return float(torque)
+
+    def body_acceleration(self, t: float, A: np.ndarray) -> np.ndarray:
+        """Return gravity less the frame's prescribed acceleration (108), rotor axes [m/s²]."""
+        acceleration = self.gravity
+        if self.formulation.moves_origin:
+            prescribed = self.formulation.translation.acceleration(t)
+            acceleration = acceleration - np.asarray(prescribed, dtype=float)
+        return A.T @ acceleration
 
     def body_forces(self, t: float, q: ArrayLike, acceleration: ArrayLike) -> np.ndarray:
         """Return the forces (size,) of gravity (App. A) or another uniform acceleration [m/s²]."""
-        t, q = checks.number(t, "t", "s"), self._coordinates(q, "q")
         acceleration = checks.vector(acceleration, "acceleration", "m/s²")
-        form, force = self.formulation, np.zeros(self.size)
-        theta = float(q[self._spin][0]) if form.has_spin else form.spin.value(t)
-        local = (self.orientation @ self._axis.rotation(theta)).T @ acceleration
+        now, force = self.at(t, q, np.zeros(self.size)), np.zeros(self.size)
         force[self.translations] = self.invariants.mass * (self.free_directions.T @ acceleration)
-        self._add_body_force(q[self.modes], local, force)
+        self._add_body_force(now.zeta, now.A.T @ acceleration, force)
         return force
+
+    def at(self, t: float, q: ArrayLike, q_t: ArrayLike) -> Instant:
+        """Return an instant, split into its parts."""
+        q, q_t = self._coordinates(q, "q"), self._coordinates(q_t, "q_t")
+        form, t = self.formulation, _time(t)
+        if form.has_spin:
+            theta, omega, omega_t = float(q[self._spin][0]), float(q_t[self._spin][0]), 0.0
+        else:
+            theta, omega = form.spin.value(t), form.spin.rate(t)
+            omega_t = form.spin.acceleration(t)
+        A = self.orientation @ self._axis.rotation(theta)
+        return Instant(omega, omega_t, q[self.modes], q_t[self.modes], A)
+
+    def unbalance(self, zeta: np.ndarray) -> np.ndarray:
+        """``mχ* + S*ζ``, the bracket of (65): the static unbalance of the deformed rotor."""
+        return self.static_unbalance + self.S1 @ zeta
 
     def _centrifugal(self, zeta: np.ndarray) -> np.ndarray:
         """``h + Ĉζ``, the centrifugal load per ω² of (87)."""
@@ -298,20 +335,11 @@ class Motion:
         K4 = self.spin_terms.K4
         return 0.0 if K4 is None else float(zeta @ (K4 @ zeta))
 
-    @property
-    def _fourth_share(self) -> float:
-        """Of ``ω³ζᵀK4ζ̇`` in the torque on a free spin."""
-        return 1.0 if self.formulation.has_frozen_spin else 4.0
-
-    def _unbalance(self, zeta: np.ndarray) -> np.ndarray:
-        """``mχ* + S*ζ``, the bracket of (65): the static unbalance of the deformed rotor."""
-        return self.static_unbalance + self.S1 @ zeta
-
     def _add_body_force(self, zeta: np.ndarray, local: np.ndarray, force: np.ndarray) -> None:
         """Add gravity (App. A) and the frame's prescribed acceleration (108), rotor axes."""
         force[self.modes] += self.invariants.S.T @ local
         if self.formulation.has_spin:
-            force[self._spin] += self._unbalance(zeta) @ local
+            force[self._spin] += self.unbalance(zeta) @ local
 
     def _coordinates(self, values: ArrayLike, name: str) -> np.ndarray:
         """Return one finite number per unknown; quick where there is nothing to refuse."""
@@ -319,24 +347,6 @@ class Motion:
         if right and values.dtype == float and math.isfinite(values.dot(values)):
             return values
         return checks.vector(values, name, size=self.size)
-
-    def _state(self, t: float, q: ArrayLike, q_t: ArrayLike) -> _State:
-        form = self.formulation
-        q, q_t = self._coordinates(q, "q"), self._coordinates(q_t, "q_t")
-        t = _time(t)
-        if form.has_spin:
-            theta, omega, omega_t = float(q[self._spin][0]), float(q_t[self._spin][0]), 0.0
-        else:
-            theta, omega = form.spin.value(t), form.spin.rate(t)
-            omega_t = form.spin.acceleration(t)
-        zeta, zeta_t = q[self.modes], q_t[self.modes]
-        if not self.has_body_force:
-            return _State(omega, omega_t, zeta, zeta_t)
-        rotation = self.orientation @ self._axis.rotation(theta)
-        acceleration = self.gravity
-        if form.moves_origin:
-            acceleration = acceleration - np.asarray(form.translation.acceleration(t), dtype=float)
-        return _State(omega, omega_t, zeta, zeta_t, rotation.T @ acceleration)
 
 
 def _time(t: float) -> float:

@@ -61,27 +61,3 @@ def into_rotor_frame(vector: np.ndarray) -> dict[int, np.ndarray]:
     """Return the harmonics of ``Rᵀ(θ) v`` for triples v (3n,) fixed in space; none that is zero."""
     turned = {-n: R @ vector for n, R in turning_harmonics(len(vector)).items()}
     return {n: term for n, term in turned.items() if np.any(term)}
-
-
-def turned_harmonics(matrix: np.ndarray) -> dict[int, np.ndarray]:
-    """Return the Fourier terms of ``Rᵀ(θ) X R(θ)`` for a support seen from the rotor.
-
-    R turns all triples of a (6, 6) or larger matrix X about e by θ; the result holds the harmonics
-    −2 … 2 of ``Σ X_n exp(i n θ)`` that are not zero.
-    """
-    if not np.any(matrix):
-        return {}
-    R = _turns(len(matrix))
-    products = (R.transpose(0, 2, 1) @ matrix)[:, None] @ R  # R is real: Rᵀ has the terms R_nᵀ
-    spectrum = np.zeros((5, *matrix.shape), dtype=complex)  # from −2 to 2
-    for n, row in enumerate(products):
-        spectrum[n : n + 3] += row
-    sizes = np.abs(spectrum).max(axis=(1, 2))
-    kept = np.flatnonzero(sizes > 1e-14 * np.abs(matrix).max())
-    return {int(n) - 2: spectrum[n] for n in kept}
-
-
-@cache
-def _turns(size: int) -> np.ndarray:
-    """Return R_n for n = −1, 0, 1, shape (3, size, size)."""
-    return np.stack(list(turning_harmonics(size).values()))

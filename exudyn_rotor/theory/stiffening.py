@@ -34,7 +34,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from exudyn_rotor import checks
-from exudyn_rotor.theory.invariants import Invariants, moments_about
+from exudyn_rotor.theory.invariants import EPSILON, Invariants, moments_about
 from exudyn_rotor.theory.nodal import skew
 
 LEVELS = ("none", "tilt", "full")
@@ -46,8 +46,6 @@ NO_PRESTRESS = (
     "(NGSolve model) or with Prestress.from_matrix (imported model), carry it in a full model with "
     "rotor.with_prestress, or use stiffening='tilt'"
 )
-
-_EPSILON = np.array([skew(unit) for unit in np.eye(3)])  # ε_aik of (a × b)_i = ε_aik a_a b_k
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,8 +169,7 @@ def stiffening(invariants: Invariants, level: str) -> Stiffening:
     if level == "full":
         return _full(invariants)
     e = skew(invariants.direction)
-    split = _rigid_split(invariants)
-    return Stiffening(K2=-_work_hessian(split, -e @ e), B=_work_hessian(split, e))
+    return Stiffening(K2=-_work_hessian(invariants, -e @ e), B=_work_hessian(invariants, e))
 
 
 def _full(invariants: Invariants) -> Stiffening:
@@ -180,7 +177,7 @@ def _full(invariants: Invariants) -> Stiffening:
         raise ValueError(NO_PRESTRESS)
     B = invariants.B
     if B is None:  # of the Euler field only what rigid rotations feel
-        B = _work_hessian(_rigid_split(invariants), skew(invariants.direction))
+        B = _work_hessian(invariants, skew(invariants.direction))
     return Stiffening(invariants.K2, B, invariants.K4)
 
 
@@ -207,10 +204,9 @@ def with_prestress(
     K4 : ndarray, shape (k, k), optional
         ``ΨᵀK_uuΨ`` per ω⁴.
     """
-    split = _rigid_split(invariants)
 
     def relieved(matrix: np.ndarray, turn: np.ndarray) -> np.ndarray:
-        return 0.5 * (matrix + matrix.T) - _work_hessian(split, skew(turn))
+        return 0.5 * (matrix + matrix.T) - _work_hessian(invariants, skew(turn))
 
     return replace(
         invariants,
@@ -220,64 +216,29 @@ def with_prestress(
     )
 
 
-def relief_factors(invariants: Invariants, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return V (6, k) and W (6, 6): ``VᵀWV`` is what `with_prestress` adds to K2 for a turn (3,).
-
-    The form for full models.
-    """
-    V, W = _work_factors(_rigid_split(invariants), skew(turn))
-    return V, -W
-
-
-def tilt_factors(invariants: Invariants) -> tuple[np.ndarray, np.ndarray]:
-    """Return V (6, k) and W (6, 6) of ``K2 = VᵀWV`` at the level 'tilt'.
-
-    The form for full models, where K2 would be a dense matrix of the size of the model.
-    """
-    e = skew(invariants.direction)
-    V, W = _work_factors(_rigid_split(invariants), -e @ e)
-    return V, -W
-
-
-def euler_factors(invariants: Invariants) -> tuple[np.ndarray, np.ndarray]:
-    """Return V (6, k) and W (6, 6) of ``B = VᵀWV``: what rigid rotations feel of the Euler field.
-
-    The form for full models.
-    """
-    return _work_factors(_rigid_split(invariants), skew(invariants.direction))
-
-
-@dataclass(frozen=True, eq=False)
-class _RigidSplit:
-    """Columns split into rotation about the centre of mass and a flexible rest."""
-
-    rotation: np.ndarray  # (3, k) rotation vector of every column
-    P_flexible: np.ndarray  # (3, 3, k) mixed moments Σ M y ψᵀ of the flexible rest
-    J: np.ndarray  # (3, 3) second moments about the centre of mass
-
-
-def _rigid_split(invariants: Invariants) -> _RigidSplit:
-    """Split every column by mass-orthogonality (Tisserand)."""
-    (J, P), rotation = moments_about(invariants, invariants.center), invariants.mean_rotation
-    P_rigid = np.einsum("cbd,ck,ad->abk", _EPSILON, rotation, J)
-    return _RigidSplit(rotation, P - P_rigid, J)
-
-
-def _work_hessian(split: _RigidSplit, field: np.ndarray) -> np.ndarray:
-    """Hessian of the work of the nodal forces ``M F x`` on u₂, shape (k, k)."""
-    V, W = _work_factors(split, field)
-    hessian = V.T @ W @ V
-    return 0.5 * (hessian + hessian.T)
-
-
-def _work_factors(split: _RigidSplit, field: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def work_factors(invariants: Invariants, field: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return V (6, k) and W (6, 6) of the Hessian ``VᵀWV`` of the work of ``M F x`` on u₂.
 
-    ``f·(φ×(φ×y)) = φᵀ(H − tr(H) I)φ`` with ``H = Σ f yᵀ``, and
-    ``f·(φ×ψ) = −φ·Σ f×ψ``.
+    ``f·(φ×(φ×y)) = φᵀ(H − tr(H) I)φ`` with ``H = Σ f yᵀ``, and ``f·(φ×ψ) = −φ·Σ f×ψ``. The form for
+    full models, where the Hessian would be a dense matrix of the size of the model.
+
+    Parameters
+    ----------
+    invariants : Invariants
+    field : ndarray, shape (3, 3)
+        F: ``−ẽẽ`` of the centrifugal field, ``ẽ`` of the Euler field.
     """
-    H = field @ split.J
+    (J, P), rotation = moments_about(invariants, invariants.center), invariants.mean_rotation
+    P_flexible = P - np.einsum("cbd,ck,ad->abk", EPSILON, rotation, J)
+    H = field @ J
     by_rotation = 0.5 * (H + H.T) - np.trace(H) * np.eye(3)
-    mixed = -np.einsum("aib,ac,cbk->ik", _EPSILON, field, split.P_flexible)
+    mixed = -np.einsum("aib,ac,cbk->ik", EPSILON, field, P_flexible)
     W = np.block([[by_rotation, np.eye(3)], [np.eye(3), np.zeros((3, 3))]])
-    return np.vstack([split.rotation, mixed]), W
+    return np.vstack([rotation, mixed]), W
+
+
+def _work_hessian(invariants: Invariants, field: np.ndarray) -> np.ndarray:
+    """Hessian of the work of the nodal forces ``M F x`` on u₂, shape (k, k)."""
+    V, W = work_factors(invariants, field)
+    hessian = V.T @ W @ V
+    return 0.5 * (hessian + hessian.T)

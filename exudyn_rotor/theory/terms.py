@@ -12,18 +12,36 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
-from exudyn_rotor import checks
-from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.spin_terms import SpinTerms
+
+
+class Instant(NamedTuple):
+    """One instant of a motion, split into its parts.
+
+    Attributes
+    ----------
+    omega, omega_t : float
+        Spin speed, and its prescribed rate; zero for a free spin, whose rate is unknown.
+    zeta, zeta_t : ndarray, shape (m,)
+        Modal coordinates and their rates.
+    A : ndarray, shape (3, 3)
+        Rotor axes → inertial axes (55).
+    """
+
+    omega: float
+    omega_t: float
+    zeta: np.ndarray
+    zeta_t: np.ndarray
+    A: np.ndarray
 
 
 class Equations(Protocol):
@@ -43,6 +61,12 @@ class Equations(Protocol):
     weight: np.ndarray
     is_coupled: bool
     has_body_force: bool
+
+    def at(self, t: float, q: ArrayLike, q_t: ArrayLike) -> Instant:
+        """Return an instant, split into its parts."""
+
+    def unbalance(self, zeta: np.ndarray) -> np.ndarray:
+        """``mχ* + S*ζ``, the bracket of (65)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,32 +171,10 @@ def terms_of(motion: Equations, t: float, q: ArrayLike, q_t: ArrayLike) -> Terms
     TypeError, ValueError
         For coordinates of a wrong number or kind.
     """
-    t = checks.number(t, "t", "s")
-    q = checks.vector(q, "q", size=motion.size)
-    q_t = checks.vector(q_t, "q_t", size=motion.size)
-    now = _Instant.of(motion, t, q, q_t)
+    now = motion.at(t, q, q_t)
     parts = [_invariants(motion), _translation(motion, now), _in_plane(motion, now)]
     parts += [_spin_and_modes(motion, now), _prescribed(motion, now, t), _gravity(motion, now)]
     return Terms(term for part in parts for term in part)
-
-
-@dataclass(frozen=True, eq=False)
-class _Instant:
-    omega: float
-    omega_t: float  # zero for a free spin, whose acceleration is unknown
-    zeta: np.ndarray
-    zeta_t: np.ndarray
-    A: np.ndarray
-
-    @classmethod
-    def of(cls, motion: Equations, t: float, q: np.ndarray, q_t: np.ndarray) -> _Instant:
-        form, place = motion.formulation, motion.translations.stop
-        theta, omega, omega_t = q[place : place + 1], q_t[place : place + 1], 0.0
-        if not form.has_spin:
-            theta, omega = form.spin.value(t), form.spin.rate(t)
-            omega_t = form.spin.acceleration(t)
-        A = motion.orientation @ SpinAxis(motion.invariants.direction).rotation(np.sum(theta))
-        return cls(float(np.sum(omega)), float(omega_t), q[motion.modes], q_t[motion.modes], A)
 
 
 def _invariants(motion: Equations) -> list[Term]:
@@ -199,9 +201,9 @@ def _invariants(motion: Equations) -> list[Term]:
     return terms if spin.K4 is None else [*terms, Term("K4", "", spin.K4, "stiffness per ω⁴")]
 
 
-def _translation(motion: Equations, now: _Instant) -> list[Term]:
+def _translation(motion: Equations, now: Instant) -> list[Term]:
     inv = motion.invariants
-    coupling, force = now.A @ _unbalance(motion, now), now.A @ _inertia_force(motion, now)
+    coupling, force = now.A @ motion.unbalance(now.zeta), now.A @ _inertia_force(motion, now)
     return [
         Term("A", "55", now.A, "rotor axes → inertial axes"),
         Term("M_tt", "41", inv.mass * np.eye(3), "mI"),
@@ -211,7 +213,7 @@ def _translation(motion: Equations, now: _Instant) -> list[Term]:
     ]
 
 
-def _in_plane(motion: Equations, now: _Instant) -> list[Term]:
+def _in_plane(motion: Equations, now: Instant) -> list[Term]:
     if motion.formulation.translation_count != 2:
         return []
     inv, A = motion.invariants, motion.free_directions.T @ now.A
@@ -221,12 +223,12 @@ def _in_plane(motion: Equations, now: _Instant) -> list[Term]:
         Term("A*", "91", A, "NᵀA"),
         Term("M*_tt", numbers, inv.mass * np.eye(2), "mI*"),
         Term("M*_tζ", numbers, A @ inv.S, "A* M_φψ"),
-        Term("M*_tθ", numbers, A @ _unbalance(motion, now), "A* (mχ* + M*_φψ ζ)"),
+        Term("M*_tθ", numbers, A @ motion.unbalance(now.zeta), "A* (mχ* + M*_φψ ζ)"),
         Term("Q*_t", _number(motion, "98", "94"), force, "centrifugal, Coriolis"),
     ]
 
 
-def _spin_and_modes(motion: Equations, now: _Instant) -> list[Term]:
+def _spin_and_modes(motion: Equations, now: Instant) -> list[Term]:
     """(84–87), the same as (74–77) contracted beforehand."""
     inv, spin = motion.invariants, motion.spin_terms
     omega, zeta, rate = now.omega, now.zeta, now.zeta_t
@@ -237,10 +239,6 @@ def _spin_and_modes(motion: Equations, now: _Instant) -> list[Term]:
         inertia, coupling, torque = inv.Theta, inv.g, 0.5 * torque
     else:
         torque -= rate @ (spin.B @ rate)
-    if spin.K4 is not None:
-        frozen = motion.formulation.has_frozen_spin
-        torque += (1.0 if frozen else 4.0) * omega**3 * zeta @ (spin.K4 @ rate)
-        inertia -= 0.0 if frozen else 6.0 * omega**2 * zeta @ (spin.K4 @ zeta)
     force = spin.load(omega) - spin.stiffness(omega) @ zeta - spin.damping(omega) @ rate
     return [
         Term("M_ζζ", _number(motion, "42"), inv.M, "mass matrix"),
@@ -251,7 +249,7 @@ def _spin_and_modes(motion: Equations, now: _Instant) -> list[Term]:
     ]
 
 
-def _prescribed(motion: Equations, now: _Instant, t: float) -> list[Term]:
+def _prescribed(motion: Equations, now: Instant, t: float) -> list[Term]:
     """(104), (105) of the full model, (108), (109) of component modes."""
     inv, spin, form = motion.invariants, motion.spin_terms, motion.formulation
     if form.has_spin:
@@ -270,13 +268,13 @@ def _prescribed(motion: Equations, now: _Instant, t: float) -> list[Term]:
     ]
 
 
-def _gravity(motion: Equations, now: _Instant) -> list[Term]:
+def _gravity(motion: Equations, now: Instant) -> list[Term]:
     inv, g = motion.invariants, motion.gravity
     local = now.A.T @ g
     terms = [
         Term("f_g", "110–114", inv.S.T @ local, "gravity on the modal coordinates"),
         Term("f_t,g", "", inv.mass * g, "gravity on the translation"),
-        Term("m_θ,g", "", float(_unbalance(motion, now) @ local), "gravity on the spin"),
+        Term("m_θ,g", "", float(motion.unbalance(now.zeta) @ local), "gravity on the spin"),
     ]
     if inv.is_sparse:
         terms += [
@@ -286,13 +284,9 @@ def _gravity(motion: Equations, now: _Instant) -> list[Term]:
     return terms
 
 
-def _unbalance(motion: Equations, now: _Instant) -> np.ndarray:
-    return motion.static_unbalance + motion.S1 @ now.zeta
-
-
-def _inertia_force(motion: Equations, now: _Instant) -> np.ndarray:
+def _inertia_force(motion: Equations, now: Instant) -> np.ndarray:
     """Bracket of (66), its sign included, rotor axes."""
-    centrifugal = skew(motion.invariants.direction) @ _unbalance(motion, now)
+    centrifugal = skew(motion.invariants.direction) @ motion.unbalance(now.zeta)
     return -(now.omega**2) * centrifugal - 2.0 * now.omega * (motion.S1 @ now.zeta_t)
 
 

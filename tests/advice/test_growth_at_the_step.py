@@ -13,7 +13,7 @@ from exudyn_rotor import (
     recommended_settings,
     stability,
 )
-from exudyn_rotor.advice.candidate import candidate
+from exudyn_rotor.advice.candidate import Candidate
 from exudyn_rotor.advice.request import Request
 from exudyn_rotor.advice.step_size import choose_step
 
@@ -56,6 +56,6 @@ def test_growth_of_close_whirls_is_right_at_the_proposed_step():
     support = Support("all", stiffness, damping, **tilting)
     growth = stability(rotor, [SPEED], supports=support).growth[0]
     request = Request.of(SPEED, None, 0.1)
-    step = choose_step(candidate(rotor, None, support, None, None), request, False).size
+    step = choose_step(Candidate.of(rotor, support), request).size
     assert run(rotor, support, request.step) > 0.5  # right for periods
     assert run(rotor, support, step) == pytest.approx(growth, rel=0.5)

@@ -129,9 +129,3 @@ def test_slow_whirl_in_space_is_seen_from_the_rotor_frame(rings, ratio):
     seen = abs(whirl - speed)
     expected = PERIOD_ERROR * (seen * period / steps) ** 2 * seen / whirl
     assert check_run(body, warn=False)["step"].value == pytest.approx(expected, rel=4 / steps)
-
-
-# ------------------------------------------------------------------ divergence
-
-
-# ------------------------------------------------------------------ loads

@@ -70,7 +70,6 @@ def test_quiet_run_passes_and_says_so(run, recwarn):
     assert "FAILS" not in str(check)
     assert not recwarn.list
     assert check["unresisted load"].value < 1e-5
-    assert check["locked"].value < 1e-9
 
 
 def test_run_of_few_instants_is_told(reduced):
@@ -79,8 +78,8 @@ def test_run_of_few_instants_is_told(reduced):
     mbs.Assemble()
     check_run(body)  # before a run there is nothing to miss
     solve(mbs, 400, 0.04, period=0.01)
-    with pytest.warns(AssumptionWarning, match=r"only 5 instants are known: lower solution"):
-        check = check_run(body, limits={"residual": 1.0})
+    with pytest.warns(AssumptionWarning, match=r"only 5 instants are known: .* and lower solution"):
+        check = check_run(body, accuracy=0.5)
     assert check.instants == 5
     assert not check.complete
     assert check.ok
@@ -125,7 +124,6 @@ def test_every_formulation_keeps_all_loads(reduced, translation, locking, marker
     solve(mbs, 200, 0.02)
     check = check_run(body, warn=False)
     assert check["unresisted load"].value == 0.0
-    assert check["locked"].value < 1e-9
 
 
 def test_truncated_bending_shows_in_the_highest_modes(reduced):
@@ -171,9 +169,7 @@ def _on_coordinate(index, size):
     ("translation", "index", "size", "lost"),
     [
         ("in-plane", 2, 100.0, True),
-        ("in-plane", 0, 100.0, False),
         ("none", 0, 100.0, True),
-        ("free", 2, 100.0, False),
         ("free", 3, 20.0, True),
         ("free", 5, 2.0, False),
     ],

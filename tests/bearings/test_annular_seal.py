@@ -5,8 +5,7 @@ from dataclasses import replace
 import exudyn as exu
 import numpy as np
 import pytest
-from apart import distance
-from test_supports_in_scenes import HELD, SPEED, rings
+from test_supports_in_scenes import SPEED, rings
 
 from exudyn_rotor import (
     AnnularSeal,
@@ -78,16 +77,6 @@ def test_without_friction_nothing_centres_and_a_seal_carries_no_load():
     assert smooth.coefficients(0.0)[0][0, 0] < 0.1 * seal().coefficients(0.0)[0][0, 0]
     assert smooth.axial_velocity(0.0) == pytest.approx(np.sqrt(2.0 * 1200.0 / 1.1), rel=0.01)
     np.testing.assert_array_equal(seal().equilibrium(10.0, [0.0, -100.0]), [0.0, 0.0])
-
-
-def test_scene_and_list_have_the_same_exponents():
-    reduced, supports = rings(heavy=0.0), [seal(), HELD]
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, reduced, spin=SPEED)
-    add_supports(body, supports)
-    mbs.Assemble()
-    found = linear_model(mbs, body=body, about="given")
-    assert distance(found, linear_model(reduced, supports=supports), SPEED) < 1e-7
 
 
 @pytest.mark.parametrize(

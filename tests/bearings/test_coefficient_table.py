@@ -34,6 +34,24 @@ def test_points_are_met_and_nothing_overshoots():
     assert one.matrices(200.0)[0] == pytest.approx(made.matrices(200.0, 55.0)[0], rel=1e-12)
 
 
+def test_tables_and_matrices_are_told_apart():
+    """Lists in a tuple are a table, nested lists a matrix, three tuples of three a matrix."""
+    for given, entry, expected in (
+        (([0.0, 10.0], [1.0, 3.0]), (0, 0), 2.0),
+        ([[0.0, 1e5], [-1e5, 0.0]], (1, 0), -1e5),
+        (((1.0, 2.0, 3.0), (4.0, 5.0, 6.0), (7.0, 8.0, 9.0)), (1, 2), 6.0),
+    ):
+        assert Support("left", given).matrices(5.0)[0][entry] == expected
+    for wrong, match in (
+        (((0.0, 1e5), (-1e5, 0.0)), "may be a matrix or a table"),
+        (([0.0, 1.0], [1.0]), "its table need 2 numbers"),
+        (np.eye(4), "needs a number or one of"),
+        ([[1.0, 2.0], [3.0]], "stiffness: needs"),
+    ):
+        with pytest.raises((TypeError, ValueError), match=match):
+            Support("left", wrong)
+
+
 def text(separator, header, rows):
     return "\n".join(separator.join(map(str, row)) for row in (header, *rows))
 

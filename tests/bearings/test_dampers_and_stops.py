@@ -4,7 +4,6 @@ import exudyn as exu
 import numpy as np
 import pytest
 from point_rotors import ring_rotor
-from test_supports_in_scenes import rings
 
 from exudyn_rotor import (
     ClearanceStop,
@@ -12,15 +11,8 @@ from exudyn_rotor import (
     Support,
     add_rotor,
     add_supports,
-    recommended_settings,
     steady_state,
 )
-
-ENDS = ("left", "right")
-
-
-DISPLACEMENT = exu.OutputVariableType.Displacement
-
 
 FILM = {"radius": 0.06, "length": 0.02, "clearance": 1.5e-4, "viscosity": 0.01}
 STOP = {"radius": 0.05, "clearance": 1e-4, "stiffness": 4e6, "friction": 0.2}
@@ -50,20 +42,6 @@ def test_force_on_a_circular_centred_orbit(ratio):
     K, D = one.coefficients(whirl)
     np.testing.assert_allclose(K * ratio * c, -expected[0] * np.eye(2), rtol=1e-12)
     np.testing.assert_allclose(D * whirl * ratio * c, -expected[1] * np.eye(2), rtol=1e-12)
-
-
-def test_dampers_beside_springs_leave_them_the_weight():
-    """The rotor sags by its weight over both springs' stiffness, and stays there."""
-    rotor = rings(heavy=0.0, modes=0)  # some of equal modes would stretch unevenly
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor, spin=50.0, translation="none", gravity=[0.0, -9.81, 0.0])
-    for name in ("left", "right"):
-        add_supports(body, [Support(name, 2e6 * np.eye(3), 100.0), damper(name)])
-    mbs.Assemble()
-    sag = 0.5 * rotor.invariants.mass * 9.81 / 2e6
-    for name in ("left", "right"):
-        moved = steady_state(body).interface_motion(name)
-        np.testing.assert_allclose(moved[:2], [0.0, -sag], atol=1e-9 * sag)
 
 
 def test_stop_pushes_back_and_rubs():
@@ -147,32 +125,3 @@ def test_refused_input():
             make(**changes)
     with pytest.raises(ValueError, match="the journal would touch"):
         damper().force([1.5e-4, 0.0], [0.0, 0.0])
-
-
-def test_uneven_rotor_that_lifts_off_its_stop_starts_in_its_steady_motion():
-    """A revolution later it is where it began, but for the error of the steps at kinks."""
-    speed, turn = 300.0, 2.0 * np.pi / 300.0
-    pair = [Support(name, 1e6, 1e3) for name in ("left", "right")]
-    touched = [stop(name, stiffness=1e7, clearance=1e-5) for name in ("left", "right")]
-
-    def places():
-        return np.array([mbs.GetMarkerOutput(body.marker(n), DISPLACEMENT) for n in ENDS])
-
-    mbs, body = leaning([*pair, *touched], speed, excess=0.01)
-    with pytest.warns(UserWarning, match="of the motion to higher harmonics"):
-        steady = steady_state(body)
-    around = [steady.interface_motion("right", a)[:2] for a in np.arange(0.0, 6.2, 0.1)]
-    gaps = np.linalg.norm(around, axis=1) - 1e-5
-    assert gaps.min() < 0.0 < gaps.max()
-    away = []
-    for steps in (100, 200):
-        mbs, body = leaning([*pair, *touched], speed, excess=0.01)
-        body.start_from(steady.state())
-        mbs.Assemble()
-        begun = places()
-        settings = recommended_settings(turn, turn / steps, accuracy=1e-7)
-        settings.timeIntegration.verboseMode = 0
-        settings.solution.file.write = False
-        mbs.SolveDynamic(settings)
-        away.append(np.abs(places() - begun).max() / np.ptp(around, axis=0).max())
-    assert away[1] < 0.5 * away[0] < 0.005

@@ -1,24 +1,17 @@
 """Journal bearings: film, equilibrium, coefficients, in scenes and in linear analyses."""
 
-import exudyn as exu
 import numpy as np
 import pytest
 from point_rotors import ring_rotor
-from scipy.integrate import quad
 
 from exudyn_rotor import (
     JournalBearing,
     OilFilm,
     ShortJournalBearing,
-    add_rotor,
-    add_supports,
     bearing_loads,
     grooved_pads,
-    linear_model,
-    recommended_settings,
     stability,
     stability_threshold,
-    steady_state,
 )
 from exudyn_rotor.bearings.support import NoCoefficientsError
 
@@ -28,27 +21,6 @@ SPEED = 1500.0 * np.pi / 30.0
 
 def bearing(load=(0.0, -525.0), interface="left", **changes):
     return ShortJournalBearing(interface=interface, load=load, **(SIZE | changes))
-
-
-@pytest.mark.parametrize("speed", [SPEED, -SPEED])
-def test_power_that_goes_into_a_short_film_is_dissipated(speed):
-    """Shear μ (RΩ)²/h all around, and flow h³ (∂p/∂z)²/12 μ where the film carries."""
-    place, velocity = np.array([5e-5, -6e-5]), np.array([5e-3, 4e-3])
-    radius, length, c, mu = (SIZE[n] for n in ("radius", "length", "clearance", "viscosity"))
-    (x, y), (vx, vy) = place, velocity
-
-    def dissipated(angle):
-        h = c - x * np.cos(angle) - y * np.sin(angle)
-        slope = x * np.sin(angle) - y * np.cos(angle)
-        fed = 0.5 * speed * slope - vx * np.cos(angle) - vy * np.sin(angle)
-        flow = mu * length**3 / h**3 * min(fed, 0.0) ** 2  # ∂p/∂z = 12 μ fed z/h³
-        return radius * (mu * length * (radius * speed) ** 2 / h + flow)
-
-    start = np.arctan2(vy - 0.5 * speed * x, vx + 0.5 * speed * y) - np.pi / 2.0
-    halves = (start, start + np.pi), (start + np.pi, start + 2.0 * np.pi)
-    expected = sum(quad(dissipated, *each, epsrel=1e-11)[0] for each in halves)
-    *force, torque = bearing().law_with_torque(*place, *velocity, 0.0, speed)
-    assert -np.dot(force, velocity) - torque * speed == pytest.approx(expected, rel=1e-9)
 
 
 def test_equilibrium_and_coefficients_of_a_published_bearing():
@@ -139,40 +111,6 @@ def test_stability_limit_of_a_rigid_rotor_is_the_published_one():
     assert limit_of_a_rigid_rotor(0.7555) > 0.0 > limit_of_a_rigid_rotor(0.7565)
 
 
-def scene(rotor, bearings, **options):
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor, **({"gravity": GRAVITY} | options))
-    added = add_supports(body, bearings)
-    mbs.Assemble()
-    return mbs, body, added
-
-
-def test_scene_and_linear_rotor_agree():
-    rotor = rigid_rotor()
-    bearings = journals(rotor)
-    mbs, body, _ = scene(rotor, bearings, spin=SPEED)
-    growths = [
-        stability(target, [SPEED, 2.0 * SPEED]).growth
-        for target in (linear_model(mbs, body=body), linear_model(rotor, supports=bearings))
-    ]
-    np.testing.assert_allclose(*growths, rtol=1e-6)
-
-
-def test_a_run_begins_in_the_equilibrium_and_stays_there():
-    rotor = rigid_rotor()
-    bearings = journals(rotor)
-    mbs, body, added = scene(rotor, bearings, spin=SPEED)
-    body.start_from(steady_state(body).state())
-    settings = recommended_settings(end_time=0.05, step=1e-4)
-    settings.solution.file.write = False
-    mbs.SolveDynamic(settings)
-    for bearing, connector in zip(bearings, added, strict=True):
-        place, _, force = connector.values()
-        apart = np.abs(place[:2] - bearing.equilibrium(SPEED)).max()
-        assert apart < 1e-5 * SIZE["clearance"]
-        np.testing.assert_allclose(-force[:2], bearing.load, atol=1e-3 * 525.0)
-
-
 def test_refused_input():
     for changes, match in (
         ({"clearance": -1e-4}, "clearance: needs a finite number"),
@@ -191,9 +129,9 @@ def test_refused_input():
     rotor = rigid_rotor()
     with pytest.raises(ValueError, match="'left': linear analyses need its static load"):
         stability(rotor, [SPEED], supports=[bearing(load=None)])
-    nothing = r"bearing at 'left': at 0 rad/s its film carries nothing; .* carries from 1 rad/s on"
+    nothing = "bearing at 'left': at 0 rad/s its film carries nothing"
     with pytest.raises(NoCoefficientsError, match=nothing):
-        journals(rotor)[0].linearised().parts(0.0)
+        journals(rotor)[0].linearised().check_range(0.0)
     with pytest.raises(ValueError, match=nothing):
         stability(rotor, [0.0], supports=journals(rotor))
 

@@ -67,7 +67,9 @@ def test_tangent_is_the_derivative_of_the_force():
     for i, move in enumerate(step * np.eye(2)):
         up, down = (one.law(*(place + n * move), 0.0, 0.0, 0.7, 0.0) for n in (1, -1))
         found[:, i] = (np.array(down) - up) / (2.0 * step)
-    np.testing.assert_allclose(found, one._tangent(place, 0.7), rtol=1e-5, atol=1.0)
+    np.testing.assert_allclose(
+        found, one.slopes(*place, 0.0, 0.0, 0.7, 0.0)[0], rtol=1e-5, atol=1.0
+    )
     assert one.law(0.0, 0.0, 1.0, -2.0, 0.0, 0.0) == (-30.0, 60.0)
     K, D = one.coefficients(100.0)
     assert abs(K[0, 1]) < 1e-6 * K[1, 1]

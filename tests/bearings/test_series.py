@@ -15,7 +15,6 @@ from exudyn_rotor import (
     add_rotor,
     add_supports,
     campbell,
-    critical_speed_map,
     critical_speeds,
     harmonic_response,
     linear_model,
@@ -67,15 +66,6 @@ def test_a_ring_is_a_body_between_two_supports():
         ).phasor("left", "n2"),
     ):
         assert analysis(model) == pytest.approx(analysis(on_bodies()), rel=1e-6, abs=1e-12)
-
-
-def test_a_map_adds_springs_beside_rings():
-    given = {"supports": in_series(), "max_speed": 4e3, "accuracy": None}
-    found = critical_speed_map(rotor(), ["left"], [1e6, 1e7], **given)
-    spring = Support("left", 1e7)
-    alone = critical_speeds(rotor(), **given | {"supports": [*in_series(), spring]}).speeds
-    row = found.speeds[1]
-    assert np.sort(row[np.isfinite(row)]) == pytest.approx(np.sort(alone), rel=1e-6)
 
 
 def test_static_deflection_is_that_of_springs_in_series():

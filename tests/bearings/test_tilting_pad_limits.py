@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from exudyn_rotor import OilFilm, Pad, TiltingPadBearing, grooved_pads
+from exudyn_rotor import OilFilm, Pad, TiltingPadBearing
 
 RADIUS, CLEARANCE, VISCOSITY, SPEED = 0.05, 1e-4, 0.02, 300.0
 
@@ -55,18 +55,6 @@ def test_a_narrow_pad_is_a_plane_slider(pivot, sense):
     assert place[0] == pytest.approx(sunk * CLEARANCE, rel=2e-3)
     tilt = slider.tilts(sense * SPEED)[-1]  # pads are kept by their start
     assert abs(tilt) == pytest.approx(ratio * thin / (arc * RADIUS), rel=1e-2)
-    stiffness = slider._state(sense * SPEED, None).impedance(0.0).real
+    stiffness = slider._state(sense * SPEED, slider.load).impedance(0.0).real
     expected = 2.0 * force / at_pivot + 2.0 * behind / ((1.0 + sunk) * CLEARANCE)
     assert stiffness[0, 0] == pytest.approx(expected, rel=2e-3)
-
-
-def test_a_light_load_goes_with_the_root_of_the_approach():
-    """Of a pad without preload about its middle: the approach goes with the square of the load.
-
-    By symmetry the film's force is odd in the tilt and the moment even.
-    """
-    pads = grooved_pads(CLEARANCE, np.radians([45.0, 135.0, 225.0, 315.0]), 0.17)
-    sunk = [bearing(pads, [load, 0.0]).equilibrium(SPEED)[0] for load in (2.0, 1.0)]
-    assert sunk[0] < 1e-3 * CLEARANCE
-    # the next term is in proportion to the tilt, √ε
-    assert sunk[0] / sunk[1] == pytest.approx(4.0, rel=0.02)

@@ -43,7 +43,11 @@ LEFT_OUT = {
 }
 
 # methods that scenes call in every step, with the numbers of the equations
-OF_SCENES = ("slopes", "law_of_small_motions", "coupling")
+OF_SCENES = (
+    *("law", "law_with_torque", "law_along", "slopes", "clearance_along", "coupling"),
+    *("solved", "beside", "reach_along", "coefficients_at"),
+    *("forces", "tangent", "transmitted", "energy", "loss", "check_places"),
+)
 
 
 def public_calls():
@@ -236,15 +240,15 @@ def wrong_values(annotation):
 # by label: arguments of which such a value is right, by name or by call
 RIGHT = {
     "negative": """
-        angle current end_speed flank force fork_angle frequency helix_angle initial_angle
+        angle current end_speed flank force frequency helix_angle initial_angle
         initial_speed line_angle load no_load_speed place ring_speed speed spin start_speed
         synchronous_speed
-        t time turn_direction value HarmonicResponse.rates.order LimitedPower.stall_torque
-        LinearActuator.place_under.offset Pad.start PointMass.mass UnbalanceResponse.rates.order""",
+        t time value HarmonicResponse.rates.order LimitedPower.stall_torque
+        Pad.start PointMass.mass UnbalanceResponse.rates.order""",
     "unknown": "at interface label name sensor title",
     "number": "Support.stiffness Support.damping tilt_stiffness tilt_damping",
     "empty": """
-        eulerParametersRef rotationMatrixRef triangles variation BaseRecord.at.time
+        eulerParametersRef rotationMatrixRef triangles variation
         BaseRecord.integrals.times PIDController.transfer.frequencies Prestress.hub
         PeriodicResponse.displacement.time
         Spectra.plot.orders grooved_pads.grooves
@@ -263,7 +267,7 @@ WRONG = {
         prestress.speed sensitivity.speed stability_level_one.speed stability_threshold.speed
         standard_unbalances.speed""",
     "unknown": """
-        add_drive.at add_interface_sensor.interface add_sensor.name add_to.interface
+        add_drive.at add_interface_sensor.interface add_sensor.name
         connect_rotors.at interface_motion.interface marker.interface marker.name motion.name
         stability_level_one.at""",
     "text": """

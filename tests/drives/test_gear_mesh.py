@@ -74,7 +74,7 @@ def test_forces_are_what_energy_and_loss_say(backlash):
     gears = mesh(
         teeth=[20, 32], variation=[0.2, 0.1], backlash=backlash, helix_angle=0.2, damping=30.0
     )
-    law, rng = gears.law, np.random.default_rng(3)
+    law, rng = gears, np.random.default_rng(3)
     for _ in range(20):
         x, x_t = 2e-4 * rng.normal(size=12), rng.normal(size=12)
         x[5] = 0.1 * rng.normal()

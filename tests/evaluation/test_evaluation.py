@@ -3,21 +3,17 @@
 import numpy as np
 import pytest
 from matplotlib import pyplot
-from models import disc_with_craig_bampton_modes
 from point_rotors import ring_rotor
 
 from exudyn_rotor import (
-    BaseAcceleration,
     SolidRotor,
     StabilityLevelOne,
     Support,
     Unbalance,
     UnbalanceResponse,
     anticipated_cross_coupling,
-    bearing_loads,
     bearing_masses,
     campbell,
-    harmonic_response,
     separation_margins,
     stability,
     stability_level_one,
@@ -109,7 +105,7 @@ def test_one_side_of_a_peak_is_doubled_and_none_is_unknown():
         bump = separation_margins(sized(speeds, 1 - 0.1 * ((speeds - 105) / 20) ** 2), limits)
     assert np.isnan(bump.amplification).tolist() == [True]
     assert bump.accepted.tolist() == [False]
-    assert "nan" in bump.table()
+    assert "no fall to 0.707" in bump.table()
 
 
 def test_two_peaks_a_valley_and_no_peak():
@@ -166,19 +162,6 @@ def test_bearings_share_the_mass_by_their_levers(axis):
 # ------------------------------------------------------------------ stability of level I
 
 
-def test_the_ground_that_rises_by_g_loads_bearings_as_their_weight():
-    """The journals go down, by the load of each bearing over its stiffness."""
-    rotor = disc_with_craig_bampton_modes()
-    stiffness = {"left": 1e6, "right": 2e6}
-    supports = [Support(name, k, damping=10.0) for name, k in stiffness.items()]
-    weight = BaseAcceleration([0.0, 9.81])
-    response = harmonic_response(rotor, [0.0], weight, supports=supports, speed=50.0)
-    loads = bearing_loads(rotor, list(stiffness), -9.81 * rotor.axis.plane[:, 1])
-    for (name, k), load in zip(stiffness.items(), loads, strict=True):
-        moved = [response.phasor(name, n)[0].real for n in ("n1", "n2")]
-        np.testing.assert_allclose(moved, load / k, atol=1e-8 * abs(load[1]) / k)
-
-
 def test_anticipated_cross_coupling_of_the_printed_formula():
     """q = P·3·9.55·(ρd/ρs)/(D H N) in kN/mm with W, mm and rpm; the constant is 30/π."""
     power, diameter, width, rpm, ratio = 2e6, 400.0, 15.0, 9000.0, 1.3
@@ -220,19 +203,18 @@ def test_the_forward_mode_is_followed_and_unstable_beyond_the_threshold():
     rotor = ring_rotor(0.3, 0.2, 10.0).with_interface("left", range(5))
     rotor = rotor.with_interface("right", range(5, 10)).reduce(0)
     held = [Support("left", 1e5, damping=40.0), Support("right", 4e5, damping=40.0)]
-    found = stability_level_one(rotor, 300.0, 4e3, "left", supports=held)
     modes = campbell(rotor, 300.0, supports=held)
     forward = modes.frequencies_inertial[modes.whirl == "forward"].min()
     backward = modes.frequencies_inertial[modes.whirl == "backward"].min()
     assert backward < 0.9 * forward
-    assert found.frequencies[0] == pytest.approx(forward, rel=1e-9)
-    for share, stable in ((0.999, True), (1.001, False)):
-        q = share * found.threshold
-        coupled = [*held, Support("left", [[0.0, q], [-q, 0.0]])]
-        assert stability(rotor, 300.0, supports=coupled).stable.tolist() == [stable]
-    # at the other end the second forward mode, 389 rad/s, loses its damping first
-    with pytest.warns(UserWarning, match=r"another mode, at 61\.\d+ Hz, is unstable from Q"):
-        stability_level_one(rotor, 300.0, 4e3, "right", supports=held)
+    # at the right end the second forward mode, 389 rad/s, loses its damping first
+    for place in ("left", "right"):
+        found = stability_level_one(rotor, 300.0, 4e3, place, supports=held)
+        assert found.frequencies[0] == pytest.approx(forward, rel=1e-9)
+        for share, stable in ((0.999, True), (1.001, False)):
+            q = share * found.threshold
+            coupled = [*held, Support(place, [[0.0, q], [-q, 0.0]])]
+            assert stability(rotor, 300.0, supports=coupled).stable.tolist() == [stable]
 
 
 def test_when_level_two_is_required():

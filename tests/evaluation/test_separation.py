@@ -68,23 +68,3 @@ def test_ripple_on_a_flank_does_not_end_it():
         found = separation_margins(sized(speeds, size), (150.0, 160.0))
     assert len(found.peaks) == 1
     np.testing.assert_allclose(found.half_power[0], [95.0, 105.0], atol=0.05)
-
-
-def test_coarse_peaks_are_told_once():
-    speeds = np.linspace(0.0, 300.0, 31)
-    size = 1 / np.hypot(1, (speeds - 102) / 2) + 1 / np.hypot(1, (speeds - 203) / 2)
-    with pytest.warns(UserWarning, match="too far apart") as told:
-        separation_margins(sized(speeds, size), (150.0, 160.0))
-    assert [str(one.message).split(";")[0] for one in told] == [
-        "a: the points around the peak at 100 rad/s (and 1 more) are too far apart to give its "
-        "size and width"
-    ]
-
-
-def test_speeds_without_a_motion_are_left_out():
-    speeds = np.linspace(60.0, 140.0, 161)
-    size = 1 / np.hypot(1, (speeds - 100) / 5)
-    size[speeds > 130.0] = np.nan
-    with pytest.warns(UserWarning, match="rad/s count"):
-        found = separation_margins(sized(speeds, size), (150.0, 160.0))
-    np.testing.assert_allclose(found.half_power[0], [95.0, 105.0], atol=0.05)

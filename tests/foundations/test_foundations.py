@@ -25,7 +25,7 @@ from exudyn_rotor import (
     linear_model,
     unbalance_response,
 )
-from exudyn_rotor.reduction.driven import without_spin
+from exudyn_rotor.reduction.selection import without_spin
 
 SPEED = 200.0
 POINTS = {"left": [0.0, 0.0, -0.15], "right": [0.0, 0.0, 0.15]}

@@ -1,33 +1,22 @@
 """Magnetic bearings on foundations, against a state space written here and against scenes."""
 
-import apart as models
-import exudyn as exu
 import numpy as np
-import pytest
 import scipy.linalg as la
-from test_foundations import BLOCK, two_masses
+from test_foundations import two_masses
 from test_magnetic_bearing import (
     DELAYED,
-    MAGNETS,
     PD,
-    PID,
     apart,
-    bearing,
     closed_loop,
     pair,
 )
-from test_supports_in_scenes import SKEW, SPEED, TO_X, rings
 
 from exudyn_rotor import (
     Support,
-    add_foundation,
-    add_rotor,
-    add_supports,
     linear_model,
     sensitivity,
     stability,
 )
-from exudyn_rotor.reduction.driven import without_spin
 
 AXIAL = Support("right", np.diag([0.0, 0.0, 5e5]), 0.0, np.diag([0.0, 0.0, 4e3]))
 OWN = (1.5e6, 4e6)
@@ -71,35 +60,3 @@ def test_sensitivity_is_that_of_the_state_space():
     for w, values in zip(frequencies, found.values[:, [0, -1]].T, strict=True):
         sides = [seen @ la.solve(1j * w * np.eye(len(A)) - X, drive) for X in (A, A.conj())]
         np.testing.assert_allclose(values, 1.0 + 0.5 * sum(sides), rtol=1e-8)
-
-
-def in_scene(rotor, supports, block=BLOCK, rotation=None, **options):
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor, rotation=rotation, **options)
-    add_supports(body, supports, add_foundation(mbs, block, rotation=rotation))
-    mbs.Assemble()
-    return linear_model(mbs, body=body, about="given")
-
-
-KINDS = {
-    "elsewhere, turned": [bearing(angle=0.5, sensor="right"), bearing("right", angle=9.0)],
-    "magnets and a spring": [
-        bearing(actuator=MAGNETS, controller=PD),
-        Support("right", [[2e6, 5e5], [-5e5, 1e6]], 400.0),
-    ],
-    "in both frames": [
-        bearing(controller=PID),
-        Support("right", [[2e6, 0.0], [0.0, 1e6]], frame="rotor"),
-    ],
-}
-
-
-@pytest.mark.parametrize(("turn", "rotation"), [(TO_X, None), (SKEW, TO_X)], ids=["x", "skew"])
-@pytest.mark.parametrize("kind", KINDS)
-def test_scene_and_list_have_the_same_exponents(kind, turn, rotation):
-    rotor, supports = rings(turn, heavy=0.0), [*KINDS[kind], AXIAL]
-    block = (BLOCK if turn is None else BLOCK.turned(turn)).modal()
-    options = {"spin": SPEED, "translation": "none"}
-    found = in_scene(rotor, supports, block, rotation, **options)
-    in_list = linear_model(without_spin(rotor), supports=supports, foundation=block)
-    assert models.apart(found, in_list, SPEED) < 1e-6

@@ -7,9 +7,7 @@ import pytest
 from models import centered_disc
 from point_rotors import ring_rotor
 
-from exudyn_rotor import RotorTrain, ShortJournalBearing, Support, campbell
-
-AXES = ["x", "y", "z"]
+from exudyn_rotor import RotorTrain, Support, campbell
 
 
 def disc(modes=12):
@@ -58,17 +56,6 @@ def test_uneven_bearings_over_fifty_speeds_take_no_time_and_agree_with_a_train()
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("speed", [2.0, 5.0, 10.0])
-def test_slow_rotors_on_uneven_bearings(speed):
-    supports = [Support(n, np.diag([2e7, 4e7]), 400.0) for n in ("left", "right")]
-    slow = campbell(disc(), [speed], supports=supports, accuracy=None)
-    rest = campbell(disc(), [0.0], supports=supports, accuracy=None)
-    few = slice(2, 8)
-    np.testing.assert_allclose(
-        slow.frequencies_inertial[0, few], rest.frequencies_inertial[0, few], rtol=2e-2
-    )
-
-
 def test_spin_stands_once_and_overdamped_motions_stand_in_the_list():
     supports = [Support(n, np.diag([1e6, 2e6]), 1.5e5) for n in ("left", "right")]
     found = campbell(disc(6), [31.4], supports=supports, accuracy=None)
@@ -91,31 +78,6 @@ def test_speeds_without_values_are_nan_with_one_warning():
     assert found.plot().get_legend() is not None
 
 
-def test_films_at_rest_leave_the_other_speeds():
-    bearings = [
-        ShortJournalBearing(interface=n, load=(0.0, -120.0), radius=0.02, length=0.02,
-                            clearance=4e-5, viscosity=0.01)
-        for n in ("left", "right")
-    ]  # fmt: skip
-    with pytest.warns(UserWarning, match="no values at 0 "):
-        found = campbell(disc(), [0.0, 100.0, 300.0], supports=bearings, accuracy=None)
-    assert np.all(np.isnan(found.growth[0]))
-    assert np.all(np.isfinite(found.growth[1:]))
-
-
-@pytest.mark.parametrize("axis", AXES)
-def test_whirl_of_a_round_rotor(axis):
-    nodes = {"x": [0, 1, 0], "y": [0, 0, 1], "z": [1, 0, 0]}
-    assert axis in nodes
-    rotor, *_ = rigid()
-    supports = [Support(n, 1e6, 50.0) for n in ("left", "right")]
-    found = campbell(rotor, [300.0], supports=supports, accuracy=None, modes=6)
-    moving = found.frequencies_inertial[0] > 1.0
-    words = found.whirl[0][moving].tolist()
-    assert words.count("forward") == words.count("backward") == 2
-    assert np.all(found.nodal_diameters[0][moving] == 1)
-
-
 def test_lines_follow_their_modes_through_a_crossing():
     supports = [Support(n, 2e7, 200.0) for n in ("left", "right")]
     found = campbell(disc(), np.linspace(0.0, 2000.0, 41), supports=supports, accuracy=None)
@@ -124,11 +86,3 @@ def test_lines_follow_their_modes_through_a_crossing():
     steps = np.abs(np.diff(tracked.frequencies_inertial[:, lateral], axis=0))
     assert steps.max() < 2.1 * 50.0 + 1e-2 * tracked.frequencies_inertial.max()
     assert tracked.continued[:, lateral].mean() > 0.97
-
-
-def test_more_modes_change_the_estimated_error_to_what_it_is():
-    supports = [Support(n, 2e8, 200.0) for n in ("left", "right")]
-    few = campbell(disc(4), [200.0], supports=supports, accuracy=0.9, modes=4)
-    many = campbell(disc(40), [200.0], supports=supports, accuracy=None, modes=4)
-    errors = few.frequencies_inertial[0, 2:] / many.frequencies_inertial[0, 2:] - 1.0
-    np.testing.assert_allclose(few.basis_errors[0, 2:], errors, rtol=0.5)

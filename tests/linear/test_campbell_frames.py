@@ -2,14 +2,12 @@
 
 import numpy as np
 import pytest
-from bodies import BODIES, SHAFT, moments, point_mass, rings
+from bodies import BODIES, moments, point_mass, rings
 from models import two_masses
 from point_rotors import random_rotor
 
 from exudyn_rotor import SolidRotor, campbell
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.modal.campbell import Campbell
-from exudyn_rotor.results import load_result
 
 HERTZ = 2.0 * np.pi
 # ------------------------------------------------------------------ closed forms
@@ -56,25 +54,6 @@ def test_point_mass_in_both_frames(reduced):
 
 
 @BODIES
-@pytest.mark.parametrize("speed", [0.0, 40.0, 400.0, 4000.0])
-def test_conical_modes_of_a_rigid_rotor(shape, speed):
-    """``I_t λ² − i I_p Ω λ + k = 0`` in the inertial frame; one root forward, one backward."""
-    polar, transverse = moments(shape)
-    supports = [Support("all", 1e6 * np.eye(3), tilt_stiffness=np.diag([1e4, 1e4, 1e9]))]
-    result = campbell(rings(shape).reduce(0), speed, supports=supports)
-    roots = np.roots([-transverse, polar * speed, 1e4])
-    for root in roots:
-        column = np.argmin(np.abs(result.frequencies_inertial[0] / abs(root) - 1.0))
-        assert result.frequencies_inertial[0, column] == pytest.approx(abs(root), rel=1e-9)
-        found = {
-            word
-            for word, f in zip(result.whirl[0], result.frequencies_inertial[0], strict=True)
-            if abs(f / abs(root) - 1.0) < 1e-9
-        }
-        assert ("forward" if root > 0.0 else "backward") in found
-
-
-@BODIES
 def test_conical_modes_of_a_stiff_rotor_and_the_papers_terms(shape):
     """Elasticity adds about (ω/ω_elastic)² = 1e-7 with ω_elastic = 9e3 rad/s."""
     polar, transverse = moments(shape)
@@ -114,9 +93,6 @@ def test_damping_is_that_of_the_inertial_frequency():
     np.testing.assert_allclose(result.log_decrement, expected, rtol=1e-10)
 
 
-# ------------------------------------------------------------------ order and whirl
-
-
 # ------------------------------------------------------------------ periodic systems
 
 
@@ -133,43 +109,3 @@ def test_anisotropic_support_of_a_point_mass():
     assert np.sum(result.whirl == "mixed") == 10
     tracked = result.tracked()
     np.testing.assert_allclose(np.ptp(tracked.frequencies_inertial, axis=0), 0.0, atol=1e-6)
-
-
-# ------------------------------------------------------------------ results and input
-
-
-def test_result_is_stored_and_shown(tmp_path):
-    result = campbell(point_mass(), [0.0, 10.0], supports=[Support("at", 1e4)])
-    result.save(tmp_path / "result.npz")
-    loaded = load_result(tmp_path / "result.npz")
-    assert isinstance(loaded, Campbell)
-    np.testing.assert_array_equal(loaded.frequencies_inertial, result.frequencies_inertial)
-    assert loaded.free_motions == ("translation along axis",)
-    assert loaded.whirl.tolist() == result.whirl.tolist()
-    assert "free motions: translation along axis" in loaded.table()
-    assert "forward" in result.table(3)
-    for frame in ("inertial", "rotor"):
-        ax = result.plot(frame=frame)
-        assert "[Hz]" in ax.get_ylabel()
-        assert len(ax.lines) >= 3
-    with pytest.raises(ValueError, match="frame: 'rotating' is unknown"):
-        result.plot(frame="rotating")
-
-
-def test_wrong_input_is_refused():
-    rotor = rings(SHAFT)
-    with pytest.raises(ValueError, match=r"speeds: .* ascending order"):
-        campbell(rotor, [1.0, 0.0])
-    with pytest.raises(ValueError, match="no such interface; the rotor has: all"):
-        campbell(rotor.reduce(0), 0.0, supports=[Support("left", 1.0)])
-    with pytest.raises(
-        TypeError,
-        match=r"supports\[0\]: needs Support or Bearing or MagneticBearing or .*, got 'all'",
-    ):
-        campbell(rotor, 0.0, supports=["all"])
-    with pytest.raises(TypeError, match="target: needs a ReducedRotor, a SolidRotor, a linear"):
-        campbell(np.eye(3), 0.0)
-    with pytest.raises(TypeError, match="body: is only for"):
-        campbell(rotor, 0.0, body=rotor)
-    with pytest.raises(ValueError, match="99 is not between 1 and the 30"):
-        campbell(rotor, 0.0, modes=99)

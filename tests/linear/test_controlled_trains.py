@@ -4,21 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from point_rotors import SKEW_AXIS, free_stiffness, ring_rotor
+from point_rotors import SKEW_AXIS
 from test_magnetic_bearing import DELAYED, bearing, pair, rigid
 from test_tilting_pad import SPEED, on_pads
 
 from exudyn_rotor import (
     BaseAcceleration,
     HarmonicForce,
-    Link,
     RotorTrain,
-    SolidRotor,
     Support,
     Unbalance,
     harmonic_response,
     sensitivity,
-    stability,
     unbalance_response,
 )
 
@@ -26,12 +23,6 @@ GIVEN = {"accuracy": None}
 MAGNETIC = rigid(), [*pair(angle=0.3)]  # a controller with filter and delay
 ON_SPRINGS = rigid(5.0), [Support(name, 2e5, 9.0) for name in ("left", "right")]
 PADS = on_pads(SKEW_AXIS)[:2]
-
-
-def apart(found, expected):
-    """Return how far the expected numbers are from the found ones, over their size."""
-    gap = np.abs(found - np.asarray(expected)[:, None]).min(axis=1)
-    return np.max(gap / np.maximum(np.abs(expected), 10.0))
 
 
 def test_responses_without_links_are_those_alone():
@@ -61,38 +52,6 @@ def test_responses_without_links_are_those_alone():
                 for target, at, given in ((over, f"{name}:", GIVEN), (rotor, "", alone))
             ]  # fmt: skip
             np.testing.assert_allclose(*shaken, rtol=1e-9)
-
-
-def rings(places, masses):
-    """Return a rigid rotor of rings of five masses with an interface at each."""
-    circle = ring_rotor(0.1, 0.1, 1.0).nodes[:5] * [1.0, 1.0, 0.0]
-    nodes = np.vstack([circle + np.array([0.0, 0.0, z]) for z in places])
-    mass = np.repeat(np.repeat(masses, 5), 3) / 5.0
-    K = free_stiffness(nodes, 1e8 * np.eye(3 * len(nodes)))
-    made = SolidRotor.from_matrices(np.diag(mass), K, nodes, "z")
-    for number, name in enumerate(("left", "middle", "right")[: len(places)]):
-        made = made.with_interface(name, range(5 * number, 5 * number + 5))
-    return made
-
-
-def test_halves_of_a_cut_rotor_are_the_rotor():
-    """On one magnetic bearing, in the half that is linked: the error falls as 1/k of the link."""
-    whole = rings([-0.2, 0.0, 0.2], [4.0, 6.0, 5.0]).reduce(0)
-    left = rings([-0.2, 0.0], [4.0, 2.5]).reduce(0)
-    right = rings([0.0, 0.2], [3.5, 5.0]).reduce(0)  # cut at its interface 'left'
-    magnet, spring = bearing(), Support("right", np.diag([3e5, 3e5, 2e5]), 30.0)
-    exact = stability(whole, [SPEED], supports=[magnet, spring], **GIVEN).exponents[0]
-    errors = []
-    for k in (1e11, 1e12):
-        stiff = Support("middle", k * np.eye(3), 0.0, 0.1 * k * np.eye(3))
-        train = RotorTrain(
-            {"A": left, "B": right}, {"A": 1.0, "B": 1.0},
-            {"A": [magnet], "B": [replace(spring, interface="middle")]},
-            [Link("A:middle", "B:left", stiff)],
-        )  # fmt: skip
-        errors.append(apart(stability(train, [SPEED], **GIVEN).exponents[0], exact))
-    assert errors[1] < 2e-5
-    assert errors[0] / errors[1] == pytest.approx(10.0, rel=0.05)
 
 
 def test_loops_of_a_train_have_their_sensitivity():

@@ -13,7 +13,6 @@ from exudyn_rotor import (
     SolidRotor,
     add_rotor,
     add_supports,
-    campbell,
     grooved_pads,
     linear_model,
 )
@@ -126,35 +125,6 @@ def test_critical_speeds_with_a_table_are_fixed_points(disc):
 
 
 # the spin is held, too: free, an uneven mesh lets it take part in ν = 0
-HELD_SPIN = np.diag([0.0, 0.0, 1e4])
-SUPPORTS = (Support("left", 2e7 * np.eye(3), tilt_stiffness=HELD_SPIN), Support("right", 2e7))
-
-
-@pytest.mark.parametrize("order", [1.0, 2.0])
-def test_campbell_diagram_meets_the_excitation_there(disc, order):
-    reduced = disc.reduce(12)
-    result = critical_speeds(reduced, supports=SUPPORTS, order=order, max_speed=4000.0)
-    assert len(result.speeds) >= 3
-    for speed, nu in zip(result.speeds, result.frequencies_rotor, strict=True):
-        diagram = campbell(reduced, speed, supports=SUPPORTS)
-        # ν = 0 has an eigenvalue 1e-16 K away in ν²
-        close = np.abs(diagram.frequencies_rotor[0] - nu) < 1e-3 + 1e-8 * nu
-        assert np.any(close)
-        inertial = diagram.frequencies_inertial[0, close]
-        assert np.abs(inertial / (order * speed) - 1.0).min() < 1e-6
-
-
-def test_more_modes_come_close_from_above(disc):
-    few, many, exact = (
-        critical_speeds(
-            disc.reduce(count), supports=SUPPORTS, max_speed=3000.0, nodal_diameters=[1]
-        ).speeds
-        for count in (6, 30, 80)
-    )
-    assert len(exact) == len(many)
-    assert np.all(many >= exact * (1.0 - 1e-6))  # fewer coordinates are stiffer
-    assert np.abs(many / exact - 1.0).max() < 0.01
-    assert np.abs(many / exact - 1.0).max() < np.abs(few / exact - 1.0).max()
 
 
 def test_map_over_support_stiffness(tmp_path):
@@ -188,19 +158,6 @@ def test_a_stiffness_that_jumps_makes_no_critical_speed():
     with pytest.warns(UserWarning, match=r"near 1?[90][90.0-9]* rad/s the stiffness .* jumps"):
         result = critical_speeds(point_mass().reduce(0), supports=[support], max_speed=300.0)
     assert result.speeds.size == 0
-
-
-def test_wrong_input_is_refused(masses):
-    for wrong in (-1.0, np.nan):
-        with pytest.raises(ValueError, match="order: needs"):
-            critical_speeds(masses, order=wrong)
-        with pytest.raises(ValueError, match="max_speed: needs"):
-            critical_speeds(masses, max_speed=wrong)
-    with pytest.raises(ValueError, match="nodal_diameters: needs whole numbers ≥ 0 and ≤ 4, got 5"):
-        critical_speeds(masses, nodal_diameters=[5])
-    with pytest.raises(ValueError, match="no such interface"):
-        critical_speeds(masses, supports=[Support("left", 1.0)])
-    assert "undamped critical speeds of order 1" in critical_speeds(masses).table()
 
 
 @pytest.fixture(scope="module")
@@ -243,11 +200,11 @@ def test_scene_has_the_critical_speeds_of_its_rotor():
     """The scene is linearised by differences, good to about 1e-7 of its stiffness."""
     K, D = (np.diag(values) for values in BEARING)
     supports = [Support(name, K, D) for name in ("left", "right")]
-    given = {"max_speed": 3000.0, "nodal_diameters": [1]}
-    rotor = critical_speeds(scene_rotor(), supports=supports, **given)
-    mbs, body = on_springs()
+    given = {"max_speed": 2000.0, "nodal_diameters": [1], "accuracy": None}
+    rotor = critical_speeds(scene_rotor(0), supports=supports, **given)
+    mbs, body = on_springs(modes=0)
     scene = critical_speeds(mbs, body=body, **given)
-    assert len(rotor.speeds) >= 4
+    assert len(rotor.speeds) >= 3
     np.testing.assert_allclose(scene.speeds, rotor.speeds, rtol=1e-5)
 
 

@@ -114,6 +114,3 @@ def test_torque_turns_a_free_spin_alone(rotor, route):
     # the rings breathe, which adds to the inertia by 4Ω² of their 22 400² 1/s²
     expected = 1.0 / (INERTIA * 40.0**2 * (1.0 + 4.0 * (200.0 / 22400.0) ** 2))
     assert np.abs(motion[:, 5]).max() == pytest.approx(expected, rel=1e-5)
-
-
-# ------------------------------------------------------------------ what is left out

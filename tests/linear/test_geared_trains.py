@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from train_models import FIRST, SECOND, exponents_of, rigid, rings
+from train_models import FIRST, SECOND, exponents_of, rings
 
 from exudyn_rotor import GearMesh, Link, RotorTrain, Support, campbell, stability
 
@@ -46,28 +46,3 @@ def test_geared_rotors_are_those_of_constant_equations_at_rest():
     assert stability(train, [speed]).exponents.shape == (1, 11)  # without the free spin
     with pytest.raises(ValueError, match=r"turn with 1 and -0.5, not 0.5, times"):
         RotorTrain(rotors, {"A": 1.0, "B": 0.5}, supports, links)
-
-
-def test_geared_inertias_have_their_torsion():
-    """``ω² = k (r₁²/Θ₁ + r₂²/Θ₂)`` where bearings hold the axes of the gears."""
-    mesh = GearMesh(radii=[0.1, 0.2], stiffness=1e4)
-    rotors = {"A": rigid(*FIRST), "B": rigid(*SECOND)}
-    supports = {n: [Support(p, 1e12) for p in "ab"] for n in "AB"}
-    train = RotorTrain(rotors, {"A": 1.0, "B": -0.5}, supports, [Link("A:a", "B:a", mesh)])
-    inertias = [d[2] * d[0] ** 2 for d in (FIRST, SECOND)]
-    exact = np.sqrt(1e4 * (0.1**2 / inertias[0] + 0.2**2 / inertias[1]))
-    found = campbell(train, [0.0, 50.0]).frequencies_inertial[-1]
-    assert np.abs(found / exact - 1.0).min() < 1e-6
-
-
-def test_gears_are_apart_by_their_centre_distance():
-    """``(r₁ + r₂)/cos α`` at the angle of the line of centres, in one plane."""
-    rotors, mesh = {"A": rigid(*FIRST), "B": rigid(*SECOND)}, gears()
-    distance, links = 0.3 / np.cos(0.35), [Link("A:a", "B:a", mesh)]
-    place = distance * np.array([np.cos(0.3), np.sin(0.3), 0.0])
-    given = {"ratios": {"A": 1.0, "B": -0.5}, "links": links}
-    start = np.array([1.0, 2.0, 3.0])
-    RotorTrain(rotors, positions={"A": start, "B": start + place}, **given)
-    for off in ([0.01, 0, 0], [0, 0.01, 0], [0, 0, 0.01]):
-        with pytest.raises(ValueError, match=r"gears need axes 0\.31\d+ m apart"):
-            RotorTrain(rotors, positions={"A": np.zeros(3), "B": place + off}, **given)

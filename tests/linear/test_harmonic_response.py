@@ -8,7 +8,6 @@ from point_rotors import ring_rotor
 from exudyn_rotor import (
     BaseAcceleration,
     HarmonicForce,
-    HarmonicResponse,
     SolidRotor,
     Support,
     Unbalance,
@@ -52,13 +51,6 @@ def test_base_acceleration_is_minus_mass_times_acceleration(speed):
     assert close(response.phasor("mid", "n2", 0), 1.0j * expected)
     # along the axis nothing holds it: −a/(−ω²)
     assert close(response.phasor("mid", "e", 0), 0.5 / SPEEDS[1:] ** 2)
-
-
-def test_weight_is_an_acceleration_at_zero_frequency():
-    response = harmonic_response(
-        rings(), [0.0], BaseAcceleration((0.0, 9.81)), speed=120.0, supports=held(), at="mid"
-    )
-    assert response.phasor("mid", "n2")[0] == pytest.approx(-MASS * 9.81 / K, rel=1e-10)
 
 
 @pytest.mark.parametrize(
@@ -230,27 +222,3 @@ def test_a_free_shift_along_the_axis_does_not_hinder_a_constant_load():
     assert along.phasor("at", "e")[1] == pytest.approx(-0.01)
     with pytest.raises(ValueError, match="at 0 rad/s: a constant load acts on a motion"):
         harmonic_response(rotor, [0.0], HarmonicForce("at", (0, 0, 1.0)), **given)
-
-
-def test_tables_and_files_with_rows_that_are_no_numbers(tmp_path):
-    motion = np.ones((2, 1, 1, 6), dtype=complex)
-    motion[0] = np.nan
-    response = HarmonicResponse(("at",), [0], motion, "inertial", [0.0, 1.0], 0.0)
-    assert "nan" in response.table()
-    assert np.isnan(response.columns()["n1 [m]"]).tolist() == [True, False]
-    response.save(tmp_path / "response.npz")
-
-
-def test_bad_frames_of_a_moment_at_a_node():
-    with pytest.raises(ValueError, match="a mesh node has no rotation"):
-        harmonic_response(rings(), [1.0], HarmonicForce(2, (0, 0), (1, 0)), supports=held())
-
-
-def test_a_point_without_a_spin_is_loaded_at_the_frequency_of_its_spin():
-    """On uneven supports a harmonic is constant in the rotor: no spin is there to be held."""
-    point = SolidRotor.from_matrices(np.eye(3), np.zeros((3, 3)), [[0, 0, 0]], "z")
-    rotor = point.with_interface("at", [0])
-    supports = [Support("at", np.diag([1e4, 2e4]), 5.0)]
-    force = HarmonicForce("at", (1.0, 0.0))
-    found = harmonic_response(rotor, [50.0], force, speed=50.0, supports=supports)
-    assert found.phasor()[0] == pytest.approx(1.0 / (1e4 - 2500.0 + 250.0j))

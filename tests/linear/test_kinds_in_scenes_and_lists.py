@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from apart import apart
 from models import disc_with_two_modes
+from scipy.spatial.transform import Rotation
 from test_magnetic_bearing import DELAYED, LINEAR
-from void_films import SKEW
 
 from exudyn_rotor import (
     AnnularSeal,
@@ -28,6 +28,7 @@ from exudyn_rotor import (
 )
 
 ENDS = ("left", "right")
+SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
 SPEED, HEAVY = 300.0, 5.0 * np.array([0.0, -9.81, 0.0])
 CORNERS = [[x, -0.3, z] for x in (-0.2, 0.2) for z in (-0.1, 0.6)]
 BLOCK = Foundation.rigid(
@@ -117,24 +118,3 @@ def test_every_kind_has_the_exponents_of_its_list(kind):
 def test_every_kind_on_a_block_with_a_free_spin(kind):
     """Supports against tilts differed by 1.7e-6 of the speed."""
     assert apart(*models(KINDS[kind], BLOCK, free=True), SPEED) < 1e-6
-
-
-# ------------------------------------------------------------------ the short film
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_every_kind_adds_itself_as_add_supports_adds_it(kind):
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, disc_with_two_modes(), spin=SPEED)
-    for given in KINDS[kind]("left", np.zeros(2)):
-        (expected,) = add_supports(body, given, base=mbs.CreateGround())
-        for interface in (None, "left", "right"):
-            added = given.add_to(body, interface, mbs.CreateGround())
-            assert added.support.interface == (interface or "left")
-            assert type(added.support) is type(given)
-            assert len(added.objects) == len(expected.objects)
-            assert body.supports[-1] is added
-    before = mbs.systemData.NumberOfObjects()
-    with pytest.raises(ValueError, match="support at 'top': no such interface"):
-        given.add_to(body, "top")
-    assert mbs.systemData.NumberOfObjects() == before

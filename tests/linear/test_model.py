@@ -53,17 +53,6 @@ def test_axes_are_those_in_which_equations_are_constant(made, supports, axes, co
     assert model.at(0.0).is_constant
 
 
-def test_point_mass_in_standing_axes_is_a_point_mass():
-    rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]
-    rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    M, D, K, _, axes = linear_model(rotor).matrices(300.0)
-    assert axes == "inertial"
-    np.testing.assert_allclose(D, 0.0, atol=1e-9)
-    np.testing.assert_allclose(np.sort(np.linalg.eigvals(np.linalg.solve(M, K)).real)[:5], 0.0,
-                               atol=1e-6)  # fmt: skip
-
-
 @pytest.mark.parametrize("supports", [held(), held(UNEVEN, np.diag([300.0, 900.0]))])
 def test_axes_do_not_change_motions_seen_from_outside(supports):
     rotor = flat(1e4)
@@ -147,13 +136,3 @@ def test_periodic_equations_have_no_single_matrices():
     model = linear_model(flat(), supports=held(UNEVEN))
     with pytest.raises(ValueError, match="repeat every revolution"):
         model.matrices(100.0)
-
-
-def test_foundation_is_taken_by_every_analysis():
-    block = Foundation(mass=np.eye(3) * 50.0, damping=200.0 * np.eye(3), stiffness=5e6 * np.eye(3),
-                       points={n: np.eye(3) for n in ("left", "right")})  # fmt: skip
-    model = linear_model(disc(), supports=held(), foundation=block)
-    direct = campbell(disc(), [100.0], supports=held(), foundation=block, accuracy=None)
-    np.testing.assert_array_equal(
-        direct.frequencies_inertial, campbell(model, [100.0], accuracy=None).frequencies_inertial
-    )

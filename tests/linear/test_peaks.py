@@ -9,7 +9,6 @@ from forced_models import rings
 
 from exudyn_rotor import (
     HarmonicForce,
-    HarmonicResponse,
     SolidRotor,
     Support,
     Unbalance,
@@ -63,33 +62,6 @@ def test_a_peak_is_told_to_be_coarse_or_outside():
         below.peak("left")
 
 
-def test_advice_at_a_peak_is_not_what_was_done_already():
-    rotor, ends = rings(modes=6), ("left", "right")
-    supports = [Support(name, 1e5) for name in ends]  # no damping: the peak has no width
-    given = {"supports": supports, "own": False, "refine": True}
-    undamped = unbalance_response(
-        rotor, np.linspace(100.0, 600.0, 30), [Unbalance("left", 1e-4)], **given
-    )
-    with pytest.warns(UserWarning, match=r"refine=True adds no more: .* or add damping"):
-        undamped.peak("left")
-    below = unbalance_response(
-        rotor, np.linspace(1.0, 50.0, 12), [Unbalance("left", 1e-4)], **given
-    )
-    with pytest.raises(ValueError, match=r"and 50 rad/s; extend the range$"):
-        below.peak("left")
-
-
-def test_a_peak_beside_rest_where_unbalance_moves_nothing():
-    point = SolidRotor.from_matrices(np.eye(3), np.zeros((3, 3)), [[0.0, 0.0, 0.0]], "z")
-    point = point.with_interface("at", [0])
-    given = {"supports": [Support("at", 1e4, 20.0)], "own": False}
-    response = unbalance_response(point, [0.0, 95.0, 130.0], Unbalance("at", 1e-5), **given)
-    with pytest.warns(UserWarning, match="too far apart"):
-        speed, size = response.peak()
-    assert 95.0 <= speed <= 130.0
-    assert response.semi_axes()[0][1] <= size <= 2.0 * response.semi_axes()[0][1]
-
-
 def two_masses() -> tuple[SolidRotor, list[Support]]:
     """Return two masses of 2 kg on a rod, axis z, each on its own springs, ω = 100 rad/s."""
     rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
@@ -111,25 +83,6 @@ def test_a_peak_between_rest_and_the_second_speed_is_refined():
     assert size == pytest.approx(5e-5 / (0.05 * np.sqrt(1.0 - 0.025**2)), rel=0.01)
     assert speed == pytest.approx(100.0 / np.sqrt(1.0 - 2.0 * 0.025**2), rel=1e-3)
     assert margins.amplification == pytest.approx([20.0], rel=0.02)
-
-
-def test_margins_of_three_speeds_from_rest_on_are_told_to_be_coarse():
-    rotor, supports = two_masses()
-    response = unbalance_response(
-        rotor, [0.0, 100.0, 200.0], Unbalance("left", 1e-4), supports=supports
-    )
-    with pytest.warns(UserWarning, match="too far apart"):
-        margins = separation_margins(response, [130.0, 150.0], places="left")
-    # the size is taken for a line from rest
-    lowest = 100.0 * np.sqrt(0.5) * margins.sizes[0] / response.semi_axes("left")[0][1]
-    assert margins.half_power[0, 0] == pytest.approx(min(lowest, 100.0))
-
-
-def test_a_constant_load_on_a_free_rotor_is_refused_as_such():
-    """The masses have no stiffness across the rod, and no shift came from the speed."""
-    rotor, _ = two_masses()
-    with pytest.raises(ValueError, match="a constant load acts on a motion that nothing holds"):
-        harmonic_response(rotor, [0.0], HarmonicForce("left", (1.0, 0.0)))
 
 
 def test_rounding_at_a_place_that_does_not_move_is_no_peak():
@@ -201,31 +154,3 @@ def test_a_larger_motion_along_the_axis_is_not_the_main_one():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         along.plot()  # n1 and n2 do not move: no logarithms
-
-
-@pytest.mark.parametrize(
-    ("kind", "units", "unit", "value"),
-    [
-        ("unbalance", "rpm", "rpm", 600.0),
-        ("unbalance", "Hz", "Hz", 10.0),
-        ("unbalance", "SI", "rad/s", 20.0 * np.pi),
-        ("harmonic", "rpm", "Hz", 10.0),
-        ("harmonic", "SI", "rad/s", 20.0 * np.pi),
-    ],
-)
-def test_tables_and_pictures_are_in_the_units_asked_for(kind, units, unit, value):
-    motion = np.array([1e-6, -1e-6j, 0, 0, 0, 0]) * np.ones((2, 1, 1, 6))
-    at = [20.0 * np.pi, 40.0 * np.pi]
-    if kind == "unbalance":
-        response = UnbalanceResponse(("disc",), [1], motion, "inertial", at)
-    else:
-        response = HarmonicResponse(("disc",), [0], motion, "inertial", at, 0.0)
-    assert f"[{unit}]" in response.table(units=units)
-    name = next(iter(response.columns(units)))
-    assert name.endswith(f"[{unit}]")
-    assert response.columns(units)[name][0] == pytest.approx(value)
-    size, phase = response.plot(units=units)
-    assert size.lines[0].get_xdata()[0] == pytest.approx(value)
-    assert phase.get_xlabel().endswith(f"[{unit}]")
-    assert f"{value:.5g} {unit}" in response.plot_polar(units=units).texts[0].get_text()
-    assert f"{value:.4g} {unit}" in response.plot_orbit(at[0], units=units).get_title("right")

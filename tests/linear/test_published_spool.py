@@ -54,10 +54,7 @@ def dual_spool() -> RotorTrain:
     """Return one spool on the other."""
     between = DATA["between"]
     spring = Support(str(between["inner"]), between["stiffness"], between["damping"])
-    origins = dict.fromkeys(spools(), np.zeros(3))
-    return RotorTrain(
-        spools(), DATA["ratios"], supports(0.0), [Link(*PLACES, spring)], positions=origins
-    )
+    return RotorTrain(spools(), DATA["ratios"], supports(0.0), [Link(*PLACES, spring)])
 
 
 def geared_spools() -> RotorTrain:

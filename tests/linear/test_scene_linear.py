@@ -5,7 +5,12 @@ import numpy as np
 import pytest
 from apart import distance, exponents
 from asymmetric import LENGTH, asymmetric_shaft
-from exudyn.itemInterface import SensorNode
+from exudyn.itemInterface import (
+    CoordinateSpringDamper,
+    MarkerNodeCoordinate,
+    NodePointGround,
+    SensorNode,
+)
 from exudyn.rigidBodyUtilities import InertiaCuboid
 from point_rotors import ring_rotor
 
@@ -228,18 +233,33 @@ def test_refused_scenes():
         linear_model(mbs, body=None)
     with pytest.raises(TypeError, match="target: needs"):
         linear_model(body)
+    with pytest.raises(TypeError, match="body: is only for"):
+        linear_model(rings(), body=body)
+    with pytest.raises(ValueError, match="99 is not between 1 and the"):
+        campbell(rings(), 0.0, modes=99)
     with pytest.raises(ValueError, match="another mbs"):
         linear_model(other, body=body)
     with pytest.raises(ValueError, match="about: 'rest' is unknown"):
         linear_model(mbs, body=body, about="rest")
     with pytest.raises(ValueError, match="finite"):
-        linear_model(mbs, body=body).at(np.nan)
+        linear_model(mbs, body=body).matrices(np.nan)
     add_rotor(mbs, rings(), name="second")
     with pytest.raises(ValueError, match="not assembled"):
         linear_model(mbs, body=body)
     mbs.Assemble()
     with pytest.raises(ValueError, match="second rotor"):
         linear_model(mbs, body=body)
+
+
+def test_what_acts_other_than_by_markers_is_refused():
+    mbs, body = on_springs()
+    point = mbs.AddNode(NodePointGround())
+    ground = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=point, coordinate=0))
+    mode = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=body.nodes["modes"], coordinate=1))
+    mbs.AddObject(CoordinateSpringDamper(markerNumbers=[ground, mode], stiffness=1e6))
+    mbs.Assemble()
+    with pytest.raises(ValueError, match="other than by markers"):
+        linear_model(mbs, body=body).matrices(SPEED)
 
 
 # ------------------------------------------------------------------ as in lists

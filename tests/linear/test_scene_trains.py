@@ -23,9 +23,9 @@ from exudyn_rotor import (
 )
 from exudyn_rotor.linear.model.body import RotorBody as LinearBody
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
-from exudyn_rotor.linear.response.run_start import _in_body
 from exudyn_rotor.multibody.evaluation import evaluating
-from exudyn_rotor.reduction.driven import _others
+from exudyn_rotor.nonlinear.run_start import in_body
+from exudyn_rotor.reduction.selection import _beside_spin
 
 SPEED, ANGLE = 90.0, 0.7
 HELD = [
@@ -87,8 +87,8 @@ def forces(mbs, bodies, model, rates, motion):
                 turn @ (alone[2] - 2.0 * w * G @ alone[1] + w**2 * G @ G @ alone[0]),
             ]
         if part.name in model.driven:
-            alone = [_others(body.selection.source) @ one for one in alone]
-        (x, x_t, x_tt), spins = zip(*(_in_body(body, one) for one in alone), strict=True)
+            alone = [_beside_spin(body.selection.source) @ one for one in alone]
+        (x, x_t, x_tt), spins = zip(*(in_body(body, one) for one in alone), strict=True)
         given = SceneCoordinates.of(body)
         T, T1, T2 = given.turn(rate * ANGLE)
         T1, T2 = rate * SPEED * T1, (rate * SPEED) ** 2 * T2
@@ -134,7 +134,7 @@ def test_accelerations_of_a_scene_are_those_of_its_train(ratio, axis, rotation):
     assert accelerations_left(mbs, bodies, model, (1.0, ratio)) < 1e-9
 
 
-def geared(connection, other=None, driven="", turned=None, speed=SPEED, **options):
+def geared(connection, driven="", turned=None, speed=SPEED, **options):
     """Return two rotors, each on two springs, and what connects them; A and B may be driven."""
     mbs = exudyn.SystemContainer().AddSystem()
     apart = getattr(connection, "center_distance", 0.0)
@@ -152,7 +152,7 @@ def geared(connection, other=None, driven="", turned=None, speed=SPEED, **option
     for body in bodies:
         add_supports(body, [Support(n, np.diag([3e5, 3e5, 1e5]), 9.0) for n in "ab"])
     ends = ("a", "a") if apart else ("b", "a")
-    connect_rotors(connection, bodies[0], ends[0], other or bodies[1], None if other else ends[1])
+    connect_rotors(connection, bodies[0], ends[0], bodies[1], ends[1])
     mbs.Assemble()
     return mbs, bodies
 

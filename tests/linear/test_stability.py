@@ -5,9 +5,8 @@ import warnings
 import numpy as np
 import pytest
 from asymmetric import asymmetric_shaft
-from point_rotors import ring_rotor
 
-from exudyn_rotor import RotorTrain, SolidRotor, Support, linear_model, stability
+from exudyn_rotor import SolidRotor, Support, linear_model, stability
 from exudyn_rotor.linear.equations import PeriodicSystem, joined
 from exudyn_rotor.linear.solve.motions import motions_of
 
@@ -56,19 +55,6 @@ def test_inner_damping_and_cross_coupling(rod, speed, cross):
         assert result.exponents[row, column].imag == pytest.approx(wanted, rel=1e-9)
 
 
-def test_gyroscopic_motion_of_rings():
-    """Tilting of a rotor with ``I_t θ̈ − iΩ I_p θ̇ + κ θ = 0``, supports on one plane."""
-    rings = ring_rotor(0.1, 0.05, MASS).with_interface("all", range(10)).reduce(0)
-    polar, transverse = MASS * 0.1**2, MASS * (0.1**2 / 2 + 0.05**2)
-    tilt, speed = 1e4, 400.0
-    supports = [Support("all", STIFFNESS, OUTER, np.diag([tilt, tilt, 0.0]))]
-    result = stability(rings, [speed], supports=supports)
-    expected = np.abs(np.roots([-transverse, speed * polar, tilt]).real)
-    for value in expected:
-        assert np.abs(result.frequencies_inertial[0] - value).min() < 1e-8 * value
-    assert result.stable[0]
-
-
 @pytest.mark.parametrize("ratio", [1.5, 2.0, 10.0])
 @pytest.mark.parametrize("damping", [0.0, 10.0, 1e3])
 def test_uneven_bearings_from_rest_on_take_the_eigenvalues_of_each_direction(rod, ratio, damping):
@@ -82,13 +68,12 @@ def test_uneven_bearings_from_rest_on_take_the_eigenvalues_of_each_direction(rod
     assert np.all(result.stable)
 
 
-@pytest.mark.parametrize("method", ["hill", "floquet"])
-def test_periodic_motion_has_frequencies_seen_from_outside(method):
+def test_periodic_motion_has_frequencies_seen_from_outside():
     """An asymmetric shaft on uneven bearings; the two methods share nothing but the equations."""
     shaft = asymmetric_shaft()
     supports = [Support(n, np.diag([3e4, 5e4]), 40.0) for n in list(shaft.interfaces)[:1]]
     wanted = stability(shaft, [120.0], supports=supports, method="hill")
-    result = stability(shaft, [120.0], supports=supports, method=method)
+    result = stability(shaft, [120.0], supports=supports, method="floquet")
     known = np.isfinite(result.exponents[0])
     assert np.count_nonzero(known) >= 2
     for value, heard, decrement in zip(
@@ -100,20 +85,6 @@ def test_periodic_motion_has_frequencies_seen_from_outside(method):
         assert heard == pytest.approx(wanted.frequencies_inertial[0][at], rel=1e-5, abs=1e-6)
         if np.isfinite(decrement):
             assert decrement == pytest.approx(wanted.log_decrement[0][at], rel=1e-4, abs=1e-7)
-
-
-def test_a_rotor_and_a_train_of_it_are_one(rod):
-    reduced = rod.reduce(1)
-    supports = both(np.diag([STIFFNESS, 3.0 * STIFFNESS]), OUTER)
-    train = RotorTrain({"r": reduced}, {"r": 1.0}, {"r": supports})
-    speeds = [0.0, 30.0, 200.0]
-    one, other = (
-        stability(reduced, speeds, supports=supports),
-        stability(train, speeds),
-    )
-    scale = np.abs(one.exponents).max()
-    np.testing.assert_allclose(one.exponents, other.exponents, atol=1e-6 * scale)
-    np.testing.assert_array_equal(one.stable, other.stable)
 
 
 def test_speeds_beyond_a_table_are_nan_and_cost_no_other(rod):
@@ -157,17 +128,21 @@ def test_mathieus_equation():
         assert growth[1] == pytest.approx(0.5 * epsilon, rel=1e-2)
 
 
-@pytest.mark.parametrize(("delta", "epsilon"), [(4.0, 6.0), (2.25, 5.0), (6.25, 9.0)])
-def test_growth_is_not_missed_among_many_motions(delta, epsilon):
-    """Mathieu's equation beside others that need no harmonics: few are affordable for all."""
-    k = 24
+@pytest.mark.parametrize(
+    ("delta", "epsilon", "growth"),
+    [(4.0, 6.0, 0.180933), (2.25, 5.0, 0.400392), (6.25, 9.0, 0.379643)],
+)
+def test_growth_is_not_missed_among_many_motions(delta, epsilon, growth):
+    """Mathieu's equation, integrated over a period, beside others that need no harmonics.
+
+    Few harmonics are affordable for all. At δ = 2.25 and 4 the multipliers are negative.
+    """
+    k = 17
     mean = np.diag(np.r_[delta, np.linspace(3.0, 40.0, k - 1) ** 2])
     wave = np.zeros((k, k), dtype=complex)
     wave[0, 0] = 0.5 * epsilon
     damping = np.diag(np.r_[0.0, np.full(k - 1, 0.01)])
     system = PeriodicSystem(1.0, np.eye(k), {0: damping}, {0: mean, 1: wave, -1: wave})
-    found = [
-        np.nanmax(motions_of(joined([system]), method, least_stable=True).values.real)
-        for method in ("auto", "floquet")
-    ]
-    assert found[0] == pytest.approx(found[1], abs=1e-4)
+    for method in ("auto", "floquet"):
+        found = motions_of(joined([system]), method, least_stable=True).values.real
+        assert np.nanmax(found) == pytest.approx(growth, abs=2e-5)

@@ -39,12 +39,6 @@ def test_growth_verdict_and_motion(result):
     assert set(result.whirl.ravel()) == {"forward"}
 
 
-def test_axes_are_logarithmic_where_values_are(result):
-    axes = result.plot()
-    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "linear")
-    assert result.plot(log_x=False, log_y=True).get_yscale() == "log"
-
-
 def test_a_point_that_fails_is_nan(point):
     def build(stiffness: float, speed: float) -> tuple:
         if stiffness > 2e4:
@@ -58,12 +52,3 @@ def test_a_point_that_fails_is_nan(point):
     assert found.stable.all(axis=1).tolist() == [True, True, False]
     with pytest.raises(ValueError, match="no such bearing"):
         stability_map(build, [3e4], [10.0])
-
-
-def test_models_that_differ_in_numbers_are_solved_together(point):
-    patterns = {
-        linear_model(point, supports=[Support("disc", stiffness, damping)]).pattern
-        for stiffness in (1e4, 2e4)
-        for damping in (1.0, 2.0)
-    }
-    assert len(patterns) == 1

@@ -3,7 +3,7 @@
 import exudyn as exu
 import numpy as np
 import pytest
-from exudyn.itemInterface import LoadForceVector, LoadTorqueVector
+from exudyn.itemInterface import LoadForceVector
 from point_rotors import ring_rotor
 from scipy.optimize import brentq
 
@@ -12,7 +12,6 @@ from exudyn_rotor import (
     Support,
     add_rotor,
     add_supports,
-    check_run,
     recommended_settings,
     steady_state,
 )
@@ -161,60 +160,6 @@ def test_load_that_nothing_holds_is_refused(reduced, held, monkeypatch):
     assert len(angles) <= 3 * 12 + 2 * 48
 
 
-# ------------------------------------------------------------------ static solutions
-
-
-def static(mbs):
-    settings = exu.SimulationSettings()
-    settings.staticSolver.verboseMode = 0
-    settings.solution.file.write = False
-    return mbs.SolveStatic(settings)
-
-
-@pytest.mark.parametrize("translation", ["none", "free", "in-plane"])
-def test_a_static_solution_under_gravity_holds_at_one_angle(reduced, translation):
-    for gravity, ok in ((GRAVITY, False), (0.0, True)):
-        mbs, body = build(reduced, 40.0, translation, gravity=[0.0, -gravity, 0.0])
-        mbs.Assemble()
-        assert static(mbs)
-        row = check_run(body, warn=False)["any angle"]
-        assert row.ok == (ok and translation == "none")  # else the unbalance turns in space
-        assert "steady_state(body) finds the motion" in row.advice
-
-
-# -------------------------------------------------- the own spin of a rotor with an elastic drive
-
-
-def with_own_spin(heavy, torsion=0.0, torque=0.0, damping=0.0):
-    """Return a rotor on two supports, of which the left one holds its own spin by `torsion`.
-
-    With a torque [N m] there, and a mass `heavy` [kg] at the rim that puts the bearings off the
-    axis through the centre of mass.
-    """
-    rotor = ring_rotor(RADIUS, LENGTH, MASS)
-    for name, z in ENDS.items():
-        rotor = rotor.add_point_mass([RADIUS, 0.0, z], heavy) if heavy else rotor
-        rotor = rotor.with_interface(name, np.flatnonzero(np.isclose(rotor.nodes[:, 2], z)))
-    mbs = exu.SystemContainer().AddSystem()
-    markers = dict.fromkeys(ENDS, "rigid")
-    body = add_rotor(
-        mbs, rotor.reduce(2), spin=40.0, translation="none", drive="elastic", markers=markers
-    )
-    twisting = {"left": np.diag([0.0, 0.0, torsion]), "right": 0.0}
-    add_supports(body, [Support(name, STIFFNESS, damping, twisting[name]) for name in ENDS])
-    mbs.AddLoad(LoadTorqueVector(markerNumber=body.marker("left"), loadVector=[0.0, 0.0, torque]))
-    mbs.Assemble()
-    return body
-
-
-@pytest.mark.parametrize("torsion", [1e-3, 1.0, 1e3, 1e8])
-def test_own_spin_on_a_torsional_spring_twists_by_the_torque_over_its_stiffness(torsion):
-    torque = 1e-4 * min(torsion, 1e3)
-    found = steady_state(with_own_spin(0.0, torsion, torque)).interface_motion("left")[5]
-    free = steady_state(with_own_spin(0.0, torsion)).interface_motion("left")[5]
-    assert found - free == pytest.approx(torque / torsion, rel=1e-5)
-
-
 # ------------------------------------------------------------------ where the search begins
 
 
@@ -254,12 +199,3 @@ def test_a_second_branch_is_found_from_a_motion_on_it():
     for start, expected in ((None, small), (near, large), (near.state(), large)):
         motion = steady_state(body, start=start).interface_motion("left", 0.0)
         assert np.hypot(*motion[:2]) / c == pytest.approx(expected, rel=1e-3)
-
-
-def test_a_frozen_spin_has_the_steady_motion_of_a_free_one(reduced):
-    found = []
-    for coupling in ("full", "frozen"):
-        mbs, body = build(reduced, "free", "free", initial_speed=50.0, spin_coupling=coupling)
-        mbs.Assemble()
-        found.append(steady_state(body).interface_motion("left", 0.3))
-    np.testing.assert_allclose(*found, rtol=1e-9, atol=1e-15)

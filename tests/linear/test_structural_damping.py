@@ -3,10 +3,8 @@
 import warnings
 
 import exudyn
-import ngsolve as ngs
 import numpy as np
 import pytest
-from models import ALUMINIUM, STEEL, two_material_cylinder
 
 from exudyn_rotor import (
     HarmonicForce,
@@ -76,45 +74,6 @@ def test_whirl_of_a_turning_rotor(kind, speed):
 
 
 # ------------------------------------------------------------------ materials
-
-
-@pytest.fixture(scope="module")
-def cylinder():
-    materials = {"steel": STEEL, "aluminium": ALUMINIUM}
-    return SolidRotor.from_ngsolve(two_material_cylinder(0.15, safety=2.0), materials, "z", order=1)
-
-
-@pytest.fixture(scope="module")
-def damped(cylinder):
-    return cylinder.with_damping(materials={"steel": {"loss": 0.01}, "aluminium": {"loss": 0.05}})
-
-
-def test_materials_have_loss_factors_of_their_own(cylinder, damped):
-    """A uniform strain ε_zz takes in η (λ + 2μ) ε² V of each material.
-
-    Sums of the same integrals: 1e-16 · 100 of the largest entry.
-    """
-    alike = cylinder.with_damping(loss=0.02).structural_damping
-    assert abs(alike - 0.02 * cylinder.stiffness).max() == 0.0
-    same = {name: {"loss": 0.02} for name in ("steel", "aluminium")}
-    same = cylinder.with_damping(materials=same).structural_damping
-    assert abs(same - alike).max() < 1e-14 * abs(alike).max()
-    H, stretch = damped.structural_damping, np.zeros((cylinder.node_count, 3))
-    stretch[:, 2] = cylinder.nodes[:, 2]
-    mesh, expected = two_material_cylinder(0.15, safety=2.0), 0.0
-    for name, material, eta in (("steel", STEEL, 0.01), ("aluminium", ALUMINIUM, 0.05)):
-        E, nu = material["youngsModulus"], material["poissonsRatio"]
-        volume = ngs.Integrate(1.0, mesh.Materials(name))
-        expected += eta * E * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) * volume
-    # 1e-16 of terms that cancel, some 100 times their sum
-    assert stretch.ravel() @ (H @ stretch.ravel()) == pytest.approx(expected, rel=1e-12)
-    values = np.linalg.eigvalsh(H.toarray())
-    assert values[0] > -1e-14 * values[-1]
-    assert damped.damping is None
-    assert damped.mass_damping is None
-
-
-# ------------------------------------------------------------------ reduced rotors
 
 
 # ------------------------------------------------------------------ scenes and analyses in time

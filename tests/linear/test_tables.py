@@ -26,7 +26,6 @@ from exudyn_rotor import (
     linear_model,
     periodic_response,
     stability_map,
-    stability_threshold,
     static_response,
     unbalance_response,
 )
@@ -116,23 +115,6 @@ def test_each_motion_has_the_coefficients_of_its_own_frequency(both):
         shifted = value * (1.0 + 1e-6)
         moved = np.linalg.svd(K + shifted * D + shifted**2 * M, compute_uv=False)
         assert singular[-1] < 0.5 * moved[-1]
-
-
-def test_the_limit_of_stability_is_that_of_the_bearing_with_its_states():
-    limits = []
-    for table in (False, True):
-
-        def supports(cross, table=table):
-            given = [magnetic(name) for name in NAMES]
-            if table:
-                given = [one.table([SPEED], np.linspace(3000.0, 4000.0, 500)) for one in given]
-            return [*given, *(Support(n, [[0.0, cross], [-cross, 0.0]]) for n in NAMES)]
-
-        found = stability_threshold(
-            rotor(), 1e5, 1e8, supports=supports, speed=SPEED, samples=2, accuracy=None
-        )
-        limits.append(found.values[0])
-    assert limits[1] == pytest.approx(limits[0], rel=1e-6)
 
 
 def test_closed_forms_of_a_spring_behind_a_damper():

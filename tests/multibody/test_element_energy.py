@@ -6,29 +6,23 @@ rules. Half of the step leaves a quarter, but for the next order, two percent he
 is not what its loss says leaves a remainder that stays.
 """
 
-from dataclasses import replace
 from inspect import isabstract
 
 import exudyn as exu
 import numpy as np
 import pytest
-from element_losses import KINDS, MASS, Motion, around, dot
+from element_losses import KINDS, MASS, Motion, around
 from exudyn.itemInterface import SensorNode
 from point_rotors import SKEW_AXIS
 from rings import rings, run
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
-    BaseRecord,
     DirectCurrentMotor,
     Drag,
-    Foundation,
-    Mount,
     StartState,
     Support,
-    add_base_motion,
     add_drive,
-    add_foundation,
     add_rotor,
     add_supports,
 )
@@ -160,67 +154,3 @@ def test_every_bearing_has_its_balance():
         if kind.__module__.startswith("exudyn_rotor") and not isabstract(kind):
             found.add(kind)
     assert found == {type(kind.make("left")) for kind in KINDS.values()}
-
-
-CENTER = np.array([0.05, -0.2, 0.02])
-CORNERS = [np.array([x, -0.3, z]) for x in (-0.2, 0.2) for z in (-0.2, 0.3)]
-MOUNT = np.diag([1e6, 2e6, 1e6]) + 1e5, np.diag([300.0, 500.0, 200.0]) + 50.0
-BLOCK_INERTIA = np.array([[2.0, 0.1, 0.05], [0.1, 2.0, 0.0], [0.05, 0.0, 1.0]])
-
-
-def ground(t):
-    return 30.0 * np.sin(500.0 * t)[:, None] * [0.5, -0.6, 0.8]
-
-
-def shaken(left, step, steps):
-    """Return what is left for rotor and block on shaken ground, in axes that go with it."""
-    mbs, body, axes, mounted = rotor_in_a_scene(initial_velocity=[0.02, 0.05, 0.01])
-    places = {"left": -0.15 * axes[:, 2], "right": 0.15 * axes[:, 2]}
-    mounts = [Mount(corner, *MOUNT) for corner in CORNERS]
-    block = Foundation.rigid(30.0, BLOCK_INERTIA, CENTER, mounts, places)
-    base = add_foundation(mbs, block, rotation=TURN)
-    kinds = {"left": KINDS[left], "right": KINDS["linear"]}
-    added = add_supports(body, [kind.make(name) for name, kind in kinds.items()], base)
-    record = BaseRecord(t := np.linspace(0.0, 1e-3, 21), ground(t))
-    add_base_motion(mbs, record, [body, base], rotation=TURN)
-    read = watched(mbs, body, added, mounted)
-    sensors = states(mbs, base.node)
-    start(mbs, body)
-    run(mbs, step * steps, steps, accuracy=1e-8)
-    ends, energy = read()
-    y, y_t = (mbs.GetSensorStoredData(number)[:, 1:] for number in sensors)
-
-    def at(place, z):
-        return z[:, :3] + np.cross(z[:, 3:], place - CENTER)
-
-    right, speed = ends[1], ends[1].speed
-    c, s = np.cos(right.angle), np.sin(right.angle)
-    heavy = right.v + 0.1 * np.column_stack(
-        [-s * speed, c * speed, s * (right.tilt_rate[:, 0] + speed * right.tilt[:, 1])
-         - c * (right.tilt_rate[:, 1] - speed * right.tilt[:, 0])]
-    )  # fmt: skip
-    momentum = (2.5 * (ends[0].v + right.v) + HEAVY * heavy) @ axes.T + 30.0 * y_t[:, :3]
-    fed = -dot(np.array([record.at(t) for t in right.time]), momentum)
-    energy = energy + 15.0 * dot(y_t[:, :3], y_t[:, :3])
-    energy += 0.5 * dot(y_t[:, 3:] @ BLOCK_INERTIA, y_t[:, 3:])
-    lost = 0.0
-    for corner in CORNERS:
-        energy += 0.5 * dot(at(corner, y) @ MOUNT[0], at(corner, y))
-        lost += dot(at(corner, y_t) @ MOUNT[1], at(corner, y_t))
-    for m, (name, kind) in zip(ends, kinds.items(), strict=True):
-        apart = [own - at(places[name], z) @ axes for own, z in ((m.u, y), (m.v, y_t))]
-        tilts = [own - (z[:, 3:] @ axes)[:, :2] for own, z in ((m.tilt, y), (m.tilt_rate, y_t))]
-        turn = (y_t[:, 3:] @ axes)[:, 2]
-        apart[1] -= turn[:, None] * around(apart[0])
-        seen = {"tilt": tilts[0], "tilt_rate": tilts[1], "speed": m.speed - turn}
-        shares = kind.shares(replace(m, u=apart[0], v=apart[1], **seen))
-        energy, lost, fed = energy + shares.stored, lost + shares.lost, fed + shares.fed
-    return remainder(right, energy, lost, fed)
-
-
-@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
-@pytest.mark.parametrize("left", ["squeeze-film", "pads", "magnets", "short-film", "finite-film"])
-def test_a_shaken_block_and_its_mounts(left):
-    """The work on the scene is that of −a on its momentum; the block takes all friction."""
-    left = [shaken(left, 5e-5 / f, 20 * f) for f in (1, 2)]
-    assert left[0] / left[1] == pytest.approx(4.0, rel=0.02)

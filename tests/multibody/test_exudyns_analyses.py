@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from point_rotors import free_stiffness, ring_rotor
 
-from exudyn_rotor import SolidRotor, add_rotor, recommended_settings
+from exudyn_rotor import SolidRotor, add_rotor
 
 SPINS = pytest.mark.parametrize("spin", ["free", 100.0])
 TRANSLATIONS = pytest.mark.parametrize("translation", ["free", "in-plane", "none"])
@@ -53,27 +53,3 @@ def test_exudyns_analyses_show_no_false_values(reduced, spin, translation):
     by_mass, _ = scene(reduced, spin=spin, translation=translation, locking="mass")
     other = np.sqrt(np.abs(by_mass.ComputeODE2Eigenvalues()[0]))
     np.testing.assert_allclose(found[found > 10.0], other[other > 10.0], rtol=1e-6)
-
-
-@SPINS
-@TRANSLATIONS
-def test_a_scene_can_be_put_into_a_dictionary_and_made_again(reduced, spin, translation):
-    more = {"initial_speed": 100.0} if spin == "free" else {}
-    mbs, _ = scene(reduced, spin=spin, translation=translation, gravity=[0, -9.81, 0], **more)
-    copy = exu.SystemContainer().AddSystem()
-    exu.special.exceptions.dictionaryNonCopyable = False  # user functions hold nothing of an mbs
-    try:
-        copy.SetDictionary(mbs.GetDictionary())
-    finally:
-        exu.special.exceptions.dictionaryNonCopyable = True
-    copy.Assemble()
-    settings = recommended_settings(end_time=0.01, step=1e-4)
-    settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write = False
-    ends = []
-    for system in (mbs, copy, mbs):
-        system.SolveDynamic(settings)
-        ends.append(np.array(system.systemData.GetODE2Coordinates()))
-    assert np.abs(ends[0]).max() > 1e-6
-    np.testing.assert_array_equal(ends[0], ends[1])
-    np.testing.assert_array_equal(ends[0], ends[2])

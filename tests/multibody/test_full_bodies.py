@@ -5,7 +5,6 @@ import netgen.occ as occ
 import ngsolve
 import numpy as np
 import pytest
-from exudyn.itemInterface import SensorNode
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
@@ -17,7 +16,7 @@ from exudyn_rotor import (
     recommended_settings,
 )
 from exudyn_rotor.multibody.full import full_plan
-from exudyn_rotor.solvers.memory import TooLittleMemoryError
+from exudyn_rotor.solvers.factor import TooLittleMemoryError
 
 STEP, STEPS, NEWTON = 1e-4, 20, 1e-10
 GRAVITY = [1.0, -9.81, 3.0]
@@ -102,7 +101,15 @@ def tight_settings(body, step, steps=STEPS):
 FAMILY = {
     "2.2": ({"translation": "free", "spin": "free", "initial_speed": 300.0}, 4),
     "2.3": ({"translation": "in-plane", "spin": "free", "initial_speed": 300.0}, 3),
-    "2.4": ({"translation": "none", "spin": "free", "initial_speed": 300.0}, 1),
+    "2.4": (
+        {
+            "translation": "none",
+            "spin": "free",
+            "initial_speed": 300.0,
+            "stiffness_damping": 1e-6,
+        },
+        1,
+    ),
     "2.5": ({"translation": "none", "spin": 300.0}, 1),
     "2.5, elastic": ({"translation": "none", "spin": 300.0, "drive": "elastic"}, 0),
     "2.5, θ(t)": ({"translation": "none", "spin": RUN_UP}, 1),
@@ -151,71 +158,6 @@ def test_full_and_reduced_with_all_modes_agree(bar, name, axis, level):
         assert np.abs(one - other).max() < (1e-8 if index < 4 else 1e-5) * size
 
 
-def swinging(rotor, options):
-    """Displacements and rates of two bending modes that keep the conditions, 2 mm and 4 m/s."""
-    body = add_rotor(exudyn.SystemContainer().AddSystem(), rotor, **options)
-    shapes, held = rotor.reduce(2).shapes.matrix[:, -2:], body.selection.conditions.rows
-    lever = np.cross(rotor.axis.direction, rotor.nodes - body.selection.origin)
-    rigid = np.c_[np.tile(np.eye(3), (rotor.node_count, 1)), lever.ravel()]
-    shapes = shapes - rigid @ np.linalg.pinv(held @ rigid) @ (held @ shapes)
-    bent, rate = (shapes / np.abs(shapes).max(axis=0)).T
-    return {"modal_coordinates": 2e-3 * bent, "modal_velocities": 4.0 * rate}
-
-
-def energy_and_momentum(body):
-    """``½ ṗᵀMṗ + ½ cᵀKc`` and ``e · Σ p × Mṗ``, ``ṗ = Aᵀτ̇ + ċ + ω e × (x + c)``, rotor axes."""
-    q, rates, _ = body.coordinates()
-    rotor, modes = body.selection.source, body.motion.modes
-    c, c_t = (values[modes].reshape(-1, 3) for values in (q, rates))
-    count, e = modes.start - 1, body.axis.direction
-    place = rotor.nodes - body.selection.origin + c
-    turn = body.motion.orientation @ body.axis.rotation(q[count])
-    drift = turn.T @ body.motion.free_directions @ rates[:count]
-    velocity = drift + c_t + rates[count] * np.cross(e, place)
-    momentum = rotor.mass @ velocity.ravel()
-    energy = momentum @ velocity.ravel() + c.ravel() @ (rotor.stiffness @ c.ravel())
-    return 0.5 * energy, e @ np.cross(place, momentum.reshape(-1, 3)).sum(axis=0), rates[count]
-
-
-@pytest.mark.parametrize(
-    ("name", "axis", "damping"),
-    [("2.2", "z", 0.0), ("2.3", "skew", 0.0), ("2.4", "off", 0.0), ("2.2", "skew", 2e-5)],
-)
-def test_a_swinging_rotor_without_torque_keeps_energy_and_momentum(bar, name, axis, damping):
-    """The spin speed follows the moment of inertia, which changes by some per cent.
-
-    The trapezoidal rule errs by (ωh)²/12 of what is exchanged, a tenth of the whole: 4e-4 with 40
-    steps and the faster of two modes (4400 rad/s), and four times as much with half the steps. What
-    damping by β K takes, β ∫ ċᵀKċ dt, has an integral with an error of (2ωh)²/12.
-    """
-    rotor = on_axis(bar, axis)
-    options = FAMILY[name][0] | {"stiffening": "none", "stiffness_damping": damping}
-    options |= swinging(rotor, options)
-    errors = []
-    for steps in (20, 40):
-        mbs = exudyn.SystemContainer().AddSystem()
-        body = add_rotor(mbs, rotor, **options)
-        rates = mbs.AddSensor(
-            SensorNode(
-                nodeNumber=body.nodes["fields"], outputVariableType=KINDS.Coordinates_t,
-                storeInternal=True,
-            )
-        )  # fmt: skip
-        mbs.Assemble()
-        energy, momentum, speed = energy_and_momentum(body)
-        settings = tight_settings(body, 2e-3 / steps, steps)
-        settings.timeIntegration.generalizedAlpha.spectralRadius = 1.0
-        mbs.SolveDynamic(settings)
-        later = energy_and_momentum(body)
-        assert abs(later[2] / speed - 1.0) > 1e-2
-        time, c_t = np.split(mbs.GetSensorStoredData(rates)[:, : 1 + 3 * rotor.node_count], [1], 1)
-        powers = np.sum(c_t * (c_t @ rotor.stiffness), axis=1)
-        lost = damping * np.trapezoid(powers, time[:, 0]) / energy
-        errors.append([abs(later[0] / energy + lost - 1.0), abs(later[1] / momentum - 1.0)])
-    assert np.all(np.array(errors[1]) < 4e-4 + 0.016 * lost)
-    np.testing.assert_allclose(np.divide(*errors), 4.0, rtol=0.15)
-
-
 def scene(source, **options):
     """Return an empty scene with the rotor at 10 rad/s, held in space."""
     mbs = exudyn.SystemContainer().AddSystem()
@@ -249,18 +191,6 @@ def test_stress_is_that_of_the_rotation(bar):
     mbs.SolveStatic(settings)
     known = rotor.carried_prestress.stress
     assert np.abs(body.stress() - known).max() < 1e-4 * np.abs(known).max()
-
-
-def test_instants_that_cannot_be_stored_are_refused(bar):
-    mbs, body = scene(bar)
-    for wrong, match in (([1.0, 0.5], "ascending"), ([-1.0], "before the start")):
-        with pytest.raises(ValueError, match=f"instants: .*{match}"):
-            body.start_recording(wrong)
-    mbs.Assemble()
-    with pytest.raises(ValueError, match=r"before mbs\.Assemble"):
-        body.start_recording([0.0])
-    with pytest.raises(ValueError, match=r"call body\.start_recording"):
-        body.recorded()
 
 
 def test_too_little_memory_is_said_before_anything_is_added(bar, monkeypatch):

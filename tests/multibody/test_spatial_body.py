@@ -4,13 +4,11 @@ import exudyn
 import numpy as np
 import pytest
 from point_rotors import random_rotor
-from scipy.spatial.transform import Rotation
 
-from exudyn_rotor.multibody.spatial_body import add_spatial_rotor
 from exudyn_rotor.theory.nodal import rotations, translations
+from validation.exudyn_3d.spatial_body import add_spatial_rotor
 
 KINDS = exudyn.OutputVariableType
-TURN = Rotation.from_rotvec([0.3, -0.5, 0.8]).as_matrix()
 
 
 def settings(duration: float, steps: int) -> exudyn.SimulationSettings:
@@ -38,10 +36,9 @@ def test_fall_with_a_spin(rotor):
     body = add_spatial_rotor(
         mbs,
         rotor,
-        rotation=TURN,
         gravity=gravity,
-        initial_velocity=velocity,
-        initial_angular_velocity=TURN @ rotor.axis.direction,
+        velocity=velocity,
+        angular_velocity=rotor.axis.direction,
     )
     mbs.Assemble()
     mbs.SolveDynamic(settings(t, 50))
@@ -54,16 +51,3 @@ def test_fall_with_a_spin(rotor):
     rigid = np.hstack([translations(len(nodes)), rotations(nodes, np.zeros(3))])
     moments = rigid.T @ (rotor.mass @ flexible)
     np.testing.assert_allclose(moments, 0.0, atol=1e-9)
-
-
-def test_bad_arguments(rotor):
-    mbs = exudyn.SystemContainer().AddSystem()
-    for name in ("position", "initial_velocity", "initial_angular_velocity", "gravity"):
-        with pytest.raises(ValueError, match=name):
-            add_spatial_rotor(mbs, rotor, **{name: [0.0, np.nan, 0.0]})
-    with pytest.raises(ValueError, match="rotation"):
-        add_spatial_rotor(mbs, rotor, rotation=np.ones((3, 3)))
-    assert mbs.systemData.NumberOfNodes() == 0
-    body = add_spatial_rotor(mbs, rotor)
-    with pytest.raises(ValueError, match="interface"):
-        body.marker("other")

@@ -1,29 +1,21 @@
 """Supports put into a scene, against the same list in linear analyses and against closed forms."""
 
-from dataclasses import replace
-
 import exudyn as exu
 import numpy as np
 import pytest
 from apart import distance
-from exudyn.itemInterface import MarkerBodyRigid
-from exudyn.rigidBodyUtilities import InertiaCuboid
 from point_rotors import ring_rotor
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
     SolidRotor,
     Support,
-    Unbalance,
     add_rotor,
     add_supports,
-    campbell,
     linear_model,
     recommended_settings,
-    stability,
-    unbalance_response,
 )
-from exudyn_rotor.reduction.driven import without_spin
+from exudyn_rotor.reduction.selection import without_spin
 
 SPEED = 200.0
 FULL = np.array([[2.0e6, 4e5, 1e5], [-3e5, 1.2e6, 2e5], [5e4, -1e5, 3e6]])
@@ -96,85 +88,8 @@ def test_scene_and_linear_rotor_have_the_same_exponents(kind):
     assert compared(kind) < 1e-7
 
 
-TO_X, TO_Y = (Rotation.from_euler(a, 90.0, degrees=True).as_matrix() for a in ("y", "x"))
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
-
-
-MIXED = [
-    replace(KINDS["cross-coupled"], tilt_stiffness=2e3, tilt_damping=3.0),
-    KINDS["table"],
-    replace(HELD, frame="rotor", damping=0.0),
-    replace(KINDS["number"], interface="right", tilt_stiffness=([0.0, 300.0], [1e3, 5e3])),
-]
-
-
-def test_public_analyses_take_the_scene_and_the_list_alike():
-    # about the reference: centrifugal loads strain the rings, by which a scene's equations change
-    reduced, unbalance = rings(heavy=0.0), [Unbalance("left", 1e-4)]
-    held = Support("right", np.diag([1e6, 1e6, 5e5]), 150.0, np.diag([0.0, 0.0, 4e3]))
-    isotropic = [MIXED[0], held]
-    mbs, body, _ = on_supports(reduced, isotropic, spin=0.0, drive="elastic")
-    targets = (
-        linear_model(mbs, body=body, about="given"),
-        linear_model(reduced, supports=isotropic),
-    )
-    speeds = [60.0, SPEED]
-    responses = [unbalance_response(each, speeds, unbalance, accuracy=None) for each in targets]
-    orbits = [each.motion[:, :, each.orders.tolist().index(1), :3] for each in responses]
-    np.testing.assert_allclose(*orbits, rtol=0.0, atol=1e-10 * np.abs(orbits[1]).max())
-    frequencies = [np.sort(campbell(each, speeds).frequencies_rotor) for each in targets]
-    np.testing.assert_allclose(*frequencies, rtol=1e-9)
-    every = [*MIXED, held]
-    mbs, body, _ = on_supports(reduced, every, spin=0.0, drive="elastic")
-    targets = (
-        linear_model(mbs, body=body, about="given"),
-        linear_model(reduced, supports=every),
-    )
-    growth = [stability(each, [SPEED]).growth for each in targets]
-    np.testing.assert_allclose(*growth, rtol=1e-8, atol=1e-8)
-
-
-FROM_BASE = [KINDS["3 x 3"], KINDS["tilt, damped"], replace(HELD, tilt_stiffness=2e3)]
-
-
-def block(mbs, turn):
-    """Return a sprung rigid block below the rotor."""
-    base = mbs.CreateRigidBody(
-        inertia=InertiaCuboid(density=2500.0, sideLengths=[0.3, 0.1, 0.5]),
-        referencePosition=[0.0, -0.2, 0.0],
-        referenceRotationMatrix=turn,
-        nodeType=exu.NodeType.RotationRxyz,
-    )
-    ground = mbs.CreateGround()
-    for place in np.array([[-1, 0, -1], [-1, 0, 1], [1, 0, -1], [1, 1, 1]]) * 0.1:
-        mbs.CreateCartesianSpringDamper(
-            itemNumbers=[ground, base],
-            localPosition0=list(turn @ place + [0.0, -0.2, 0.0]),
-            localPosition1=list(place),
-            stiffness=[4e5, 6e5, 5e5],
-            damping=[100.0] * 3,
-        )
-    return base
-
-
-def test_a_foundation_feels_the_forces():
-    """On a skew block, by its number or by markers."""
-    found, turn = [], SKEW
-    for by_markers in (False, True):
-        mbs = exu.SystemContainer().AddSystem()
-        body, base = add_rotor(mbs, rings(), spin=SPEED), block(mbs, turn)
-        if by_markers:
-            base = {
-                name: mbs.AddMarker(MarkerBodyRigid(bodyNumber=base, localPosition=turn.T @ place))
-                for name, place in SEATS.items()
-            }
-        add_supports(body, FROM_BASE, base)
-        mbs.Assemble()
-        found.append(linear_model(mbs, body=body, about="given"))
-    assert distance(*found, SPEED) < 1e-9
-
-
-SEATS = {"left": np.array([0.0, 0.2, -0.15]), "right": np.array([0.0, 0.2, 0.15])}  # in the block
+TO_X, TO_Y = (Rotation.from_euler(a, 90.0, degrees=True).as_matrix() for a in ("y", "x"))
 
 
 RISING = ([0.0, 100.0], [[[2e5, 3e4], [0.0, 1e5]], [[8e5, 0.0], [-6e4, 3e5]]])

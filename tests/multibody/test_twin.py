@@ -145,31 +145,3 @@ def test_swapping_the_name_of_the_call_gives_the_same_motion(fem, direction):
     for name, signal in own.items():
         change = abs(signal - signal[0]).max()
         assert abs(twin[name] - signal).max() < AGREEMENT[name] * change, name
-
-
-def test_rotor_beside_a_3d_body(fem):
-    """Neither body notices the other."""
-
-    def run(*calls):
-        mbs = exu.SystemContainer().AddSystem()
-        sensors = [
-            mbs.AddSensor(
-                exudyn.utilities.SensorMarker(
-                    markerNumber=getattr(mbs, call)(
-                        call, fem, initialAngularVelocity=[0.0, 0.0, 200.0], gravity=[0, -9.81, 0]
-                    )[f"{call}:right"],
-                    outputVariableType=exu.OutputVariableType.Velocity,
-                    storeInternal=True,
-                )
-            )
-            for call in calls
-        ]
-        mbs.Assemble()
-        mbs.SolveDynamic(settings(50, 1e-3))
-        return [mbs.GetSensorStoredData(sensor)[:, 1:] for sensor in sensors]
-
-    together = run(OWN, TWIN)
-    for call, signal in zip((OWN, TWIN), together, strict=True):
-        (alone,) = run(call)
-        # both share the tolerance of Newton's method
-        assert abs(signal - alone).max() < 1e-7 * abs(alone).max()

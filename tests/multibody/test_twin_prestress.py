@@ -48,8 +48,8 @@ def test_full_stiffening_with_a_given_prestress(fem, solid, source):
 
 
 WRONG_PRESTRESS = {
-    "full without": ({"stiffening": "full"}, ValueError, r"full' .*: give prestress=, made by"),
-    "True": ({"prestress": True}, TypeError, "prestress: needs a Prestress, got True"),
+    "full without": ({"stiffening": "full"}, ValueError, r"full' .*: give prestress=; .*makes one"),
+    "True": ({"prestress": True}, TypeError, "prestress: needs Prestress, got True"),
 }
 
 

@@ -16,13 +16,13 @@ DAMPING, SPEED = 0.3, 1.2  # x″ + δ x′ − x + x³ = γ cos(ωt): δ, ω of
 class Wells(Bearing):
     """Duffing's force along n1, and a spring along n2."""
 
-    def _law(self, x, y, vx, vy, angle, speed):
+    def law(self, x, y, vx, vy, angle, speed):
         return x - x**3 - DAMPING * vx, -4.0 * y - DAMPING * vy
 
-    def equilibrium(self, speed, load=None):
+    def _rest(self, speed, load):
         return np.array([1.0, 0.0])
 
-    def coefficients(self, speed, load=None):
+    def _matrices(self, speed, load):
         return np.diag([2.0, 4.0]), DAMPING * np.eye(2)
 
 

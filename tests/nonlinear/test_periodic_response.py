@@ -25,14 +25,14 @@ class Cubic(Bearing):
     k3: float = 2e13
     c: float = 200.0
 
-    def _law(self, x, y, vx, vy, angle, speed):
+    def law(self, x, y, vx, vy, angle, speed):
         k = self.k + self.k3 * (x * x + y * y)
         return -k * x - self.c * vx, -k * y - self.c * vy
 
-    def equilibrium(self, speed, load=None):
+    def _rest(self, speed, load):
         return np.zeros(2)
 
-    def coefficients(self, speed, load=None):
+    def _matrices(self, speed, load):
         return self.k * np.eye(2), self.c * np.eye(2)
 
     def speeds(self, r):

@@ -1,7 +1,5 @@
 """Level 'full' of centrifugal stiffening: exact rotations, blades, all analyses, storage."""
 
-from dataclasses import replace
-
 import exudyn as exu
 import numpy as np
 import pytest
@@ -12,7 +10,6 @@ from exudyn_rotor import (
     ReducedRotor,
     SolidRotor,
     add_rotor,
-    campbell,
 )
 from exudyn_rotor.theory.stiffening import stiffening
 
@@ -51,28 +48,6 @@ def test_rotations_of_the_exact_level_are_contained(rotor, unbalanced):
     assert np.abs(tilt.B).max() > 1e-3
 
 
-@pytest.mark.parametrize("speed", [40.0, 400.0, 4000.0])
-def test_conical_modes_are_exact(rotor, speed):
-    stiff = rotor.reduce(0, prestress=True)
-    theta = stiff.invariants.Theta
-    moments = np.trace(stiff.invariants.J) * np.eye(3) - stiff.invariants.J
-    transverse = (moments[0, 0] + moments[1, 1]) / 2
-    stiffness, springs = 1e4, np.zeros(6)
-    springs[4:] = stiffness / transverse
-    held = replace(stiff, invariants=replace(stiff.invariants, K=np.diag(springs)))
-    # rigid axisymmetric rotor: I_t λ² − i I_p ω λ + k = 0 in inertial axes
-    roots = np.abs(np.roots([-transverse, theta * speed, stiffness]) - speed)
-    found = campbell(held, speed, stiffening="full").frequencies_rotor[0]
-    for root in roots:
-        assert np.abs(found / root - 1).min() < 1e-4
-    paper = campbell(held, speed, stiffening="none").frequencies_rotor[0]
-    if speed >= 400.0:
-        assert max(np.abs(paper / root - 1).min() for root in roots) > 0.01
-
-
-# ------------------------------------------------------------------ full models
-
-
 # ------------------------------------------------------------------ reduced rotors
 
 
@@ -87,38 +62,7 @@ def test_reduced_rotor_without_prestress_is_told_what_to_do(rotor):
             field(1.0)
 
 
-# ------------------------------------------------------------------ invariants and storage
-
-
-def test_storage_keeps_all(reduced, tmp_path):
-    whole = replace(
-        reduced, invariants=replace(reduced.invariants, B=np.eye(reduced.size), mass=2.0)
-    )
-    whole.save(tmp_path / "a.npz")
-    found = ReducedRotor.load(tmp_path / "a.npz")
-    for name in ("K2", "B"):
-        assert np.array_equal(getattr(found.invariants, name), getattr(whole.invariants, name))
-    for name in ("displacement", "stress"):
-        assert np.array_equal(getattr(found.centrifugal, name), getattr(whole.centrifugal, name))
-    assert found.centrifugal.yield_stress == 3e8
-
-
 # ------------------------------------------------------------------ a scene
-
-
-def test_body_of_this_level_takes_steps(reduced):
-    system = exu.SystemContainer()
-    mbs = system.AddSystem()
-    body = add_rotor(mbs, reduced, spin=ConstantSpeed(300.0), stiffening="full")
-    mbs.Assemble()
-    settings = exu.SimulationSettings()
-    settings.timeIntegration.numberOfSteps = 5
-    settings.timeIntegration.endTime = 1e-3
-    settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write = False
-    mbs.SolveDynamic(settings)
-    assert body.stiffening == "full"
-    assert np.all(np.isfinite(mbs.systemData.GetODE2Coordinates()))
 
 
 def test_body_of_this_level_needs_the_prestress(rotor):

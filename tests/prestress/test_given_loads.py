@@ -7,7 +7,6 @@ import ngsolve as ngs
 import numpy as np
 import pytest
 import scipy.linalg as la
-from beam_models import BeamRotor
 from models import STEEL
 from netgen.occ import Box, Cylinder, OCCGeometry, Pnt, Z
 
@@ -61,50 +60,6 @@ def test_a_beam_column_between_two_bearings(share):
     added = share * EULER * (np.pi / LENGTH) ** 2 / (shaft().total_mass / LENGTH)
     # a solid has its static strain beside that, 2e-4 over 1 + N/N_cr
     assert np.sqrt(bending(loaded)) == pytest.approx(np.sqrt(square + added), rel=1e-3)
-
-
-def column(beam: BeamRotor, force: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return M, G and K of a beam in a plane, with the axial force in each element."""
-    M, G, K = beam.plane
-    for i, (L, N) in enumerate(zip(np.diff(beam.stations), force, strict=True)):
-        K[2 * i : 2 * i + 4, 2 * i : 2 * i + 4] += N / (30.0 * L) * np.array([
-            [36, 3 * L, -36, 3 * L],
-            [3 * L, 4 * L**2, -3 * L, -(L**2)],
-            [-36, -3 * L, 36, -3 * L],
-            [3 * L, -(L**2), -3 * L, 4 * L**2],
-        ])  # fmt: skip
-    return M, G, K
-
-
-def test_whirl_of_a_spinning_shaft_under_thrust_is_that_of_beams():
-    """The thrust acts at a station between the bearings, and the thrust bearing is at one end."""
-    speed, force, place = 400.0, -0.6 * EULER, 0.6
-    solid = shaft().interface_at("middle", place, 0.04)
-    supports = [
-        er.Support("left", np.diag([3e6, 3e6, 1e9])),
-        er.Support("right", np.diag([3e6, 3e6, 0.0])),
-    ]
-    prestress = solid.prestress(loads={"middle": [0.0, 0.0, force]}, supports=supports)
-    stations = np.linspace(0.0, LENGTH, 21)
-    found, young = {}, YOUNG
-    for name, given, acting in (("without", None, 0.0), ("with", prestress, force)):
-        beam = BeamRotor(tuple(stations), 0.0, 2.0 * RADIUS, STEEL | {"youngsModulus": young}, ())
-        reduced = solid.reduce(modes(12), prestress=given)
-        diagram = er.campbell(reduced, [speed], supports=supports, accuracy=None)
-        whirl = np.sort(diagram.frequencies_inertial[0])
-        whirl = whirl[whirl > 10.0][:4]
-        M, G, K = column(beam, np.where(stations[:-1] < place - 1e-9, acting, 0.0))
-        for at in (0, -2):
-            K[at, at] += 3e6
-        A = np.block([[np.zeros_like(M), np.eye(len(M))], [-K, 1j * speed * G]])
-        B = la.block_diag(np.eye(len(M)), M)
-        values = np.sort(np.abs(la.eigvals(A, B).imag))[:4]
-        if given is None:  # the mesh is a little stiffer than beams
-            young *= (whirl[0] / values[0]) ** 2
-        else:
-            assert whirl == pytest.approx(values, rel=3e-3)
-        found[name] = whirl
-    assert np.all(found["with"][:2] < 0.9 * found["without"][:2])
 
 
 def test_a_spinning_shaft_held_at_both_ends_is_in_tension():
@@ -177,23 +132,6 @@ def test_scenes_have_it_reduced_and_full():
     assert listed.deflection()[1] == pytest.approx(sag[1], rel=1e-6)
     free = er.static_response(solid, gravity=[0.0, -9.81, 0.0], supports=pinned, at="middle")
     assert listed.deflection()[1] / free.deflection()[1] == pytest.approx(2.0, rel=0.01)
-
-
-def test_files_and_linear_scenes_keep_it(tmp_path):
-    reduced = shaft().reduce(modes(), prestress=thrust(-0.5 * EULER))
-    reduced.save(tmp_path / "rotor.npz")
-    loaded = er.ReducedRotor.load(tmp_path / "rotor.npz")
-    assert np.array_equal(loaded.invariants.K0, reduced.invariants.K0)
-    mbs = exudyn.SystemContainer().AddSystem()
-    body = er.add_rotor(mbs, reduced, spin=300.0, translation="none")
-    er.add_supports(body, PINNED)
-    mbs.Assemble()
-    of_list = er.campbell(reduced, [300.0], supports=PINNED, accuracy=None).frequencies_inertial
-    of_scene = er.campbell(
-        er.linear_model(mbs, body=body), [300.0], accuracy=None
-    ).frequencies_inertial
-    a, b = (np.sort(each[0][each[0] > 10.0])[:8] for each in (of_list, of_scene))
-    assert a == pytest.approx(b, rel=1e-6)
 
 
 @pytest.mark.parametrize(

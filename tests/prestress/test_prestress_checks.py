@@ -1,6 +1,5 @@
 """Prestress: rigid hubs, refusals of another static state, and the stress at rest."""
 
-import exudyn as exu
 import ngsolve as ngs
 import numpy as np
 import pytest
@@ -11,10 +10,7 @@ from netgen.occ import Box, Cylinder, Glue, OCCGeometry, Pnt, X, Z
 from exudyn_rotor import (
     ReducedRotor,
     SolidRotor,
-    add_rotor,
-    check_run,
 )
-from exudyn_rotor.solid.tensor import von_mises
 from exudyn_rotor.theory.nodal import rotations
 from exudyn_rotor.theory.stiffening import stiffening
 
@@ -93,9 +89,6 @@ def test_hub_acts_as_a_light_and_stiff_one_in_the_mesh(ring):
     assert np.abs(bare - expected).max() > 0.2 * np.abs(expected).max()
 
 
-# ------------------------------------------------------------------ another static state
-
-
 # ------------------------------------------------------------------ stress at rest
 
 
@@ -130,22 +123,3 @@ def test_static_stress_holds_the_stress_at_rest(stretched, tmp_path):
         assert "centrifugal.constant_stress" not in old
     loaded = ReducedRotor.load(tmp_path / "old.npz")
     assert np.array_equal(loaded.static_stress(300.0), plain.static_stress(300.0))
-
-
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_yield_row_holds_the_stress_at_rest(stretched, sign):
-    given = stretched.prestress(
-        stress=uniform_tension(stretched, sign * TENSION), yield_stress=0.9 * TENSION
-    )
-    reduced = stretched.reduce(2, prestress=given)
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, reduced, translation="none", spin=300.0)
-    mbs.Assemble()
-    row = check_run(body, reduced=reduced, warn=False)["yield"]
-    by_spin = 300.0**2 * stretched.prestress().stress
-    at_speed = von_mises(uniform_tension(stretched, sign * TENSION) + by_spin).max()
-    assert row.value == pytest.approx(max(at_speed, TENSION) / (0.9 * TENSION), rel=1e-6)
-    assert not row.ok
-
-
-# ------------------------------------------------------------------ input

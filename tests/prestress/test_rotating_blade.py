@@ -6,17 +6,14 @@ import pytest
 import scipy.linalg as la
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
-from models import STEEL, disc_rotor
+from models import STEEL
 from netgen.occ import Box, OCCGeometry, Pnt, X
 from numpy.polynomial import Polynomial
 
 from exudyn_rotor import (
-    Prestress,
     SolidRotor,
     SpinAxis,
     campbell,
-    free_modes,
-    spinning_modes,
 )
 from exudyn_rotor.theory.stiffening import stiffening
 
@@ -93,45 +90,3 @@ def test_euler_stress_of_a_blade_is_that_of_its_load():
     # without it, what the tilts of rigid rotors feel is left
     plain = solid.reduce(4, prestress=True).invariants
     assert np.array_equal(stiffening(plain, "full").B, stiffening(plain, "tilt").B)
-
-
-# ------------------------------------------------------------------ modes at speed
-
-
-@pytest.mark.parametrize("speed", [3.0, 20.0])
-def test_modes_at_speed_of_a_mass_on_a_string_and_oblique_springs(speed):
-    """At the radius r; tension mΩ²r holds both sideways motions by mΩ², inertia frees one of them.
-
-    Sideways ``[[k_t, k_c], [k_c, k_a + mΩ²]]``: the lowest motion turns out of the tangential
-    direction by α, ``tan 2α = 2 k_c/(k_t − k_a − mΩ²)``. Its Coriolis force ``m e × φ`` is radial
-    and stretches ``k_r − mΩ²``. To rounding.
-    """
-    mass, radial, along, axial, oblique = 2.0, 9e5, 900.0, 800.0, 300.0
-    nodes = np.array([[0.7, 0.0, 0.0], [0.0, 0.0, 0.5], [0.0, 0.0, -0.5]])
-    stiffness = 1e8 * np.eye(9)  # of two points on the axis
-    stiffness[:3, :3] = [[radial, 0, 0], [0, along, oblique], [0, oblique, axial]]
-    rotor = SolidRotor.from_matrices(mass * np.eye(9), stiffness, nodes, "z")
-    tension = mass * np.diag([0.0, 1.0, 1.0, *[0.0] * 6])
-    string = Prestress.from_matrix(tension, nodes, balanced=False)
-    basis = spinning_modes(rotor.with_prestress(string), 1, [speed]).matrix[:3]
-    angle = 0.5 * np.arctan2(2 * oblique, along - axial - mass * speed**2)
-    mode = np.array([0.0, -np.sin(angle), np.cos(angle)]) / np.sqrt(mass)
-    mode *= np.sign(mode[np.argmax(np.abs(mode))])
-    np.testing.assert_allclose(basis[:, 1], mode, rtol=0, atol=1e-12)
-    response = mass * np.cross((0, 0, 1), mode) / (radial + mass * speed**2)
-    np.testing.assert_allclose(basis[:, 2], response, rtol=0, atol=1e-9 * abs(response).max())
-
-
-@pytest.fixture(scope="module")
-def rotor() -> SolidRotor:
-    return disc_rotor(1)
-
-
-def test_modes_at_speed_of_a_free_rotor(rotor):
-    carrying = rotor.with_prestress(rotor.prestress())
-    reduced = carrying.reduce(spinning_modes(carrying, 4, [500.0]))
-    assert reduced.rigid == rotor.reduce(1).rigid
-    assert 8 <= reduced.size - 6 <= 4 + 2 * (4 + 6)  # rigid motions are among the modes at speed
-    np.testing.assert_allclose(
-        reduced.frequencies[6:10], free_modes(rotor, 4).frequencies, rtol=1e-6
-    )

@@ -91,18 +91,6 @@ def test_data_frames_hold_the_columns(name):
         assert list(frame[label]) == pytest.approx(values.tolist(), nan_ok=True)
 
 
-@EVERY
-def test_data_sets_hold_the_fields(name):
-    result, data = RESULTS[name], RESULTS[name].to_xarray()
-    for field in result.__dataclass_fields__:
-        value = getattr(result, field)
-        if isinstance(value, np.ndarray):
-            assert np.array_equal(data[field].values, value, equal_nan=value.dtype.kind in "fc")
-    if name == "Campbell":
-        assert data["growth"].dims == ("speeds", "modes")
-        assert float(data["growth"].sel(speeds=20.0)[0]) == result.growth[1, 0]
-
-
 def test_operating_range_and_margins_are_shaded(diagram):
     ax = diagram.plot(units="SI", operating_range=(40.0, 80.0), margins=(0.1, 0.25))
     spans = [(patch.get_x(), patch.get_x() + patch.get_width()) for patch in ax.patches]

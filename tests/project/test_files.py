@@ -14,7 +14,7 @@ MAY_BE_LONGER = ("triangles", "dropped", "field.free_motions", "field.vectors")
 MAY_BE_EMPTY = ("triangles", "field.vectors")
 MAY_BE_MISSING = (
     ".K2", ".B", ".K4", ".K2_estimated", ".H", ".K0", "shapes.stress", ".threshold", ".stiffening",
-    ".critical_speed_ratio", ".gas_density", ".basis_errors",
+    ".critical_speed_ratio", ".gas_density", ".basis_errors", "field.coordinates",
 )  # fmt: skip
 OF_A_MESH = {f"field.{name}" for name in ("nodes", "displacement", "along", "triangles", "stress")}
 MAY_BE_NAN = {
@@ -166,13 +166,13 @@ def test_objects_are_neither_read_nor_written(tmp_path):
 def test_other_files_are_told_apart(tmp_path):
     path = tmp_path / "other.npz"
     np.savez(path, K=np.eye(3))
-    with pytest.raises(ValueError, match="holds no reduced rotor, it was not written by"):
+    with pytest.raises(ValueError, match="holds no reduced rotor, but"):
         ReducedRotor.load(path)
     STORED["Campbell"].save(path)
-    with pytest.raises(ValueError, match="holds no reduced rotor, but a result"):
+    with pytest.raises(ValueError, match=r"holds no reduced rotor, but '.* result"):
         ReducedRotor.load(path)
     STORED["ReducedRotor"].save(path)
-    with pytest.raises(ValueError, match="holds no result, but a reduced rotor"):
+    with pytest.raises(ValueError, match=r"holds no result, but '.* reduced rotor"):
         load_result(path)
     for version in (1, 3):
         np.savez(path, **entries(path) | {"format": f"exudyn_rotor reduced rotor {version}"})

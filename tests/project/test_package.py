@@ -34,7 +34,7 @@ def test_lowest_releases_are_those_that_are_allowed():
 
 def test_types_are_published():
     assert (ROOT / "exudyn_rotor" / "py.typed").exists()
-    assert 'exudyn_rotor = ["py.typed"]' in read("pyproject.toml")
+    assert 'exudyn_rotor = ["py.typed", "__init__.pyi"]' in read("pyproject.toml")
 
 
 def test_public_names_are_there_sorted_and_with_an_example():

@@ -12,9 +12,9 @@ from small_results import STORED
 import exudyn_rotor
 from exudyn_rotor import results
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.response.loads import HarmonicForce, Unbalance
-from exudyn_rotor.linear.response.response import HarmonicResponse, UnbalanceResponse
-from exudyn_rotor.linear.response.steady_response import harmonic_response, unbalance_response
+from exudyn_rotor.linear.response.loads import Unbalance
+from exudyn_rotor.linear.response.response import UnbalanceResponse
+from exudyn_rotor.linear.response.steady_response import unbalance_response
 from exudyn_rotor.results import Result, load_result, numbers, storable, words
 
 
@@ -50,14 +50,6 @@ def ellipses() -> UnbalanceResponse:
     return unbalance_response(
         rotor, speeds, [Unbalance("mid", 1e-4)], supports=supports, at=["mid", 2]
     )
-
-
-@pytest.fixture(scope="module")
-def shaken() -> HarmonicResponse:
-    rotor = ring_rotor(0.1, 0.2, 10.0).with_interface("mid", range(10)).reduce(0)
-    supports = [Support("mid", 4e5, 200.0, 5e4, 10.0)]
-    force = HarmonicForce("mid", (1.0, 0.0))
-    return harmonic_response(rotor, [100.0, 200.0], force, speed=90.0, supports=supports)
 
 
 def test_every_kind_of_field_comes_back(tmp_path):
@@ -113,21 +105,3 @@ def test_orbit_is_drawn_for_every_place(ellipses):
     assert [text.get_text() for text in axes.get_legend().get_texts()] == ["mid", "node 2"]
     title = ellipses.plot_orbit(240.0, units="rpm").get_title(loc="right")
     assert title == f"spin speed {30.0 / np.pi * ellipses.speeds[index]:.4g} rpm"
-
-
-def test_pictures_are_figures_of_pyplot(ellipses, shaken, tmp_path):
-    """What is drawn last is what ``pyplot.savefig`` writes, and given axes make no figure."""
-    for draw in (
-        lambda ax: ellipses.plot_polar("mid", ax=ax),
-        lambda ax: shaken.plot_orbit(100.0, ax=ax),
-    ):
-        drawn = draw(None)
-        assert pyplot.gcf() is drawn.figure
-        assert pyplot.gca() is drawn
-        before = pyplot.get_fignums()
-        given = pyplot.subplots()[1]
-        assert draw(given) is given
-        assert len(pyplot.get_fignums()) == len(before) + 1
-    pyplot.savefig(tmp_path / "a.png")
-    pixels = pyplot.imread(tmp_path / "a.png")
-    assert np.ptp(pixels[..., :3]) > 0.5  # not blank

@@ -1,8 +1,5 @@
 """What modes leave out: attachment modes against a pseudo-inverse, and estimates against runs."""
 
-import re
-import warnings
-
 import exudyn as exu
 import numpy as np
 import pytest
@@ -11,14 +8,10 @@ from models import STEEL, block_beam, centered_disc
 from run_scenes import scene, solve
 
 from exudyn_rotor import (
-    AssumptionWarning,
     ReducedRotor,
     SolidRotor,
-    Support,
     check_run,
-    craig_bampton_modes,
     keep_modes,
-    propose,
 )
 from exudyn_rotor.theory.nodal import rotations, translations
 
@@ -164,30 +157,4 @@ def test_estimate_after_a_run_is_what_the_springs_would_bend(lopsided, whole, co
     row = check_run(body, warn=False)["residual"]
     assert row.value == pytest.approx(expected, rel=1e-5)
     assert not row.ok
-    assert check_run(body, limits={"residual": 1.01 * expected}, warn=False)["residual"].ok
-
-
-def told(reduced: ReducedRotor, **given) -> str:
-    """Return what `propose` warns of."""
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        propose(reduced, **given)
-    assert all(one.category is AssumptionWarning for one in caught)
-    return "; ".join(str(one.message) for one in caught)
-
-
-def missed(reduced: ReducedRotor, **given) -> float:
-    """Return which share of the response is said to be missing."""
-    found = re.search(r"flexible modes given miss (\S+) of the response", told(reduced, **given))
-    return float(found[1]) if found else 0.0
-
-
-def test_modes_that_are_missing_are_told_before_a_run(rotor):
-    supports = [Support(name, 5e6, 100.0) for name in ("left", "right")]
-    given = {"speeds": 100.0, "supports": supports}
-    shares = [missed(rotor.reduce(count), **given) for count in (0, 4, 20)]
-    assert 0.05 < shares[0] < 0.5
-    assert 0.005 < shares[1] < shares[0]
-    assert shares[2] < 0.01
-    assert missed(rotor.reduce(craig_bampton_modes(rotor, 0)), **given) > 0.01
-    assert missed(rotor.reduce(craig_bampton_modes(rotor, 12)), **given) == 0.0
+    assert check_run(body, accuracy=min(1.01 * expected, 0.9), warn=False)["residual"].ok

@@ -11,9 +11,8 @@ import scipy.linalg as la
 import scipy.sparse as sp
 from exudyn.FEM import FEMinterface, HCBstaticModeSelection, KirchhoffMaterial
 
-from exudyn_rotor.reduction.component import free_modes
+from exudyn_rotor.reduction.component import fem_interface_modes, free_modes
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
-from exudyn_rotor.reduction.fem_interface_modes import fem_interface_modes
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.solvers.factor import DENSE_SIZE, NotPositiveDefiniteError, SparseCholesky
 from exudyn_rotor.theory.nodal import rotations, translations
@@ -124,40 +123,6 @@ def test_modes_of_supported_rotors(short_shaft, points, rigid_motions):
     found = free_modes(rotor, 6).frequencies ** 2
     # the reference loses eps times highest over lowest eigenvalue, 1e8
     np.testing.assert_allclose(found, expected[rigid_motions : rigid_motions + 6], rtol=1e-7)
-
-
-def test_first_bending_frequency_of_a_beam():
-    length, side = 1.0, 0.04
-    mesh = ngsolve.Mesh(
-        occ.OCCGeometry(occ.Box((0, 0, 0), (side, side, length))).GenerateMesh(maxh=0.025)
-    )
-    rotor = SolidRotor.from_ngsolve(mesh, STEEL, "z", interfaces=[])
-    expected = timoshenko_frequency(length, side)
-    # 2e-4 from the mesh (finer ones: 1e-4), 3e-5 because the correction is of first order
-    np.testing.assert_allclose(free_modes(rotor, 2).frequencies, expected, rtol=3e-4)
-
-
-def timoshenko_frequency(length: float, side: float) -> float:
-    """Return the first free-free bending frequency of a square beam [rad/s].
-
-    Euler–Bernoulli with β L = 4.730041, then Rayleigh's quotient of that mode shape with rotary
-    inertia and shear. Sources: Blevins, "Formulas for Natural Frequency and Mode Shape", 1979,
-    table 8-1; shear factor: Cowper, J. Appl. Mech. 33 (1966).
-    """
-    young, poisson, density = STEEL["youngsModulus"], STEEL["poissonsRatio"], STEEL["density"]
-    beta, sigma = 4.730041 / length, 0.982502
-    x = beta * np.linspace(0.0, length, 20001)
-    shape = np.cosh(x) + np.cos(x) - sigma * (np.sinh(x) + np.sin(x))
-    slope = beta * (np.sinh(x) - np.sin(x) - sigma * (np.cosh(x) + np.cos(x)))
-    moment = beta**2 * (np.cosh(x) - np.cos(x) - sigma * (np.sinh(x) - np.sin(x)))
-    shear = beta**3 * (np.sinh(x) + np.sin(x) - sigma * (np.cosh(x) - np.cos(x)))
-    gyration = side**2 / 12.0
-    factor = 10.0 * (1.0 + poisson) / (12.0 + 11.0 * poisson)
-    ratio = 2.0 * (1.0 + poisson) / factor
-    rotary = gyration * np.mean(slope**2) / np.mean(shape**2)
-    sliding = gyration * ratio * np.mean(shear**2) / np.mean(moment**2)
-    euler = beta**2 * np.sqrt(young * gyration / density)
-    return euler / np.sqrt((1.0 + rotary) * (1.0 + sliding))
 
 
 # ---- Hurty–Craig–Bampton modes

@@ -10,12 +10,10 @@ from exudyn.FEM import FEMinterface, HCBstaticModeSelection
 from models import disc_fem
 
 from exudyn_rotor import (
-    ObjectFixedAxisFFRFreducedOrderInterface,
     SolidRotor,
     use_mean_axis_modes,
 )
 from exudyn_rotor.reduction.basis import rigid_columns
-from exudyn_rotor.reduction.mean_axis import false_softening
 
 OWN, TWIN = "CreateFFRFReducedOrderObject", "CreateFixedAxisFFRFReducedOrderObject"
 SPEED = 500.0
@@ -121,18 +119,3 @@ def test_exudyns_body_agrees_in_the_mean_axis_frame_only(held):
     # 2e-3, as the other tests of the swapped call: second order in the tilt, and O(h²) of the turn
     assert away[1] < 2e-3
     assert away[0] > 10.0 * away[1]
-
-
-def test_the_speed_of_the_warning_is_that_of_the_missing_stiffness(held, solid):
-    """At that speed 1 % of the stiffness is missing, of the worst of all combinations."""
-    loss = false_softening(solid, held.modeBasis["matrix"])
-    cms = ObjectFixedAxisFFRFreducedOrderInterface(held, axis="z")
-    expected = f"up to 1% of a mode's stiffness at {np.sqrt(0.01 / loss):.3g} rad/s"
-    with pytest.warns(UserWarning, match=expected):
-        cms.AddObjectFFRFreducedOrder(exu.SystemContainer().AddSystem())
-    mean = copy(held)
-    use_mean_axis_modes(mean)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        cms = ObjectFixedAxisFFRFreducedOrderInterface(mean, axis="z")
-        cms.AddObjectFFRFreducedOrder(exu.SystemContainer().AddSystem())

@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
-from point_rotors import SKEW_AXIS, random_arrays, random_rotor
+from point_rotors import SKEW_AXIS, random_rotor
 
 from exudyn_rotor import (
     Formulation,
@@ -141,9 +141,6 @@ def test_each_formulation_has_the_rigid_modes_that_its_frame_lacks(reduced, form
     assert selection.invariants.size == len(selection.labels)
 
 
-# ------------------------------------------------------------------ grounded rotors
-
-
 # ------------------------------------------------------------------ size, immutability
 
 
@@ -160,26 +157,6 @@ def all_arrays(value, prefix: str = "") -> dict[str, np.ndarray]:
             for key, item in entry.items():
                 found |= all_arrays(item, f"{name}.{key}.")
     return found
-
-
-def test_size_without_shapes_is_independent_of_the_mesh():
-    coarse, finer = (
-        SolidRotor.from_matrices(
-            **random_arrays(14, node_count=count),
-            axis="z",
-            interfaces={"left": [0, 1, 2], "right": [3, 4, 5]},
-        )
-        for count in (20, 40)
-    )
-    small, large = (each.reduce(5, keep_shapes=False) for each in (coarse, finer))
-    assert small.shapes is None
-    assert sizes(small) == sizes(large)
-    assert sizes(finer.reduce(5).without_shapes()) == sizes(large)
-    assert max(np.prod(shape) for shape in sizes(large).values()) <= 36**2  # with static responses
-
-
-def sizes(reduced: ReducedRotor) -> dict:
-    return {name: array.shape for name, array in all_arrays(reduced).items()}
 
 
 # ------------------------------------------------------------------ storage

@@ -8,10 +8,13 @@ import pytest
 
 from validation.references.timoshenko import compare_all
 
+UNIFORM, POINTS, HUBS = "uniform", "two discs against points", "two discs against rigid hubs"
+WANTED = [f"{UNIFORM}, 'full'", f"{POINTS}, 'full'", f"{POINTS}, 'tilt'", f"{HUBS}, 'full'"]
+
 
 @pytest.fixture(scope="module")
 def results():
-    return compare_all(0.04, safety=1.5)[1]
+    return compare_all(0.04, 1.5, WANTED)[1]
 
 
 def array(result: dict) -> np.ndarray:

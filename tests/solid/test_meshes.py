@@ -283,7 +283,7 @@ BAD_DECKS = {
     "no file": (None, "there is no file"),
     "shells": (("TYPE=C3D8", "TYPE=S4R"), r"holds S4R .*leave_out=\['S4R'\]"),
     "equations": (("*HEADING\nblock", "*EQUATION\n2\n5,1,1.,6,1,-1."), r"holds \*EQUATION"),
-    "tied": (("*HEADING\nblock", "*TIE, NAME=a\nb, c"), r"holds \*TIE \(surfaces tied"),
+    "tied": (("*HEADING\nblock", "*TIE, NAME=a\nb, c"), r"holds \*TIE \(nodes or surfaces tied"),
     "a node is missing": (("\n9, ", "\n99998, "), r"nodes that the file lacks: \[9\]"),
     "no number": (("210000.", "steel"), r"line \d+ of deck.inp: \*ELASTIC cannot be read"),
     "anisotropic": (("*ELASTIC", "*ELASTIC, TYPE=ORTHO"), "must be isotropic, got TYPE=ORTHO"),

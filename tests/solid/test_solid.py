@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 from exudyn.FEM import FEMinterface
-from models import ALUMINIUM, STEEL, block_beam, disc_rotor, two_material_cylinder
+from models import ALUMINIUM, STEEL, disc_rotor, two_material_cylinder
 
-from exudyn_rotor.solid.point_mass import PointMass
 from exudyn_rotor.solid.surface import area_weights
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.axis import SpinAxis
@@ -21,11 +20,6 @@ def relative_difference(actual, expected):
 @pytest.fixture(scope="module")
 def disc():
     return disc_rotor()
-
-
-@pytest.fixture(scope="module")
-def beam():
-    return SolidRotor.from_ngsolve(block_beam(), STEEL, "z")
 
 
 @pytest.fixture(scope="module")
@@ -93,28 +87,6 @@ def test_mass_and_inertia_of_the_cylinder(cylinder):
     np.testing.assert_allclose(cylinder.center_of_mass, [0, 0, height], atol=0.1 * missing)
 
 
-def test_a_point_mass_moves_the_centre_of_mass(beam):
-    position = np.array([0.021, 0.03, 0.3])
-    heavier = beam.add_point_mass(position, 0.5)
-
-    (placed,) = heavier.point_masses
-    assert isinstance(placed, PointMass)
-    assert placed.node == beam.nearest_node(position)
-    # the corner of the block is a node, 1 mm beside the asked position
-    np.testing.assert_allclose(beam.nodes[placed.node], [0.02, 0.03, 0.3], atol=1e-15)
-    assert placed.distance == pytest.approx(0.001, rel=1e-9)
-    assert heavier.total_mass == pytest.approx(beam.total_mass + 0.5, rel=1e-12)
-    expected = beam.total_mass * beam.center_of_mass + 0.5 * beam.nodes[placed.node]
-    np.testing.assert_allclose(
-        heavier.center_of_mass, expected / heavier.total_mass, rtol=0, atol=1e-14
-    )
-    assert beam.point_masses == ()
-    assert len(heavier.add_point_mass([0, 0, 0], 1e-3).point_masses) == 2
-
-
-# ------------------------------------------------------------------ arrays and immutability
-
-
 # ------------------------------------------------------------------ interfaces
 
 
@@ -143,9 +115,6 @@ def test_interfaces_are_centred_on_the_axis(disc):
     )
     right = moved.interfaces["right"]
     np.testing.assert_array_equal(right.reference, right.center)
-
-
-# ------------------------------------------------------------------ rigid motions
 
 
 # ------------------------------------------------------------------ stress
@@ -179,13 +148,3 @@ def test_stress_of_linear_displacements_is_hookes_law(order):
             expected = hooke(gradient, material)
             error = np.abs(stress[inside, :, column] - expected).max()
             assert error < 1e-9 * np.abs(expected).max()
-
-
-# ------------------------------------------------------------------ texts and units
-
-
-def test_a_consistent_system_of_units_is_possible(beam):
-    material = {"youngsModulus": 2.1e5, "poissonsRatio": 0.3, "density": 7.85e-9}
-    tonnes = SolidRotor.from_ngsolve(block_beam(scale=1e3), material, "z", check_units=False)
-    assert tonnes.total_mass == pytest.approx(beam.total_mass / 1000, rel=1e-12)
-    assert tonnes.rigid_motions == 6

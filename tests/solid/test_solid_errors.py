@@ -54,12 +54,6 @@ def test_shapes(changes, message):
         make(changes)
 
 
-# ------------------------------------------------------------------ mass
-
-
-# ------------------------------------------------------------------ stiffness
-
-
 # ------------------------------------------------------------------ interfaces
 
 
@@ -80,9 +74,6 @@ def test_shapes(changes, message):
 def test_wrong_interfaces(entry, message):
     with pytest.raises(ValueError, match=message):
         make({"interfaces": {"a": entry}})
-
-
-# ------------------------------------------------------------------ meshes
 
 
 # ------------------------------------------------------------------ materials and units

@@ -7,7 +7,6 @@ from exudyn.FEM import FEMinterface, ObjectFFRFreducedOrderInterface
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from point_rotors import SKEW_AXIS, random_arrays, random_invariants, ring_rotor
-from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import Invariants
 
@@ -95,27 +94,6 @@ def test_moved_equals_recomputed(seed):
 
 @examples
 @given(seeds)
-def test_turning_mesh_and_axis_together(seed):
-    invariants, modes, arrays = random_invariants(seed)
-    R = Rotation.random(rng=np.random.default_rng(seed)).as_matrix()
-    R_bd = np.kron(np.eye(len(arrays["nodes"])), R)
-    turned = Invariants.of(
-        nodes=arrays["nodes"] @ R.T,
-        mass=arrays["mass"],
-        stiffness=sp.csr_array(R_bd @ arrays["stiffness"] @ R_bd.T),
-        damping=sp.csr_array(R_bd @ arrays["damping"] @ R_bd.T),
-        basis=R_bd @ modes,
-        direction=R @ SKEW_AXIS,
-    )
-    for name in ("mass", "Theta", "g", "h", *MATRICES):
-        assert_close(getattr(turned, name), getattr(invariants, name))
-    assert_close(turned.center, R @ invariants.center)
-    assert_close(turned.S, R @ invariants.S)
-    assert_close(turned.J, R @ invariants.J @ R.T)
-
-
-@examples
-@given(seeds)
 def test_full_model_is_the_identity_basis(seed):
     arrays = {**random_arrays(seed), "damping": None, "direction": SKEW_AXIS}
     size = arrays["mass"].shape[0]
@@ -128,6 +106,3 @@ def test_full_model_is_the_identity_basis(seed):
     for name in ("M", "K", "G", "C"):
         assert_close(getattr(full, name).toarray(), getattr(dense, name))
     assert full.D.nnz == 0
-
-
-# ------------------------------------------------------------------ read-only

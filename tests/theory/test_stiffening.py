@@ -7,7 +7,7 @@ import pytest
 import scipy.linalg as la
 from point_rotors import SKEW_AXIS, random_invariants, ring_rotor
 
-from exudyn_rotor import Formulation, Motion, campbell, select_modes
+from exudyn_rotor import Formulation, Motion, select_modes
 from exudyn_rotor.theory.nodal import rotations, skew, translations
 from exudyn_rotor.theory.stiffening import stiffening
 
@@ -25,9 +25,6 @@ def moments(shape: tuple[float, float]) -> tuple[float, float]:
 def rigid_rotor(shape: tuple[float, float]):
     """Return the reduced rotor with its six rigid motions only."""
     return ring_rotor(*shape, MASS).reduce(0)
-
-
-# ------------------------------------------------------------------ rigid axisymmetric body
 
 
 # ------------------------------------------------------------------ work on exact displacements
@@ -122,16 +119,3 @@ def test_conical_modes_are_exact(shape, speed):
     expected = conical_frequencies(shape, stiffness, speed)
     np.testing.assert_allclose(values.imag, expected, rtol=1e-9)
     np.testing.assert_allclose(values.real, 0.0, atol=1e-9 * expected[-1])
-
-
-@BODIES
-def test_campbell_shows_the_exact_conical_modes(shape):
-    stiffness, speed = 1e4, 400.0
-    _, transverse = moments(shape)
-    reduced = rigid_rotor(shape)
-    springs = np.zeros(6)
-    springs[4:] = stiffness / transverse
-    held = replace(reduced, invariants=replace(reduced.invariants, K=np.diag(springs)))
-    frequencies = campbell(held, speed).frequencies_rotor[0]
-    for expected in conical_frequencies(shape, stiffness, speed):
-        assert np.abs(frequencies / expected - 1.0).min() < 1e-9

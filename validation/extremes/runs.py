@@ -26,19 +26,25 @@ def bare_rotor(
     forces: Mapping[int, float] | None = None,
     **options,
 ) -> RotorBody:
-    """Return a rotor without marker body, with springs to ground and forces on its coordinates."""
+    """Return a rotor without markers, with springs to ground and forces on its unknowns."""
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, reduced, marker_body=False, **options)
-    node = body.nodes["coordinates"]
+    body = add_rotor(mbs, reduced, markers={}, **options)
+
+    def marker_of(unknown: int) -> exu.MarkerIndex:
+        place = int(body.layout.unknowns[unknown])
+        node, place = (
+            (body.nodes["rigid"], place) if place < 6 else (body.nodes["modes"], place - 6)
+        )
+        return mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=place))
+
     if springs:
         fixed = mbs.AddNode(NodePointGround())
         ground = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=fixed, coordinate=0))
     for coordinate, stiffness in (springs or {}).items():
-        marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
-        mbs.AddObject(CoordinateSpringDamper(markerNumbers=[ground, marker], stiffness=stiffness))
+        ends = [ground, marker_of(coordinate)]
+        mbs.AddObject(CoordinateSpringDamper(markerNumbers=ends, stiffness=stiffness))
     for coordinate, force in (forces or {}).items():
-        marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
-        mbs.AddLoad(LoadCoordinate(markerNumber=marker, load=force))
+        mbs.AddLoad(LoadCoordinate(markerNumber=marker_of(coordinate), load=force))
     return body
 
 

@@ -144,43 +144,6 @@ def poisson(quick: bool = False) -> Row:
     )
 
 
-def density_ratio(ratio: float) -> tuple[float, float]:
-    """Return errors of a cylinder that is `ratio` times denser in its lower half.
-
-    Of the centre of mass, whose closed form is that of two equal halves, relative to the length;
-    and of orthonormality.
-    """
-    lower = occ.Cylinder((0, 0, 0), occ.Z, 0.1, 0.2)
-    lower.mat("heavy")
-    upper = occ.Cylinder((0, 0, 0.2), occ.Z, 0.1, 0.2)
-    upper.mat("light")
-    netgen_mesh = occ.OCCGeometry(occ.Glue([lower, upper])).GenerateMesh(maxh=0.08)
-    light = {"youngsModulus": 2e9, "poissonsRatio": 0.3, "density": 7850.0}
-    materials = {"light": light, "heavy": light | {"density": ratio * 7850.0}}
-    mesh = ngs.Mesh(netgen_mesh)
-    rotor = SolidRotor.from_ngsolve(mesh, materials, "z", order=1, check_units=False)
-    # volumes of the polyhedral halves differ a little: the mesh itself is the reference
-    volume = dict(zip(mesh.GetMaterials(), ngs.Integrate(1.0, mesh, region_wise=True), strict=True))
-    first = dict(
-        zip(mesh.GetMaterials(), ngs.Integrate(ngs.z, mesh, region_wise=True), strict=True)
-    )
-    exact = (ratio * first["heavy"] + first["light"]) / (ratio * volume["heavy"] + volume["light"])
-    center = abs(rotor.center_of_mass[2] - exact) / 0.4
-    return float(center), orthonormality(rotor, rotor.reduce(20)) / (3 * rotor.node_count)
-
-
-def densities(quick: bool = False) -> Row:
-    """Join two materials whose densities differ by a factor of ten thousand."""
-    return Row(
-        "density ratio in one mesh",
-        "10⁴",
-        "centre of mass against the integral over the mesh, and ΨᵀMΨ − I per coordinate; limit: "
-        "round-off × 10",
-        max(density_ratio(1e4)),
-        10.0 * EPS,
-    )
-
-
 def far_axis_error(distance: float) -> float:
     """Return the error of frequencies with the spin axis far outside of the body.
 

@@ -34,7 +34,6 @@ GROUPS: dict[str, tuple[Callable[..., Row], ...]] = {
         sizes.lengths,
         sizes.units,
         sizes.poisson,
-        sizes.densities,
         sizes.far_axis,
         sizes.eccentricity,
     ),

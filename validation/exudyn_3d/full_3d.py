@@ -22,7 +22,6 @@ from scipy.optimize import nnls
 
 from exudyn_rotor import SolidRotor, add_rotor
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
-from exudyn_rotor.multibody.spatial_body import SpatialBody, add_spatial_rotor
 from validation.exudyn_3d.against_3d import with_orders
 from validation.exudyn_3d.scenes import (
     STEEL,
@@ -33,6 +32,7 @@ from validation.exudyn_3d.scenes import (
     disc_on_shaft,
     extrapolated,
 )
+from validation.exudyn_3d.spatial_body import SpatialBody, add_spatial_rotor
 from validation.rows import Row, print_rows, verdict
 
 SPEED = 314.0  # rad/s
@@ -72,7 +72,7 @@ def inertia(rotor: SolidRotor) -> float:
 
 def three_d(mbs: exudyn.MainSystem, rotor: SolidRotor, omega: np.ndarray) -> SpatialBody:
     """Add Exudyn's full 3D body that turns with `omega` about its centre of mass [rad/s]."""
-    return add_spatial_rotor(mbs, rotor, initial_angular_velocity=omega)
+    return add_spatial_rotor(mbs, rotor, angular_velocity=omega)
 
 
 def fixed_axis(
@@ -111,7 +111,7 @@ def hold(body: SpatialBody | RotorItems, rotor: SolidRotor) -> list[exudyn.Senso
     mbs, ground = body.mbs, body.mbs.CreateGround()
     for end in ENDS:
         mbs.CreateCartesianSpringDamper(
-            itemNumbers=[ground, body.marker(end)],
+            itemNumbers=[ground, body.markers[end]],
             localPosition0=rotor.interfaces[end].center,
             stiffness=list(BEARINGS.stiffness),
             damping=[BEARINGS.damping] * 3,

@@ -1,4 +1,4 @@
-"""Oil films of finite length against closed forms, tables of coefficients, ROSS and finer grids.
+"""Oil films of finite length against closed forms, tables of coefficients, and ROSS.
 
 The tables and their sources are in ``film_tables.py``, Butenschön's beside ours in
 ``film_plain.py``, ROSS's models beside ours in ``film_beside_ross.py``.
@@ -9,7 +9,6 @@ The tables and their sources are in ``film_tables.py``, Butenschön's beside our
 from __future__ import annotations
 
 import argparse
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -265,7 +264,7 @@ def tilting_cases() -> list[tuple[str, TiltingPadBearing, np.ndarray]]:
 
 def pads_torque(bearing: TiltingPadBearing, speed: float) -> float:
     """Return the torque over c W of the pads and, beside a single one, of two about the middle."""
-    states = [state for state in bearing._state(speed, None).states if state is not None]
+    states = [state for state in bearing._state(speed, bearing.load).states if state is not None]
     oil = bearing.film
     beside = VISCOSITY * speed * RADIUS**3 * oil.length * oil.pads[0].arc / CLEARANCE
     idle = 2.0 * beside if len(oil.pads) == 1 else 0.0
@@ -290,36 +289,11 @@ def tilting() -> list[str]:
     return lines
 
 
-def grids() -> list[str]:
-    """Return changes with the grid and the error and cost of one axial profile."""
-    lines = [
-        "L/D   ε     deviation from 480 × 24 nodes: 120 × 12   240 × 12   one profile, 120   cost"
-    ]
-    for length in (0.5, 1.0):
-        for ratio in (0.3, 0.6, 0.8, 0.9):
-            place = ratio * CLEARANCE * np.array([0.8, 0.6])
-            found, seconds = [], []
-            for nodes, axial in ((480, 24), (120, 12), (240, 12), (120, 0)):
-                bearing = film(2.0 * RADIUS * length, nodes=nodes, axial_nodes=axial)
-                start = time.perf_counter()
-                found.append(bearing.force(place, [0.0, 0.0], SPEED))
-                seconds.append(time.perf_counter() - start)
-            errors = [np.linalg.norm(f - found[0]) / np.linalg.norm(found[0]) for f in found[1:]]
-            lines.append(
-                f"{length:3} {ratio:5} {'':30}"
-                + "".join(f"{e:12.2%}" for e in errors)
-                + "   "
-                + " ".join(f"{1e3 * t:.2f}" for t in seconds[1:])
-                + " ms"
-            )
-    return lines
-
-
 def main(arguments: list[str] | None = None) -> int:
     """Print all tables and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.parse_args(arguments)
-    for table in (closed_forms, lund, butenschoen, someya, lobed, tilting, ross, ross_grids, grids):
+    for table in (closed_forms, lund, butenschoen, someya, lobed, tilting, ross, ross_grids):
         print("\n".join([*table(), ""]))
     states = [
         (carried(bearing, row[0]), row[3:]) for _, bearing, table in lund_cases() for row in table

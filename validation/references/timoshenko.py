@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Collection
 from pathlib import Path
 
 import ngsolve
@@ -87,8 +88,10 @@ def compare(system: LinearModel, beam: dict, speeds: list[float]) -> dict:
     }
 
 
-def compare_all(element_size: float, safety: float = 2.0) -> tuple[dict, dict]:
-    """Return the beam data and the deviations of all solid rotors.
+def compare_all(
+    element_size: float, safety: float = 2.0, wanted: Collection[str] = ()
+) -> tuple[dict, dict]:
+    """Return the beam data and the deviations of the solid rotors, all or those `wanted`.
 
     `safety` is the radius of the discs over the length of the elements there.
     """
@@ -104,8 +107,10 @@ def compare_all(element_size: float, safety: float = 2.0) -> tuple[dict, dict]:
             ("two discs against points", with_discs, discs),
             ("two discs against rigid hubs", with_discs, hubs),
         ):
-            system = linear_model(rotor, supports=supports(beam["shaft"]), stiffening=level)
-            results[f"{name}, '{level}'"] = compare(system, beam, speeds)
+            title = f"{name}, '{level}'"
+            if title in wanted or not wanted:
+                system = linear_model(rotor, supports=supports(beam["shaft"]), stiffening=level)
+                results[title] = compare(system, beam, speeds)
     return data, results
 
 

@@ -11,13 +11,13 @@ frequencies, from the unreduced model, are compared with Ritz solutions of the E
 3. Over speed without lateral contraction (ν = 0), where solid and Timoshenko beam are the same
    mechanics: 'full', and what the initial displacement changes.
 4. Southwell's coefficient, the slope of ω² over Ω².
-5. Component modes: how many columns of modes at rest, and of modes at rest and at speed, give the
-   four lowest frequencies of the unreduced blade at the highest speed.
+5. Component modes: how many modes at rest give the four lowest frequencies of the unreduced blade
+   at the highest speed.
 
 The level 'none' loses the lag mode (NaN or −1) where the spin softening exceeds its stiffness.
 
 Run ``python -m validation blade``, with ``--quick`` for one mesh and fewer speeds, ``--json FILE``
-to keep the numbers, ``--picture FILE`` for the frequencies over speed.
+to keep the numbers.
 """
 
 from __future__ import annotations
@@ -30,8 +30,7 @@ import numpy as np
 from netgen.occ import Box, OCCGeometry, Pnt, X
 from tqdm import tqdm
 
-from exudyn_rotor import SolidRotor, SpinAxis, campbell, free_modes, spinning_modes
-from exudyn_rotor.plotting import COLORS, LINES, figure, legend_above, save
+from exudyn_rotor import SolidRotor, SpinAxis, campbell, free_modes
 from validation.references.beam import Section, flap_frequencies, lag_frequencies, thick_frequencies
 from validation.rows import Row, print_rows, verdict, write_json
 
@@ -240,7 +239,6 @@ def basis_table(size: float, eta: float, hubs: Sequence[float]) -> list[Row]:
         given = {"stiffening": "full", "frame": "rotor"}
         exact = campbell(rotor, speed, modes=4, **given).frequencies_rotor[0, :4]
         bases = {f"{n} at rest": free_modes(rotor, n) for n in (4, 8, 12, 20, 40)}
-        bases |= {f"{n} at rest, {n} at speed": spinning_modes(rotor, n, [speed]) for n in (2, 4)}
         for name, modes in bases.items():
             reduced = rotor.reduce(modes)
             found = campbell(reduced, speed, accuracy=None, **given).frequencies_rotor[0, :4]
@@ -250,36 +248,11 @@ def basis_table(size: float, eta: float, hubs: Sequence[float]) -> list[Row]:
     return rows
 
 
-def draw(path: str, size: float, etas: Sequence[float], hubs: Sequence[float]) -> None:
-    """Write a picture: first flap and lag of beam and solid over speed, one panel per hub."""
-    made, panels = figure(1, len(hubs), size=(9.0, 4.6), sharey=True, squeeze=False)
-    fine = np.linspace(0.0, max(etas), 60)
-    for axes, hub in zip(panels[0], hubs, strict=True):
-        rotor = blade(size, hub)
-        for mode, line in zip(MODES[:2], LINES, strict=False):
-            beam = [beam_frequency(mode, eta, hub) for eta in fine]
-            axes.plot(fine, beam, line, color="0.3", lw=1.2, label=f"Euler–Bernoulli, {mode}")
-        marks = zip(("full", "tilt", "none"), ("o", "s", "^"), COLORS, strict=False)
-        for level, mark, color in marks:
-            found = solid_frequencies(rotor, etas, level)
-            for mode in [mode for mode in MODES[:2] if mode in found]:
-                label = f"solid, '{level}'" if mode == MODES[0] else None
-                axes.plot(etas, found[mode], mark, ms=4, color=color, label=label)
-        axes.set_xlabel("spin speed Ω over √(EI/ρAL⁴)")
-        axes.set_title(f"hub radius {hub:g} L", loc="right", fontsize="medium")
-        axes.grid(alpha=0.3)
-    panels[0, 0].set_ylabel("frequency in the rotor frame over √(EI/ρAL⁴)")
-    panels[0, 0].set_ylim(bottom=0.0)
-    legend_above(panels[0, 0])
-    save(made, path)
-
-
 def main(argv: Sequence[str] | None = None) -> int:
     """Print the tables and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="a coarse mesh, fewer speeds")
     parser.add_argument("--json", metavar="FILE", help="write the tables to FILE")
-    parser.add_argument("--picture", metavar="FILE", help="draw frequencies over speed")
     options = parser.parse_args(argv)
     sizes = (0.03, 0.02) if options.quick else (0.03, 0.02, 0.01, 0.007)
     etas = (0.0, 4.0, 8.0) if options.quick else (0.0, 1.0, 2.0, 4.0, 6.0, 8.0, 10.0)
@@ -297,8 +270,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         print_rows(title, rows)
     if options.json:
         write_json(options.json, tables)
-    if options.picture:
-        draw(options.picture, size, np.linspace(0.0, 10.0, 6), hubs)
     plain = tables["3. Over speed, Poisson's ratio zero"]
     return verdict(
         {

@@ -7,17 +7,19 @@ isothermal, laminar, incompressible, without the oil's inertia.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.film.data import FilmData
-from exudyn_rotor.bearings.film.reynolds import Equation
-from exudyn_rotor.bearings.film.state import FilmState
+from exudyn_rotor.bearings.film.grid import Axial, Grid
+from exudyn_rotor.bearings.film.pads import Pad
+from exudyn_rotor.bearings.film.reynolds import CAVITATION, Equation, Solution
 
+_PEAK = 4.5  # the pressure's peak, √(2 h_min/c) wide, holds three nodes
 _STEPS, _VAIN = 100, 3  # of Newton's method, of those in vain
 _CLOSE = 1e-9  # of the load: it stops there
 # places at which it begins: over the clearance, and turned from the most likely side
@@ -28,7 +30,140 @@ _STARTS = [
 
 
 @dataclass(frozen=True, eq=False)
-class OilFilm(FilmData):
+class FilmState:
+    """OilFilm at one place and motion of the journal, from :meth:`OilFilm.state` and `equilibrium`.
+
+    Attributes
+    ----------
+    film : OilFilm
+    position, velocity : numpy.ndarray, (2,)
+        Of the journal along n1 and n2 [m], [m/s].
+    speed : float
+        [rad/s].
+    solution : Solution
+        Pressure at the nodes of the grid.
+    """
+
+    film: OilFilm
+    position: np.ndarray
+    velocity: np.ndarray
+    speed: float
+    solution: Solution
+
+    @cached_property
+    def force(self) -> np.ndarray:
+        """Force on the journal along n1 and n2, that of the supply in the grooves with it [N].
+
+        The supply's pressure all around has no resultant, so the pads' excess over it is enough.
+        """
+        film, grid = self.film, self.film.grid
+        supply = film.radius * film.length * film.supply_pressure * (grid.step @ grid.u[0])
+        return supply + self._resultant(self.solution.bearing)
+
+    def coefficients(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return stiffness −∂F/∂q [N/m] and damping −∂F/∂q̇ [N s/m] along n1 and n2, each (2, 2).
+
+        The derivatives of the discrete film's force (Lund's perturbation): where the film is
+        broken it stays so, and the pressure at the rim of a void stays zero.
+        """
+        stiffness, damping = self.tangent
+        return stiffness.copy(), damping.copy()
+
+    @cached_property
+    def tangent(self) -> tuple[np.ndarray, np.ndarray]:
+        """What :meth:`coefficients` returns, kept."""
+        u = np.moveaxis(self.film.grid.u, 2, 0)
+        still = np.zeros_like(u)
+        heights, rates = np.concatenate([-u, still]), np.concatenate([still, -u])[:, 0]
+        changes = self.solution.change(heights, rates)
+        gradient = -np.array([self._resultant(change) for change in changes]).T
+        return gradient[:, :2], gradient[:, 2:]
+
+    def _resultant(self, pressure: np.ndarray) -> np.ndarray:
+        grid = self.film.grid
+        along = grid.step * (pressure @ grid.axial.weights)
+        return -(self.film.radius**2) * (along @ grid.u[0])
+
+    @property
+    def heights(self) -> np.ndarray:
+        """Thickness at the nodes of the grid, (n,) [m]."""
+        return self.solution.equation.heights[0]
+
+    def closing(self, move: np.ndarray) -> float:
+        """Return the largest share of its thickness that a move of the journal (2,) takes [m]."""
+        taken = self.film.grid.u @ move / self.solution.equation.heights
+        return float(np.max(taken, initial=1e-300))
+
+    @property
+    def minimum_thickness(self) -> float:
+        """Least thickness at the nodes [m]."""
+        return float(self.heights.min())
+
+    @property
+    def pressure(self) -> np.ndarray:
+        """Pressure at the angles and axial places of the grid, (n, k) [Pa]."""
+        return self.solution.bearing @ self.film.grid.axial.shapes.T
+
+    @property
+    def eccentricity_ratio(self) -> float:
+        """Distance of the journal from the middle over the least clearance there."""
+        return float(np.linalg.norm(self.position) / self.film.clearance)
+
+    @property
+    def attitude(self) -> float:
+        """Angle from the load, −force, to the journal's place, positive with the spin [rad]."""
+        sense = 1.0 if self.speed >= 0.0 else -1.0
+        (f1, f2), (q1, q2) = -self.force, self.position
+        return float(sense * np.arctan2(f1 * q2 - f2 * q1, f1 * q1 + f2 * q2))
+
+    @property
+    def sommerfeld_number(self) -> float:
+        """S = μ N L D/W (R/c)², N in revolutions per second, c the least clearance."""
+        film = self.film
+        turns = abs(self.speed) / (2.0 * np.pi)
+        load = np.linalg.norm(self.force)
+        area = 2.0 * film.radius * film.length
+        return float(film.viscosity * turns * area / load * (film.radius / film.clearance) ** 2)
+
+    @property
+    def torque(self) -> float:
+        """Torque that the film takes from the journal, positive against a positive spin [N m].
+
+        Shear of the surface, μ R Ω/h, where there is oil, and of the pressure, (h/2R) ∂φ p,
+        integrated by parts. Where the film is broken the gap counts as full.
+        """
+        film, grid = self.film, self.film.grid
+        axial, equation = grid.axial, self.solution.equation
+        size = film.length / film.radius
+        # the half volumes at edges have the thickness of their faces
+        ends = ~np.array([grid.at_left, grid.at_right]) / equation.heights[1:]
+        covered = grid.step * (1.0 / self.heights + 0.5 * ends.sum(axis=0))
+        shear = film.viscosity * film.radius**4 * self.speed * size * covered.sum()
+        slope = equation.heights[2] - equation.heights[1]
+        excess = self.solution.bearing @ axial.weights - size * film.supply_pressure
+        lift = -(slope @ excess)
+        return float(shear + 0.5 * film.radius**2 * lift)
+
+    @property
+    def power_loss(self) -> float:
+        """Power that the journal's rotation loses to the film [W]."""
+        return self.torque * self.speed
+
+    @property
+    def side_flow(self) -> float:
+        """Oil that leaves the pads at both ends [m³/s].
+
+        A supply pressure drops to zero where a pad's edge meets an end, so that the flow there is
+        not bounded: every doubling of the nodes, along and around, adds ``ln 2 h³ p_s/(6π μ)`` at
+        each such corner. What leaves the grooves' own ends is not in it.
+        """
+        film, grid = self.film, self.film.grid
+        slope = self.solution.bearing @ grid.axial.edge
+        return float((grid.step * self.heights**3) @ slope / (6.0 * film.viscosity))
+
+
+@dataclass(frozen=True, eq=False)
+class OilFilm:
     """Oil film in a bore of one or more pads.
 
     Parameters
@@ -39,12 +174,9 @@ class OilFilm(FilmData):
         Dynamic [Pa s].
     pads : sequence of Pad
         :func:`grooved_pads` makes those of plain, grooved, elliptical and lobed bores.
-    cavitation : {'reynolds', 'half-sommerfeld', 'mass-conserving', 'none'}, optional
+    cavitation : {'reynolds', 'half-sommerfeld', 'none'}, optional
         What holds where the film would be pulled. 'reynolds' (p ≥ 0, p and its slope vanish where
-        the film breaks) is what tables of coefficients mostly hold; 'mass-conserving' adds the
-        oil's balance in the void. It has a memory, which a force of place and velocity has not:
-        steady states and coefficients are here, motions by :class:`JournalBearing` in scenes. It
-        needs a groove, from which the oil comes.
+        the film breaks) is what tables of coefficients mostly hold.
     supply_pressure : float, optional
         In the grooves, which are as long as the bore, above the ambient [Pa].
     nodes : int, optional
@@ -70,6 +202,62 @@ class OilFilm(FilmData):
     >>> stiffness, damping = state.coefficients()
     """
 
+    radius: float
+    length: float
+    viscosity: float
+    pads: Sequence[Pad]
+    cavitation: str = "reynolds"
+    supply_pressure: float = 0.0
+    nodes: int = 120
+    axial_nodes: int = 12
+    grid: Grid = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        checks.number(self.radius, "radius", "m", above=0.0)
+        checks.number(self.length, "length", "m", above=0.0)
+        checks.number(self.viscosity, "viscosity", "Pa s", above=0.0)
+        checks.choice(self.cavitation, "cavitation", CAVITATION)
+        checks.number(self.supply_pressure, "supply_pressure", "Pa", least=0.0)
+        checks.count(self.nodes, "nodes", least=12, most=10_000)
+        checks.count(self.axial_nodes, "axial_nodes", most=1000)
+        if self.axial_nodes == 1:
+            raise ValueError("axial_nodes: needs 0 (one profile), or 2 nodes or more, got 1")
+        pads = _in_order(checks.instances(self.pads, "pads", Pad))
+        widest = max(pad.clearance for pad in pads)
+        if widest >= self.radius:
+            raise ValueError(
+                f"pads: need clearances far below the radius of {self.radius:g} m, got {widest:g} m"
+            )
+        if pads[0].closed and self.supply_pressure > 0.0:
+            raise ValueError("supply_pressure: needs pads with a groove between them")
+        object.__setattr__(self, "pads", pads)
+        half = 0.5 * self.length / self.radius
+        axial = Axial.volumes(half, self.axial_nodes) if self.axial_nodes else Axial.profile(half)
+        object.__setattr__(self, "grid", Grid(pads, self.nodes, axial))
+        if self.clearance <= 0.0:
+            raise ValueError("pads: their centers leave no clearance for a journal in the middle")
+
+    @cached_property
+    def clearance(self) -> float:
+        """Least thickness of the film about a journal in the middle [m]."""
+        return float(self._heights(np.zeros(2))[0].min())
+
+    @cached_property
+    def thinnest(self) -> float:
+        """Thickness of the thinnest film that the grid still resolves [m]."""
+        return _PEAK * float(self.grid.step.max()) ** 2 * self.clearance
+
+    def reach_along(self, direction: np.ndarray, thickness: float) -> float:
+        """Return how far the journal may go that way, of length 1 (2,), to a thickness [m]."""
+        closing = (self.grid.u @ direction).ravel()
+        room = (self.grid.offset - thickness).ravel()
+        near = closing > 0.0
+        return float(np.min(room[near] / closing[near], initial=np.inf))
+
+    def _heights(self, position: np.ndarray) -> np.ndarray:
+        """Return h in the middle, at the left and the right face of each volume, (3, n) [m]."""
+        return self.grid.offset - self.grid.u @ position
+
     def force(self, displacement: ArrayLike, velocity: ArrayLike, speed: float) -> np.ndarray:
         """Return the force of the film on the journal along n1 and n2, (2,) [N].
 
@@ -91,29 +279,12 @@ class OilFilm(FilmData):
         ------
         TypeError
         ValueError
-            If the journal touches the bore, or moves in a film that conserves mass.
-        ArithmeticError
-            If the voids do not settle.
+            If the journal touches the bore.
         """
         displacement = checks.vector(displacement, "displacement", "m", 2)
         velocity = checks.vector(velocity, "velocity", "m/s", 2)
         checks.number(speed, "speed", "rad/s")
-        if self.cavitation == "mass-conserving" and velocity.any():
-            raise ValueError(
-                "velocity: a film with cavitation='mass-conserving' remembers how its voids grew, "
-                "which a force of place and velocity cannot; put a JournalBearing into a scene, or "
-                "use 'reynolds'"
-            )
-        return self._state(displacement, velocity, speed)
-
-    @property
-    def law(self) -> Callable[..., FilmState]:
-        """For bearings: :meth:`state` without its checks, also of a film that conserves mass.
-
-        After place, velocity and speed it takes the cells that were empty before, to begin with,
-        the rate [1/s] at which voids grow from the content before, and that content.
-        """
-        return self._state
+        return self.solved(displacement, velocity, speed)
 
     def equilibrium(self, speed: float, load: ArrayLike) -> FilmState:
         """Return the film that carries a load, by Newton's method with the film's stiffness.
@@ -135,8 +306,7 @@ class OilFilm(FilmData):
             For no load, no speed, and a load under which the film is thinner than the grid
             resolves.
         ArithmeticError
-            If no equilibrium is found, as under a load that points into the only groove of a film
-            that conserves mass.
+            If no equilibrium is found.
         """
         load = checks.vector(load, "load", "N", 2)
         checks.number(speed, "speed", "rad/s")
@@ -168,7 +338,7 @@ class OilFilm(FilmData):
             "it is left; a load that points into a groove may have none"
         )
 
-    def _beside(self, known: FilmState, speed: float, load: np.ndarray) -> FilmState | None:
+    def beside(self, known: FilmState, speed: float, load: np.ndarray) -> FilmState | None:
         """Return the film that carries a load, from one beside it; None where none is so found.
 
         Of films that bear tension, and where a journal would run off, none: there may be another.
@@ -177,14 +347,14 @@ class OilFilm(FilmData):
         if found is None or self.cavitation == "none":
             return None
         left = float(np.linalg.norm(found.force + load))
-        held = left < _CLOSE * np.linalg.norm(load) and np.linalg.det(found.slow_stiffness) > 0.0
+        held = left < _CLOSE * np.linalg.norm(load) and np.linalg.det(found.tangent[0]) > 0.0
         return found if held else None
 
     def _newton(
         self, start: np.ndarray, load: np.ndarray, speed: float, empty: np.ndarray | None = None
     ) -> FilmState | None:
         """Return where Newton's method ends; None for a film thinner than the grid resolves."""
-        state, vain, size = self._state(start, np.zeros(2), speed, empty), 0, np.linalg.norm(load)
+        state, vain, size = self.solved(start, np.zeros(2), speed, empty), 0, np.linalg.norm(load)
         for _ in range(_STEPS):
             unbalanced = np.linalg.norm(state.force + load)
             if unbalanced < _CLOSE * size or vain == _VAIN:
@@ -198,26 +368,25 @@ class OilFilm(FilmData):
     def _next(self, state: FilmState, load: np.ndarray) -> FilmState:
         """Return the state after one step, shortened until the force comes closer to the load."""
         unbalanced = state.force + load
-        move = np.linalg.lstsq(state.slow_stiffness, unbalanced, rcond=1e-12)[0]
+        move = np.linalg.lstsq(state.tangent[0], unbalanced, rcond=1e-12)[0]
         move *= min(1.0, 0.6 / state.closing(move))
         for _ in range(12):
             # the cells that are empty now: few steps from those of the next place
             motion = state.position + move, state.velocity, state.speed
-            found = self._state(*motion, state.solution.empty)
+            found = self.solved(*motion, state.solution.empty)
             if np.linalg.norm(found.force + load) < np.linalg.norm(unbalanced):
                 break
             move *= 0.5
         return found
 
-    def _state(
+    def solved(
         self,
         position: np.ndarray,
         velocity: np.ndarray,
         speed: float,
         empty: np.ndarray | None = None,
-        void_rate: float = 0.0,
-        voids: np.ndarray | None = None,
     ) -> FilmState:
+        """For bearings: :meth:`state` unchecked, by a guess of the cells in which it is broken."""
         heights = self._heights(position)
         if heights.min() <= 0.0:
             raise ValueError(
@@ -227,5 +396,19 @@ class OilFilm(FilmData):
         rates = -self.grid.u[0] @ velocity
         source = 12.0 * self.viscosity * self.radius**2
         film = self.grid, self.cavitation, source, self.supply_pressure
-        equation = Equation(*film, heights, rates, speed, void_rate, voids)
-        return FilmState(self, position, velocity, speed, equation.solve(empty))
+        return FilmState(
+            self, position, velocity, speed, Equation(*film, heights, rates, speed).solve(empty)
+        )
+
+
+def _in_order(pads: tuple[Pad, ...]) -> tuple[Pad, ...]:
+    """Return pads by their angle; ValueError if two overlap."""
+    if not pads:
+        raise ValueError("pads: needs one at least")
+    ordered = sorted(pads, key=lambda pad: pad.start % (2.0 * np.pi))
+    starts = np.array([pad.start % (2.0 * np.pi) for pad in ordered])
+    arcs = np.array([pad.arc for pad in ordered])
+    room = np.diff(starts, append=starts[0] + 2.0 * np.pi)
+    if np.any(arcs > room * (1.0 + 1e-12)):
+        raise ValueError(f"pads: overlap; starts {starts} rad, arcs {arcs} rad")
+    return tuple(ordered)

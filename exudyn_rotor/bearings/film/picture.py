@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.bearings.film.state import FilmState
+from exudyn_rotor.bearings.film.film import FilmState
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -275,7 +275,7 @@ class Campbell(ModelResult):
         top = max(np.nanmax(drawn, initial=0.0), shown.frequencies(np.abs(self.speeds).max()))
         ax.set_ylim(0.0, 1.05 * top or None)
         ax.grid(alpha=0.3)
-        plotting.legend_of_seen(ax, 3, handles)
+        plotting.legend_above(ax, 3, handles)
         return ax
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
@@ -357,7 +357,7 @@ def campbell(
         The rotor in a scene, or all of several, see :func:`linear_model`.
     modes : int, optional
         How many modes to keep: those with the lowest frequencies in the `frame` at the first
-        speed, followed from there, overdamped ones and those of voids in films last. All by
+        speed, followed from there, overdamped ones last. All by
         default; of a basis that cuts pairs of bending modes in halves, those below the first half.
     frame : {'inertial', 'rotor'}
         In which modes are chosen, stand in order in the result, and are drawn.
@@ -480,10 +480,6 @@ def _lowest(
         complete = np.count_nonzero(np.abs(first.motions.values) < model.complete_up_to)
         count = max(min(_FEWEST, count), complete)
     last = _overdamped(first) | np.isnan(first.motions.values)
-    rows = [i for i, name in enumerate(model.coordinates) if name.startswith("voids")]
-    if rows:
-        moved = np.abs(first.motions.main[0]) ** 2 * np.diag(model.mass_matrix)[:, None]
-        last |= moved[rows].sum(axis=0) > 0.9 * moved.sum(axis=0)
     return np.sort(np.lexsort((rounded(frequencies), last), axis=-1)[0, :count])
 
 

@@ -26,8 +26,8 @@ from exudyn_rotor.linear.modal.critical_speeds import (
 from exudyn_rotor.linear.modal.resonance import NO_EQUATIONS, Search
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS
 from exudyn_rotor.linear.model.build import linear_model, warn_of_left_out_stiffening
-from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
-from exudyn_rotor.linear.over import ModelResult, basis_column, table_lines, warn_of_refused
+from exudyn_rotor.linear.model.linear_model import AXES, LinearModel, warn_of_refused
+from exudyn_rotor.linear.over import ModelResult, basis_column, table_lines
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import numbers, storable
 from exudyn_rotor.solid_rotor import SolidRotor

@@ -17,12 +17,11 @@ import scipy.linalg as la
 from exudyn_rotor.bearings.controlled_support import (
     Controlled,
     ControlledSupport,
-    FilmSupport,
     PadSupport,
 )
 from exudyn_rotor.bearings.given import linear_supports
 from exudyn_rotor.bearings.series import SeriesSupport
-from exudyn_rotor.bearings.support import NoCoefficientsError, OutsideTableError, Support, acts
+from exudyn_rotor.bearings.support import NoCoefficientsError, Support, acts
 from exudyn_rotor.calls import kept
 from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.linear.equations import (
@@ -49,7 +48,6 @@ End = tuple[str, str]  # names of a body and of its interface
 Seen = Callable[[End], Terms]  # what a support acts on, seen from outside
 WORDS = {
     ControlledSupport: "controller",
-    FilmSupport: "voids",
     PadSupport: "pads",
     SeriesSupport: "ring",
 }
@@ -145,17 +143,16 @@ class Element:
 
     def check_axes(self, turns: int) -> None:
         """Refuse an anisotropic element that turns otherwise than the axes do, and such a mass."""
-        if turns and self.table_frequencies.size:
-            raise ValueError(
-                f"supports: {self.what} has coefficients over the frequency, which need a rotor "
-                "that is round, and axes that stand still; give support.at_frequency(…), or leave "
-                "axes='rotor' out"
-            )
-        if turns and self.mass is not None and not is_isotropic_matrix(self.mass(0.0)):
-            raise ValueError(
-                f"supports: {self.what} has a mass that is not the same in all directions, which "
-                "needs a rotor that is round, and axes that stand still"
-            )
+        uneven = self.mass is not None and not is_isotropic_matrix(self.mass(0.0))
+        for fault, is_there in (
+            ("has coefficients over the frequency", turns and self.table_frequencies.size),
+            ("has a mass that is not the same in all directions", turns and uneven),
+        ):
+            if is_there:
+                raise ValueError(
+                    f"supports: {self.what} {fault}, which needs a rotor that is round, and axes "
+                    "that stand still; leave axes='rotor' out, or give support.at_frequency(…)"
+                )
         if self.turns and self.turns != turns and not self.is_isotropic(0.0):
             raise ValueError(
                 f"supports: {self.what} is not the same in all directions and turns with "
@@ -170,12 +167,11 @@ def is_isotropic_matrix(X: np.ndarray) -> bool:
 
 
 class OwnBody(Body):
-    """Coordinates that a support brings with it, in pairs, as a body: of a controller, of voids."""
+    """Coordinates that a support brings with it, as a body: of a controller, of pads."""
 
     def rows(self) -> dict[int, np.ndarray]:
         """Return the displacements of its pairs of coordinates, seen from outside, (3p, k)."""
-        pairs = np.kron(np.eye(self.size // 2), ACROSS)
-        return turned({0: pairs}, self.turns)
+        return turned({0: np.kron(np.eye(self.size // 2), ACROSS)}, self.turns)
 
 
 class PadBody(OwnBody):
@@ -188,11 +184,9 @@ class PadBody(OwnBody):
 
 def own_body(one: Controlled, number: int, turns: int) -> OwnBody:
     """Return the coordinates of a support; pairs in axes that turn with `turns` times Ω."""
-    labels = tuple(
-        f"{WORDS[type(one)]} {number} at {one.interface}, {n}" for n in range(1, one.size + 1)
-    )
+    word, name = f"{WORDS[type(one)]} {number} at {one.interface}", f" {number}"
+    labels = tuple(f"{word}, {n}" for n in range(1, one.size + 1))
     M, none = np.diag(one.masses), np.zeros((one.size, one.size))
-    name = f" {number}"
     if isinstance(one, PadSupport):
         return PadBody(name, 0, M, (none,), (none,), labels)
     quarter = np.kron(np.eye(one.size // 2), axial_skew(3)[:2, :2])
@@ -200,15 +194,14 @@ def own_body(one: Controlled, number: int, turns: int) -> OwnBody:
     return OwnBody(name, turns, M, powers_D, powers_K, labels)
 
 
-def _relative(end: End, base: End | None) -> Callable[[Seen], Terms]:
-    """Return what gives the motion of an end against its base."""
-    if base is None:
-        return lambda seen: seen(end)
-    return lambda seen: difference(seen(end), seen(base))
+def _relative(end: End, base: End | None, rows: int = 6) -> Callable[[Seen], Terms]:
+    """Return what gives the first rows of the motion of an end against its base."""
 
+    def motion(seen: Seen) -> Terms:
+        found = seen(end) if base is None else difference(seen(end), seen(base))
+        return {n: U[:rows] for n, U in found.items()}
 
-def _part(motion: Callable[[Seen], Terms], rows: slice) -> Callable[[Seen], Terms]:
-    return lambda seen: {n: U[rows] for n, U in motion(seen).items()}
+    return motion
 
 
 def support_element(
@@ -223,14 +216,7 @@ def support_element(
         return rate * speed, abs(speed) if frequency is None else frequency
 
     def matrices(speed: float, frequency: float | None = None) -> tuple[np.ndarray, np.ndarray]:
-        try:
-            support.check_range(rate * speed)
-        except OutsideTableError as error:
-            if rate == 1.0:
-                raise
-            raise OutsideTableError(
-                f"{error}; it turns with {rate:g} times the speed of the analysis, {speed:g} rad/s"
-            ) from None
+        support.check_range(rate * speed)
         return support.matrices(*pair(speed, frequency))
 
     def mass(speed: float, frequency: float | None = None) -> np.ndarray:
@@ -252,40 +238,42 @@ def support_element(
     )
 
 
-def _gear_element(gears: GearMesh, ends: tuple[End, End]) -> Element:
-    return Element(ends, lambda *_: gears.matrices(), lambda seen: stacked([*map(seen, ends)]))
-
-
-def with_own(
+def own_elements(
     one: Controlled, end: End, bases: Mapping[str, End], rate: float, own: OwnBody
 ) -> list[Element]:
     """Return the elements of a support with coordinates of its own."""
-    at = _part(_relative(end, bases.get(one.interface)), slice(0, 3))
+    base = bases.get(one.interface)
     if isinstance(one, SeriesSupport):
-        return _series_elements(one, end, bases.get(one.interface), rate, own)
-    if isinstance(one, PadSupport):
-        return [_pad_element(one, place, at, end, rate, own) for place in range(one.size)]
-    ports = [at]
+        return _series_elements(one, end, base, rate, own)
+    ends, ports = (end,), [_relative(end, base, 3)]
     if isinstance(one, ControlledSupport):
-        sensed = _relative((end[0], one.sensor), bases.get(one.sensor))
-        ports.append(_part(sensed, slice(0, 3)))
+        ends = end, (end[0], one.sensor)
+        ports.append(_relative(ends[1], bases.get(one.sensor), 3))
     lifted = np.kron(np.eye(len(ports) + own.size // 2), ACROSS)
 
-    def matrices(*_: float) -> tuple[np.ndarray, np.ndarray]:
+    def matrices(speed: float, *_: float) -> tuple[np.ndarray, np.ndarray]:
+        if isinstance(one, PadSupport):
+            return _of_pads(one, rate * speed)
         K, D = one.stiffness, one.damping
-        return lifted @ K @ lifted.T, lifted @ D @ lifted.T
-
-    def of_film(speed: float, *_: float) -> tuple[np.ndarray, np.ndarray]:
-        D, K = one.matrices(rate * speed)
         return lifted @ K @ lifted.T, lifted @ D @ lifted.T
 
     def motion(seen: Seen) -> Terms:
         return stacked([*(port(seen) for port in ports), seen((own.name, ""))])
 
-    ends = (end, (end[0], one.sensor))
     if isinstance(one, ControlledSupport):
         return [Element(ends, matrices, motion, law=one)]
-    return [Element((end,), of_film, motion, varies=True, stiffness_varies=True)]
+    return [Element(ends, matrices, motion, varies=True, stiffness_varies=True)]
+
+
+def _of_pads(one: PadSupport, speed: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return stiffness and damping (3 + p, 3 + p) of films that act on ``x − s t`` of each pad."""
+    total = np.zeros((2, 3 + one.size, 3 + one.size))
+    for number, (film, tangent) in enumerate(zip(one.films, one.tangents, strict=True)):
+        film.check_range(speed)
+        seen = np.eye(3, 3 + one.size)
+        seen[:2, 3 + number] = -tangent
+        total += [seen.T @ X[:3, :3] @ seen for X in film.matrices(speed)]
+    return total[0], total[1]
 
 
 def _series_elements(
@@ -304,21 +292,8 @@ def _series_elements(
     ]
 
 
-def _pad_element(
-    one: PadSupport, place: int, at: Callable, end: End, rate: float, own: OwnBody
-) -> Element:
-    """Return the film of a pad, which acts on ``x − s t``."""
-    film, tangent = one.films[place], np.append(one.tangents[place], 0.0)
-
-    def matrices(speed: float, *_: float) -> tuple[np.ndarray, np.ndarray]:
-        film.check_range(rate * speed)
-        return tuple(X[:3, :3] for X in film.matrices(rate * speed))
-
-    def motion(seen: Seen) -> Terms:
-        tilt = seen((own.name, ""))[0][place : place + 1]
-        return difference(at(seen), {0: np.outer(tangent, tilt)})
-
-    return Element((end,), matrices, motion, varies=True, stiffness_varies=True)
+def _gear_element(gears: GearMesh, ends: tuple[End, End]) -> Element:
+    return Element(ends, lambda *_: gears.matrices(), lambda seen: stacked([*map(seen, ends)]))
 
 
 def elements_of(
@@ -332,21 +307,10 @@ def elements_of(
 ) -> tuple[list[Element], list[OwnBody]]:
     """Return the elements of a model, and the coordinates that some of them bring.
 
-    Parameters
-    ----------
-    supports : mapping of str to sequence
-        Supports and bearings of each rotor.
-    ratios : mapping of str to float
-    links : sequence of Link
-    bases : mapping of str to (str, str)
-        What carries the support at an interface; the ground where there is nothing.
-    turns : int
-        Axes of the own coordinates.
-    kind : {'full', 'static', 'undamped'}
-        'static' elements have their static stiffness in the place of own coordinates; 'undamped'
-        ones are also without damping and the skew part of their stiffness, and keep rings.
-    begun : int
-        Number of own coordinates' bodies that there are already.
+    What carries a support is in `bases` by its interface, the ground where there is nothing. Pairs
+    of own coordinates turn with `turns` times Ω; `begun` bodies of them there are already. Of the
+    kind 'static' elements have their static stiffness in the place of own coordinates; 'undamped'
+    ones are also without damping and the skew part of their stiffness, and keep rings.
 
     Raises
     ------
@@ -369,11 +333,11 @@ def elements_of(
             elements.append(support_element(one, (name, one.interface), base, ratio, ratio))
         for one in sorted(controlled, key=lambda each: list(WORDS).index(type(each))):
             own.append(own_body(one, begun + len(own) + 1, turns))
-            elements += with_own(one, (name, one.interface), bases, ratio, own[-1])
+            elements += own_elements(one, (name, one.interface), bases, ratio, own[-1])
     for link in links:
         first, second = link.ends
         if isinstance(link.connection, GearMesh):
-            elements.append(_gear_element(link.connection, (first, second)))
+            elements.append(_gear_element(link.connection, link.ends))
             continue
         law = link.connection.undamped() if kind == "undamped" else link.connection
         rate = ratios[first[0]] - ratios[second[0]]
@@ -571,15 +535,6 @@ class Assembly:
     def seen(self, body: Body, interface: str) -> dict[int, np.ndarray]:
         """Return the motion (6, k) of an interface, seen from outside, for loads and results."""
         return self.wide(body.seen(interface), self.slices[self.bodies.index(body)])
-
-    def summed(self, name: str) -> dict[int, np.ndarray]:
-        """Return the sum over the bodies of one of their loads, as Fourier terms."""
-        total: dict[int, np.ndarray] = {}
-        for body, place in zip(self.bodies, self.slices, strict=True):
-            given = getattr(body, name, None)
-            if given:
-                add(total, self.wide(given, place))
-        return total
 
     def labels(self) -> tuple[str, ...]:
         """Return the names of all coordinates."""

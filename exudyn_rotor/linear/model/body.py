@@ -13,15 +13,15 @@ w = 0. A point mass, with N = [[0, −1], [1, 0]], G = mN and C = m, has ``M ÿ 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-import scipy.linalg as la
 
 from exudyn_rotor.calls import kept
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear.equations import Terms, turned
+from exudyn_rotor.linear.equations import Terms, others, turned
 from exudyn_rotor.linear.model.spin import Spin, spin_of
 from exudyn_rotor.linear.model.turning import (
     Turning,
@@ -66,6 +66,8 @@ class RotorAlone:
         Frequency of the lowest of these halves [rad/s].
     spin : Spin or None
         The spin as a coordinate.
+    places : mapping of str to ndarray, shape (6, n), optional
+        Motions of further places along (n1, n2, e), by the columns of the reduced rotor.
     """
 
     rotor: ReducedRotor
@@ -78,6 +80,7 @@ class RotorAlone:
     left_out: dict[str, float]
     complete_up_to: float
     spin: Spin | None
+    places: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     @property
     def has_halves(self) -> bool:
@@ -102,7 +105,17 @@ class RotorAlone:
     @kept
     def motion(self, name: str) -> np.ndarray:
         """Return the motion (6, k) of an interface along (n1, n2, e) in the rotor frame."""
-        return interface_motion(self.rotor, name) @ self.Q
+        known = name in self.places
+        return (self.places[name] if known else interface_motion(self.rotor, name)) @ self.Q
+
+    def within(self, V: np.ndarray) -> RotorAlone:
+        """Return the rotor with the motions of an orthonormal basis V (k, r) alone.
+
+        The basis holds every wave or nothing of it.
+        """
+        turning, invariants = self.turning.within(V), self.invariants.in_basis(V)
+        given = self.left_out, self.complete_up_to
+        return _alone(self.rotor, invariants, self.level, self.Q @ V, turning, *given)
 
 
 @kept
@@ -129,17 +142,30 @@ def rotor_alone(
         for name in rotor.interfaces:
             left_out[name] = turning.halves_share(interface_motion(rotor, name))
         if not whole:
-            Q = _beside(turning.halves)
+            Q = others(turning.halves)
+            Q = Q[:, np.argsort(np.abs(Q).argmax(axis=0), kind="stable")]
             turning = turning.within(Q)
             invariants = invariants.in_basis(Q)
+    return _alone(rotor, invariants, level, Q, turning, left_out, lowest)
+
+
+def _alone(
+    rotor: ReducedRotor,
+    invariants: Invariants,
+    level: str,
+    Q: np.ndarray,
+    turning: Turning,
+    left_out: dict[str, float],
+    complete_up_to: float,
+) -> RotorAlone:
+    """Return a rotor with the invariants in the basis Q."""
     terms = SpinTerms.of(invariants, second_order(invariants, level))
     spin = spin_of(rotor, invariants, Q)
     K4 = None if terms.K4 is None else _unresisted(terms.K4, rotor, spin, Q)
     terms = replace(terms, C_hat=_unresisted(terms.C_hat, rotor, spin, Q), K4=K4)
-    shares = [turning.matrix_share(X) for X in (invariants.K, terms.C_hat)]
-    return RotorAlone(
-        rotor, invariants, terms, level, Q, turning, max(shares), left_out, lowest, spin
-    )
+    uneven = max(turning.matrix_share(X) for X in (invariants.K, terms.C_hat))
+    given = terms, level, Q, turning, uneven, left_out, complete_up_to, spin
+    return RotorAlone(rotor, invariants, *given)
 
 
 def _unresisted(X: np.ndarray, rotor: ReducedRotor, spin: Spin | None, Q: np.ndarray) -> np.ndarray:
@@ -151,21 +177,9 @@ def _unresisted(X: np.ndarray, rotor: ReducedRotor, spin: Spin | None, Q: np.nda
         X = spin.apart(X)
     if ModeKind.AXIAL in rotor.rigid_kinds:
         axial = Q[rotor.rigid_kinds.index(ModeKind.AXIAL)]
-        others = np.eye(len(X)) - np.outer(axial, axial)
-        X = others @ X @ others
+        apart = np.eye(len(X)) - np.outer(axial, axial)
+        X = apart @ X @ apart
     return X
-
-
-def _beside(halves: np.ndarray) -> np.ndarray:
-    """Return an orthonormal basis of all other motions, coordinates kept where they can be."""
-    touched = np.flatnonzero(np.abs(halves).max(axis=1) > 1e-12)
-    others = la.null_space(halves[touched].T)
-    untouched = np.setdiff1d(np.arange(len(halves)), touched)
-    Q = np.zeros((len(halves), len(untouched) + others.shape[1]))
-    Q[untouched, np.arange(len(untouched))] = 1.0
-    Q[touched, len(untouched) :] = others
-    order = np.argsort(np.abs(Q).argmax(axis=0), kind="stable")
-    return Q[:, order]
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,10 +21,10 @@ from exudyn_rotor.linear.model.scene.scene_train import scene_train
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
-from exudyn_rotor.reduction.driven import without_spin
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.solid.damping import LOSS_LEFT_OUT
+from exudyn_rotor.reduction.selection import without_spin
 from exudyn_rotor.solid.places import leeway
+from exudyn_rotor.solid.rotor import LOSS_LEFT_OUT
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.stiffening import CHOICES, warn_of_left_out
 

@@ -25,7 +25,7 @@ import scipy.linalg as la
 from exudyn_rotor import checks
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear.equations import PeriodicSystem, Terms, others, spread, turned
+from exudyn_rotor.linear.equations import PeriodicSystem, add, others, spread
 from exudyn_rotor.linear.model.assembly import (
     Assembly,
     Element,
@@ -302,9 +302,8 @@ class LinearModel:
                 refused |= {int(places[i]): error for i, error in errors.items()}
                 if part is not None:
                     parts.append((np.delete(places, list(errors)), part))
-        if not parts:
-            raise refused[min(refused)]
-        _warn_of_refused(speeds, refused)
+        lost = [(f"{speeds[i]:.5g}", refused[i]) for i in sorted(refused)]
+        warn_of_refused(lost, len(speeds), " rad/s")
         return spread(speeds, parts)
 
     def _systems(
@@ -584,17 +583,6 @@ class LinearModel:
         rows = np.vstack([rows, 0.0 * rows])
         return assembly.wide(body.from_outside(rows), assembly.slices[0])
 
-    def unbalance_at(self, seen: Terms, unbalance: np.ndarray) -> dict[int, np.ndarray]:
-        """Return the load (k,) per Ω² of an unbalance (3,) in the rotor's frame, as harmonics.
-
-        `seen` is the motion of its place.
-        """
-        load: dict[int, np.ndarray] = {}
-        for n, force in turned({0: np.r_[unbalance, 0.0, 0.0, 0.0][:, None]}, 1).items():
-            for m, U in seen.items():
-                load[n + m] = load.get(n + m, 0.0) + (U.T @ force)[:, 0]
-        return load
-
     def unbalance(self, speed: float = 1.0) -> dict[int, np.ndarray]:
         """Return the load (k,) per Ω² of the own eccentricity of the rotors of ratio 1.
 
@@ -604,16 +592,17 @@ class LinearModel:
         total: dict[int, np.ndarray] = {}
         for body, place in zip(assembly.bodies, assembly.slices, strict=True):
             if isinstance(body, RotorBody) and self.ratios[body.name] == 1.0:
-                for n, load in assembly.wide(body.unbalance, place).items():
-                    total[n] = total.get(n, 0.0) + load
+                add(total, assembly.wide(body.unbalance, place))
         return total
 
     def base_loads(self, speed: float = 1.0) -> dict[int, np.ndarray] | None:
         """Return the loads (3, k) of unit accelerations of the ground, as Fourier terms."""
-        bodies = self.bodies
-        if any(isinstance(b, StandingBody) and b.base_loads is None for b in bodies):
-            return None
-        return self.assembly(speed).summed("base_loads")
+        assembly, total = self.assembly(speed), {}
+        for body, place in zip(assembly.bodies, assembly.slices, strict=True):
+            if isinstance(body, StandingBody) and body.base_loads is None:
+                return None
+            add(total, assembly.wide(body.base_loads or {}, place))
+        return total
 
     # ------------------------------------------------------------------ free motions
 
@@ -642,52 +631,34 @@ class LinearModel:
         return _named_free(names, np.hstack(columns), K)
 
     @cached_property
-    def _neutral(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Motions that nothing holds at any speed, (k, f); their momenta; which are spins (f,).
+    def _neutral(self) -> tuple[np.ndarray, np.ndarray]:
+        """Shifts along the axis and spins that nothing holds at any speed, (2, k, f) each.
 
-        Spins, and shifts along the axis.
+        The motions, then their momenta.
         """
         assembly, K = self._held_at_rest
-        motions, momenta, spins = [], [], []
+        shifts, spins = [], []
         for body, place in zip(self.bodies, assembly.slices, strict=False):
             if not isinstance(body, RotorBody):
                 continue
-            kinds, spin = body.alone.rotor.rigid_kinds, body.spin
-            given = []
-            if spin is not None and (body.is_apart or len(self._used) > 1):
-                given.append((spin.turn, spin.momentum, True))
-            if ModeKind.AXIAL in kinds:
-                axial = body.alone.Q[kinds.index(ModeKind.AXIAL)]
-                given.append((axial, axial, False))
-            for motion, momentum, is_spin in given:
-                spins.append(is_spin)
-                for columns, part in ((motions, motion), (momenta, momentum)):
-                    columns.append(np.zeros(self.size))
-                    columns[-1][place] = part
-        motions, momenta = (np.array(each).reshape(-1, self.size).T for each in (motions, momenta))
-        found = [np.zeros((self.size, 0))] * 2, []
-        most = max(np.abs(np.diag(K)).max(initial=0.0), 1e-300)
-        for kind in (True, False):  # spins are coupled by gears, shifts by thrust bearings
-            chosen = np.flatnonzero(np.array(spins, dtype=bool) == kind)
-            S = motions[: assembly.size, chosen]
-            _, values, combined = np.linalg.svd(S.T @ K @ S)
-            free = combined[values <= _HELD * most].T
-            found[0][0] = np.hstack([found[0][0], motions[:, chosen] @ free])
-            found[0][1] = np.hstack([found[0][1], momenta[:, chosen] @ free])
-            found[1].extend([kind] * free.shape[1])
-        return *found[0], np.array(found[1], dtype=bool)
+            wide = np.zeros((2, self.size))
+            if ModeKind.AXIAL in body.alone.rotor.rigid_kinds:
+                wide[:, place] = body.alone.Q[body.alone.rotor.rigid_kinds.index(ModeKind.AXIAL)]
+                shifts.append(wide.copy())
+            if body.spin is not None and (body.is_apart or len(self._used) > 1):
+                wide[:, place] = body.spin.turn, body.spin.momentum
+                spins.append(wide)
+        return tuple(_unheld(np.array(X).reshape(-1, 2, self.size), K) for X in (shifts, spins))
 
     @property
     def free_spins(self) -> np.ndarray:
         """Momenta of the spins that nothing holds, shape (k, f)."""
-        _, momenta, spins = self._neutral
-        return momenta[:, spins]
+        return self._neutral[1][1]
 
     @property
     def neutral_motions(self) -> np.ndarray:
         """Motions that nothing holds at any speed: shifts along the axis, then spins, (k, f)."""
-        motions, _, spins = self._neutral
-        return motions[:, np.argsort(spins, kind="stable")]
+        return np.hstack([motions for motions, _ in self._neutral])
 
     @cached_property
     def held_basis(self) -> np.ndarray | None:
@@ -697,7 +668,7 @@ class LinearModel:
     @cached_property
     def moving_basis(self) -> np.ndarray | None:
         """Motions without :attr:`neutral_motions` as orthonormal columns; None for all."""
-        return beside(self._neutral[1])
+        return beside(np.hstack([momenta for _, momenta in self._neutral]))
 
     @cached_property
     def for_responses(self) -> LinearModel:
@@ -726,16 +697,26 @@ class LinearModel:
         return "\n".join(lines)
 
 
-def _warn_of_refused(speeds: np.ndarray, refused: Mapping[int, Exception]) -> None:
+def warn_of_refused(refused: Sequence[tuple[str, Exception]], count: int, unit: str = "") -> None:
+    """Warn of points without values; raise the first error where all of `count` have none."""
+    if refused and len(refused) == count:
+        raise refused[0][1]
     if refused:
-        places = sorted(refused)
-        shown = ", ".join(f"{speeds[i]:.5g}" for i in places[:5])
-        more = " …" if len(places) > 5 else ""
+        shown = ", ".join(point for point, _ in refused[:5]) + (" …" if len(refused) > 5 else "")
         warnings.warn(
-            f"no values at {shown}{more} rad/s, which are NaN: {refused[places[0]]}",
+            f"no values at {shown}{unit}, which are NaN: {refused[0][1]}",
             UserWarning,
             stacklevel=user_level(),
         )
+
+
+def _unheld(pairs: np.ndarray, K: np.ndarray) -> np.ndarray:
+    """Return what a stiffness (r, r) of the first coordinates leaves free, of pairs (f, 2, k)."""
+    both = pairs.transpose(1, 2, 0)
+    S = both[0, : len(K)]
+    _, values, combined = np.linalg.svd(S.T @ K @ S)
+    most = max(np.abs(np.diag(K)).max(initial=0.0), 1e-300)
+    return both @ combined[values <= _HELD * most].T
 
 
 def beside(momenta: np.ndarray) -> np.ndarray | None:

@@ -14,8 +14,6 @@ from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.solid.places import OF_RADIUS, SAME_PLACE
-from exudyn_rotor.theory.rotating_axes import axes_of
 
 _SAME = 1e-9  # relative slip of gears that is rounding
 _OF_DISTANCE = 1e-3  # of the centre distance of gears
@@ -111,68 +109,6 @@ def _end(name: str, label: str) -> tuple[str, str]:
     return rotor, interface
 
 
-def check_places(
-    rotors: Mapping[str, ReducedRotor],
-    links: Sequence[Link],
-    positions: Mapping[str, np.ndarray],
-) -> None:
-    """Refuse links whose ends are not in one place, along (n1, n2, e).
-
-    Raises
-    ------
-    ValueError
-    """
-    at = dict(positions)
-    left = list(links)
-    while left:
-        link = next((one for one in left if _is_known(one, at)), left[0])
-        left.remove(link)
-        (first, _), (second, _) = link.ends
-        apart = _apart(rotors, link)
-        if first not in at and second not in at:
-            at[first] = np.zeros(3)
-        if second not in at:
-            at[second] = at[first] - apart
-        elif first not in at:
-            at[first] = at[second] + apart
-        _check(rotors, link, at[second] - at[first] + apart)
-
-
-def _is_known(link: Link, at: Mapping[str, np.ndarray]) -> bool:
-    return any(rotor in at for rotor, _ in link.ends)
-
-
-def _apart(rotors: Mapping[str, ReducedRotor], link: Link) -> np.ndarray:
-    """Return how far the ends are from where they should be, of rotors at one position."""
-    places = []
-    for name, interface in link.ends:
-        axis = rotors[name].axis
-        foot = axis.project(rotors[name].interfaces[interface].reference)
-        places.append(axes_of(axis).T @ foot)
-    expected = np.zeros(3)
-    if isinstance(link.connection, GearMesh):
-        angle, distance = link.connection.line_angle, link.connection.center_distance
-        expected = distance * np.array([np.cos(angle), np.sin(angle), 0.0])
-    return places[1] - places[0] - expected
-
-
-def _check(rotors: Mapping[str, ReducedRotor], link: Link, off: np.ndarray) -> None:
-    radii = (rotors[name].interfaces[interface].radius for name, interface in link.ends)
-    allowed = max(SAME_PLACE, OF_RADIUS * max(radii))
-    what = "both ends need one place"
-    if isinstance(link.connection, GearMesh):
-        distance = link.connection.center_distance
-        allowed = max(allowed, _OF_DISTANCE * distance)
-        what = f"gears need axes {distance:.6g} m apart at line_angle, in one plane"
-    if np.linalg.norm(off) > allowed:
-        across, along = np.hypot(off[0], off[1]), off[2]
-        raise ValueError(
-            f"links: {link.first} – {link.second} is off by {across:.4g} m across and "
-            f"{along:.4g} m along the axis, as the other links or positions= place the rotors; "
-            f"{what}"
-        )
-
-
 @dataclass(frozen=True, eq=False)
 class RotorTrain:
     """Rotors whose speeds are in fixed ratios: what linear analyses take in place of a rotor.
@@ -195,9 +131,6 @@ class RotorTrain:
         the axis, as that of a mesh does; weighted by what slow motions see. Up to it a rotor of
         another ratio than 1, or any beside gears or anisotropic supports at rest, counts as
         axisymmetric, by its mean over a turn.
-    positions : mapping of str to array_like, each (3,), optional
-        Where the origins of meshes stand along (n1, n2, e) [m], of rotors for which that is to be
-        checked. Without them a rotor stands where its links put it.
     driven : sequence of str, optional
         Rotors whose drive holds their speed: the mean rotation about the axis is the angle of Ω
         times the ratio, and no coordinate. The spins of all others are, and what nothing holds of
@@ -206,8 +139,7 @@ class RotorTrain:
     Raises
     ------
     TypeError, ValueError
-        For unknown names and bad numbers, for gears of other ratios, and for links whose ends are
-        not in one place. Analyses refuse rotors
+        For unknown names and bad numbers, and for gears of other ratios. Analyses refuse rotors
         with structural damping or with supports off the axis that hold the spin, and rotors,
         supports and links that are uneven where the equations do not repeat with the angle of Ω.
 
@@ -243,7 +175,6 @@ class RotorTrain:
     supports: Mapping[str, Sequence[Given]] = field(default_factory=dict)
     links: Sequence[Link] = ()
     largest_unevenness: float = 0.05
-    positions: Mapping[str, np.ndarray] = field(default_factory=dict)
     driven: Sequence[str] = ()
 
     def __post_init__(self) -> None:
@@ -260,11 +191,6 @@ class RotorTrain:
                 _known(name, rotors, "links")
                 _known(interface, rotors[name].interfaces, f"links: interfaces of {name!r}")
             link._check_ratios(ratios)
-        positions = {}
-        for name, given in checks.mapping(self.positions, "positions", "array_like").items():
-            _known(name, rotors, "positions")
-            positions[name] = checks.vector(given, f"positions[{name!r}]", "m", size=3)
-        check_places(rotors, links, positions)
         driven = checks.labels(self.driven, "driven", rotors)
         if len(set(driven)) < len(driven):
             raise ValueError(f"driven: needs every rotor once, got {list(driven)}")
@@ -275,7 +201,6 @@ class RotorTrain:
             "supports": checks.read_only_mapping(supports),
             "links": links,
             "largest_unevenness": uneven,
-            "positions": checks.read_only_mapping(positions),
             "driven": driven,
         }.items():
             object.__setattr__(self, name, value)

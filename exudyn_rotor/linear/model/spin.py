@@ -95,6 +95,8 @@ def spin_of(rotor: ReducedRotor, invariants: Invariants, Q: np.ndarray) -> Spin 
     if ModeKind.SPIN not in rotor.kinds:
         return None
     momentum = Q.T @ mean_rotation(rotor)
+    if np.linalg.norm(momentum) < 0.5:  # a scene may prescribe it
+        return None
     about_axis = invariants.g  # the coordinates of a rotation by one rad, as columns have unit mass
     rigid = Q.T[:, [kind in RIGID_KINDS for kind in rotor.kinds]]
     return Spin(momentum, about_axis / (momentum @ about_axis), rigid)

@@ -36,8 +36,8 @@ from exudyn_rotor.linear.model.build import (
 )
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.response.loads import At, Place, checked_places, places
-from exudyn_rotor.linear.response.response import DIRECTIONS
-from exudyn_rotor.results import Result, numbers, storable, words
+from exudyn_rotor.linear.response.response import DIRECTIONS, AtPlaces
+from exudyn_rotor.results import numbers, storable, text_table
 from exudyn_rotor.theory.rotating_axes import axes_of
 from exudyn_rotor.units import Units
 
@@ -46,10 +46,10 @@ if TYPE_CHECKING:
 
 _PER_TURN, _IN_ALL = 24, 200  # least numbers of steps in a revolution and in a record
 _MOST_STEPS = 2_000_000
-_ANGLES, _MOST_ANGLES = 16, 512  # of a revolution, at which a step is computed
+_ANGLES = 64  # of a revolution, at which a step is computed
 _AT_ONCE = 512  # steps whose matrices are made together
 _HALVED = 16.0  # a halved step of fifth order errs by a sixteenth of the change, at most
-_TAIL, _ROUNDING = 1e-10, 1e-12  # shares of a step by Fourier terms that are left out
+_TAIL = 1e-12  # share of a step by Fourier terms that are left out
 _SMALL = 1e-2  # share of a motion across the axis that counts along it
 _ROUNDS = 1e-9  # share of a motion along the axis that is rounding across it
 _BETWEEN = 0.01  # of the largest motion: how far straight lines between the times may be off
@@ -66,7 +66,7 @@ _RADAU = np.array(
 
 @storable
 @dataclass(frozen=True, eq=False)
-class BaseResponse(Result):
+class BaseResponse(AtPlaces):
     """Motion against the ground over time, along and about (n1, n2, e), inertial axes.
 
     Attributes
@@ -87,25 +87,24 @@ class BaseResponse(Result):
     >>> motion[1, 0, :2] = 3e-6, 4e-6
     >>> print(BaseResponse(("left",), [0.0, 0.1, 0.2], motion, 50.0).table())
     largest motion against the ground at 477.465 rpm
-    place                     n1 [m]      n2 [m]       e [m]  across [m]  at [s]
-    left                   3.000e-06   4.000e-06   0.000e+00   5.000e-06  0.1
+    place  n1 [m]  n2 [m]  e [m]  across [m]  at [s]
+    left    3e-06   4e-06      0       5e-06     0.1
     """
 
-    places: tuple[str, ...] = words("places")
     time: np.ndarray = numbers("steps")
     motion: np.ndarray = numbers("steps", "places", 6, finite=False)
     speed: float = 0.0
 
     def displacement(self, place: str) -> np.ndarray:
         """Return the displacement of a place over time, shape (t, 3) [m]."""
-        return self._moved(place, "place")
+        return self.motion[:, self._at(place), :3]
 
     def between(self, place: str, other: str) -> np.ndarray:
         """Return the displacement of a place against another, shape (t, 3) [m].
 
         Of a journal against its foundation: ``between("left", "left (foundation)")``.
         """
-        return self._moved(place, "place") - self._moved(other, "other")
+        return self.displacement(place) - self.motion[:, self._at(other, "other"), :3]
 
     def peak(self, place: str, other: str | None = None) -> tuple[float, float]:
         """Return the largest displacement across the axis [m], and its time [s].
@@ -119,20 +118,17 @@ class BaseResponse(Result):
     def table(self, *, units: str = "rpm") -> str:
         """Return the largest values of every place as text; `units` are 'rpm', 'Hz' or 'SI'."""
         shown = Units.of(units)
-        lines = [
-            f"largest motion against the ground at {shown.speeds(self.speed):g} {shown.speed}",
-            "place                     n1 [m]      n2 [m]       e [m]  across [m]  at [s]",
-        ]
-        for place in self.places:
-            most = np.abs(self.displacement(place)).max(axis=0)
-            across, time = self.peak(place)
-            values = "".join(f"{value:12.3e}" for value in (*most, across))
-            lines.append(f"{place:20}{values}  {time:.6g}")
-        return "\n".join(lines)
+        most = np.abs(self.motion[..., :3]).max(axis=0).T
+        across, times = np.array([self.peak(place) for place in self.places]).reshape(-1, 2).T
+        columns = {"place": np.array(self.places)}
+        columns |= {f"{name} [m]": most[i] for i, name in enumerate(DIRECTIONS[:3])}
+        lines = text_table(columns | {"across [m]": across, "at [s]": times})
+        at = f"{shown.speeds(self.speed):g} {shown.speed}"
+        return "\n".join([f"largest motion against the ground at {at}", *lines])
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
-        """Return time and displacements as columns."""
-        checks.choice(units, "units", ("SI", "Hz", "rpm"))
+        """Return time and displacements as columns; `units` change nothing."""
+        Units.of(units)
         moved = {
             f"{place} {direction} [m]": self.motion[:, index, axis]
             for index, place in enumerate(self.places)
@@ -152,9 +148,6 @@ class BaseResponse(Result):
         ax.legend()
         return ax
 
-    def _moved(self, place: str, name: str) -> np.ndarray:
-        return self.motion[:, self.places.index(checks.choice(place, name, self.places)), :3]
-
 
 def base_response(
     target: Target,
@@ -166,7 +159,6 @@ def base_response(
     end_time: float | None = None,
     stiffening: str = "auto",
     tolerance: float = 1e-4,
-    axes: str = "auto",
 ) -> BaseResponse:
     """Compute the motion of a rotor at constant speed while a record shakes the ground.
 
@@ -191,9 +183,6 @@ def base_response(
     tolerance : float, optional
         Largest error by the length of steps, relative to the largest motion, estimated by halved
         steps. Constant equations are followed exactly with any step.
-    axes : {'auto', 'inertial', 'rotor'}
-        Axes of the equations, see :func:`linear_model`; by default the axes of the rotor, in which
-        nothing is averaged.
 
     Raises
     ------
@@ -228,11 +217,12 @@ def base_response(
     )
     if isinstance(target, exudyn.MainSystem):
         raise ValueError(refusal)
-    model = linear_model(target, supports=supports, stiffening=stiffening, axes=axes)
+    model = linear_model(target, supports=supports, stiffening=stiffening)
     if model.base_loads(speed) is None:
         raise ValueError(refusal)
     warn_of_structural_damping(model, "base_response computes motion over time")
     warn_of_left_out_stiffening(model, speed)
+    model.check_without_frequency("a motion of the ground")
     model = model.for_responses
     observed = places(model, at, speed)
     time, motion = _ShakenRotor.of(model, speed, record, observed).converged(end, tolerance)
@@ -271,10 +261,8 @@ class _ShakenRotor:
         cls, model: LinearModel, speed: float, record: BaseRecord, observed: Sequence[Place]
     ) -> _ShakenRotor:
         """Return the equations at a spin speed [rad/s], with a spin that nothing holds held."""
-        model.check_without_frequency("a motion of the ground")
-        system, basis = model.at(speed), model.held_basis
-        basis = np.eye(model.size) if basis is None else basis
-        states = states_of(system.projected(basis))
+        basis = np.eye(model.size) if model.held_basis is None else model.held_basis
+        states = states_of(model.at(speed).projected(basis))
         k = basis.shape[1]
         shape = basis @ states.shape
         # forces act on the second half of the state, by the modes of the first
@@ -292,10 +280,10 @@ class _ShakenRotor:
     @one_thread()
     def converged(self, end: float, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
         """Return times and motions (t, p, 6), with steps small enough."""
-        start = float(self.record.times[0])
-        coarse, last, every = self._first_step(end - start), None, 1
-        while last is None or (end - start) * every / coarse < _MOST_STEPS:
-            time, motion = self._motion(start, end, coarse / every, every)
+        length = end - float(self.record.times[0])
+        step, last = self._first_step(length), None
+        while length / step < _MOST_STEPS:
+            time, motion = self._motion(length, step)
             if not np.all(np.isfinite(motion)):
                 raise ValueError(
                     "base response: the motion leaves the range of floats; is the rotor unstable "
@@ -306,15 +294,15 @@ class _ShakenRotor:
             across = max(np.abs(motion[..., :2]).max(), _ROUNDS * along)
             sizes = np.array([across, across, max(along, _SMALL * across)])
             moved = motion[..., :3] / np.where(sizes > 0.0, sizes, 1.0)
-            if last is not None and np.abs(moved[::2] - last).max() <= _HALVED * tolerance:
-                strides = [every >> fewer for fewer in range(every.bit_length() - 1)]
-                kept = next((n for n in strides if _follow(moved[:: n // 2])), None)
-                if kept is not None:
-                    return time[::kept], motion[::kept]
-            last, every = moved, 2 * every
+            if last is not None:
+                both = moved[: 2 * len(last) : 2], last[: len(moved[::2])]
+                is_settled = np.abs(both[0] - both[1]).max() <= _HALVED * tolerance
+                if is_settled and _follow(moved):
+                    return time[::2], motion[::2]
+            step, last = 0.5 * step, moved
         raise UnconvergedError(
-            f"base response: steps of {2.0 * coarse / every:.2g} s are too long for the motion; "
-            "give an earlier end_time, or a reduced rotor without modes that are so fast"
+            f"base response: steps of {2.0 * step:.2g} s are too long for the motion; give an "
+            "earlier end_time, or a reduced rotor without modes that are so fast"
         )
 
     def _first_step(self, length: float) -> float:
@@ -325,31 +313,28 @@ class _ShakenRotor:
             whole, least = 2.0 * np.pi / abs(self.speed), _PER_TURN
         return whole / max(least, np.ceil(whole / largest - 1e-9))
 
-    def _motion(
-        self, start: float, end: float, step: float, every: int
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Return times and motions of all steps, a multiple of `every`."""
-        count = every * max(1, int(np.floor((end - start) / (every * step) + 1e-9)))
-        times = start + step * np.arange(count + 1)
-        angles = self.speed * (times - start)
+    def _motion(self, length: float, step: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return times and motions of all steps in a length of time, from rest."""
+        count = max(1, int(np.floor(length / step + 1e-9)))
+        after = step * np.arange(count + 1)
+        times, angles = self.record.times[0] + after, self.speed * after
         lines = self._lines(times, step)
-        by_state, by_line = self._exact(step) if self.is_constant else self._radau(step)
-        waves = {n: np.exp(1j * n * angles) for n in {*by_line, *by_state, *_orders(self.seen)}}
         turn = int(np.ceil(np.sqrt(count)))  # of constant equations any number of steps
         if not self.is_constant:
             turn = min(round(2.0 * np.pi / abs(self.speed) / step), count)
         with np.errstate(over="ignore", invalid="ignore"):  # told by who asked
             if self.is_constant:
-                given = sum((waves[n][:-1, None] * (lines @ P.T)).real for n, P in by_line.items())
+                by_state, added = self._exact(step, angles[:-1], lines)
             else:
-                given = np.zeros((count, len(self.A[0])))
-                for n, P in enumerate(_matrices(by_line, waves, turn)):
-                    given[n::turn] = lines[n::turn] @ P.T
-            states = _followed(by_state, waves, given, turn)
+                by_state, by_line = self._radau(step)
+                added = np.zeros((count, len(self.A[0])))
+                for n, X in enumerate(_matrices(by_line, angles[:turn])):
+                    added[n::turn] = lines[n::turn] @ X.T
+            states = _followed(by_state, angles[:turn], added)
             motion = np.zeros((count + 1, len(self.seen), 6))
             for place, seen in enumerate(self.seen):
                 for n, U in seen.items():
-                    motion[:, place] += (waves[n][:, None] * (states @ U.T)).real
+                    motion[:, place] += (np.exp(1j * n * angles)[:, None] * (states @ U.T)).real
         return times, motion
 
     def _lines(self, times: np.ndarray, step: float) -> np.ndarray:
@@ -363,49 +348,72 @@ class _ShakenRotor:
         slope = 12.0 * moment / step**3
         return np.concatenate([mean - 0.5 * step * slope, slope], axis=1)
 
-    def _exact(self, step: float) -> tuple[dict, dict]:
-        """Return Fourier terms of what a step does with the state (2k, 2k) and a line (2k, 6)."""
+    def _exact(
+        self, step: float, angles: np.ndarray, lines: np.ndarray
+    ) -> tuple[Terms, np.ndarray]:
+        """Return what a step does with the state (2k, 2k), and what lines (t, 6) add, (t, 2k)."""
         A = at_angle(self.A, 0.0)
-        size, by_line = len(A), {}
+        size, added = len(A), 0.0
         for n, load in self.loads.items():
             generator = np.zeros((size + 6, size + 6), dtype=complex)
             generator[:size, :size], generator[:size, size : size + 3] = A, load
             generator[size : size + 3, size + 3 :] = np.eye(3)
             generator[size:, size:] += 1j * n * self.speed * np.eye(6)
-            by_line[n] = scipy.linalg.expm(step * generator)[:size, size:]
-        return {0: scipy.linalg.expm(step * A)}, by_line
+            by_line = scipy.linalg.expm(step * generator)[:size, size:]
+            added = added + (np.exp(1j * n * angles)[:, None] * (lines @ by_line.T)).real
+        return {0: scipy.linalg.expm(step * A)}, added
 
-    def _radau(self, step: float) -> tuple[dict, dict]:
-        """Return what :meth:`_exact` does, of periodic equations."""
-        size, count = len(self.A[0]), _ANGLES
-        while True:
-            angles = 2.0 * np.pi * np.arange(count) / count
-            spectrum = np.fft.fft([self._stepped(step, angle) for angle in angles], axis=0) / count
-            sizes = np.abs(spectrum).max(axis=1)  # the lines act on states of another size
-            sizes = (sizes / np.maximum(sizes.max(axis=0), 1e-300)).max(axis=1)
-            if sizes[count // 4 : -count // 4].max() <= _TAIL or count >= _MOST_ANGLES:
-                break
-            count *= 2
-        terms = {n: spectrum[n] for n in range(-count // 4, count // 4 + 1) if sizes[n] > _ROUNDING}
-        return tuple({n: X[:, part] for n, X in terms.items()}
-                     for part in (slice(size), slice(size, None)))  # fmt: skip
+    def _radau(self, step: float) -> tuple[Terms, Terms]:
+        """Return Fourier terms of what a step does with state (2k, 2k) and line (2k, 6)."""
+        size, first = len(self.A[0]), 2.0 * np.pi * np.arange(_ANGLES) / _ANGLES
+        stages = np.add.outer(first, self.speed * step * _STAGES)
+        rates, loads = (_at_angles(each, stages) for each in (self.A, self.loads))
+        loads = np.concatenate([loads, (step * _STAGES)[:, None, None] * loads], axis=3)
+        left = -step * np.einsum("ij,njab->niajb", _RADAU, rates).reshape(_ANGLES, 3 * size, -1)
+        right = step * np.einsum("ij,njab->niab", _RADAU, loads).reshape(_ANGLES, 3 * size, 6)
+        begun = np.broadcast_to(np.tile(np.eye(size), (3, 1)), (_ANGLES, 3 * size, size))
+        right = np.concatenate([begun, right], axis=2)
+        after = np.linalg.solve(left + np.eye(3 * size), right)[:, 2 * size :]
+        spectrum = np.fft.fft(after, axis=0) / _ANGLES
+        sizes = np.abs(spectrum).max(axis=1)  # the lines act on states of another size
+        sizes = (sizes / np.maximum(sizes.max(axis=0), 1e-300)).max(axis=1)
+        known = [n for n in range(-_ANGLES // 4, _ANGLES // 4 + 1) if sizes[n] > _TAIL]
+        parts = slice(size), slice(size, None)
+        return tuple({n: spectrum[n][:, part] for n in known} for part in parts)
 
-    def _stepped(self, step: float, angle: float) -> np.ndarray:
-        """Return what a step from a spin angle [rad] does with state and line, (2k, 2k + 6)."""
-        size = len(self.A[0])
-        stages = angle + self.speed * step * _STAGES
-        rates = np.stack([at_angle(self.A, each) for each in stages])
-        loads = np.stack([np.hstack([self._load(each), share * step * self._load(each)])
-                          for each, share in zip(stages, _STAGES, strict=True)])  # fmt: skip
-        left = np.eye(3 * size).reshape(3, size, 3, size)
-        left -= step * np.einsum("ij,jab->iajb", _RADAU, rates)
-        right = step * np.einsum("ij,jab->iab", _RADAU, loads).reshape(3 * size, 6)
-        right = np.hstack([np.tile(np.eye(size), (3, 1)), right])
-        return np.linalg.solve(left.reshape(3 * size, 3 * size), right)[2 * size :]
 
-    def _load(self, angle: float) -> np.ndarray:
-        """Return the rates per acceleration of the ground at a spin angle [rad], (2k, 3)."""
-        return sum(load * np.exp(1j * n * angle) for n, load in self.loads.items()).real
+def _at_angles(terms: Terms, angles: np.ndarray) -> np.ndarray:
+    """Return matrices at spin angles [rad], stacked."""
+    return sum(np.multiply.outer(np.exp(1j * n * angles), X) for n, X in terms.items()).real
+
+
+def _matrices(terms: Terms, angles: np.ndarray) -> Iterator[np.ndarray]:
+    """Give the matrices at spin angles [rad], one after the other."""
+    for first in range(0, len(angles), _AT_ONCE):
+        yield from _at_angles(terms, angles[first : first + _AT_ONCE])
+
+
+def _followed(by_state: Terms, angles: np.ndarray, added: np.ndarray) -> np.ndarray:
+    """Return ``z_{n+1} = E_n z_n + g_n`` from rest, (t + 1, 2k), given (t, 2k).
+
+    E_n comes back after the steps of a turn, which begin at the `angles`. All turns are followed
+    together: from rest, which tells where each begins, and from there.
+    """
+    (count, size), turn = added.shape, len(angles)
+    turns = -(-count // turn)
+    added = np.concatenate([added, np.zeros((turns * turn - count, size))])
+    added = added.reshape(turns, turn, size).swapaxes(0, 1)
+    states, whole = np.zeros((turn + 1, turns, size)), np.eye(size)
+    for n, E in enumerate(_matrices(by_state, angles)):
+        states[n + 1] = states[n] @ E.T + added[n]
+        whole = E @ whole
+    if turns > 1:
+        for n in range(1, turns):
+            states[0, n] = whole @ states[0, n - 1] + states[turn, n - 1]
+        for n, E in enumerate(_matrices(by_state, angles)):
+            states[n + 1] = states[n] @ E.T + added[n]
+    states = np.concatenate([states[:turn].swapaxes(0, 1).reshape(-1, size), states[turn, -1:]])
+    return states[: count + 1]
 
 
 def _follow(moved: np.ndarray) -> bool:
@@ -413,41 +421,6 @@ def _follow(moved: np.ndarray) -> bool:
 
     The largest displacement is one.
     """
-    return bool(np.abs(moved[1::2] - 0.5 * (moved[:-1:2] + moved[2::2])).max() <= _BETWEEN)
-
-
-def _orders(seen: Sequence[Terms]) -> set[int]:
-    return {n for each in seen for n in each}
-
-
-def _matrices(terms: Terms, waves: dict[int, np.ndarray], count: int) -> Iterator[np.ndarray]:
-    """Give ``Re Σ X_m exp(imθ_n)`` of the first steps of a turn, of so many."""
-    each = np.stack(list(terms.values()))
-    for first in range(0, count, _AT_ONCE):
-        w = np.stack([waves[m][first : min(first + _AT_ONCE, count)] for m in terms], axis=1)
-        yield from np.tensordot(w.real, each.real, 1) - np.tensordot(w.imag, each.imag, 1)
-
-
-def _followed(
-    by_state: Terms, waves: dict[int, np.ndarray], given: np.ndarray, turn: int
-) -> np.ndarray:
-    """Return ``z_{n+1} = E_n z_n + g_n`` from rest, (t + 1, 2k), given (t, 2k).
-
-    ``E_n = Re Σ E_m exp(imθ_n)`` comes back after so many steps of a turn. All turns are followed
-    together: from rest, which tells where each begins, and from there.
-    """
-    count, size = given.shape
-    turns = -(-count // turn)
-    given = np.concatenate([given, np.zeros((turns * turn - count, size))])
-    given = given.reshape(turns, turn, size).swapaxes(0, 1)
-    states, whole = np.zeros((turn + 1, turns, size)), np.eye(size)
-    if turns > 1:
-        for n, E in enumerate(_matrices(by_state, waves, turn)):
-            states[n + 1] = states[n] @ E.T + given[n]
-            whole = E @ whole
-        for n in range(1, turns):
-            states[0, n] = whole @ states[0, n - 1] + states[turn, n - 1]
-    for n, E in enumerate(_matrices(by_state, waves, turn)):
-        states[n + 1] = states[n] @ E.T + given[n]
-    states = np.concatenate([states[:turn].swapaxes(0, 1).reshape(-1, size), states[turn, -1:]])
-    return states[: count + 1]
+    moved = moved[: 2 * ((len(moved) - 1) // 2) + 1]
+    off = moved[1::2] - 0.5 * (moved[:-1:2] + moved[2::2])
+    return bool(np.abs(off).max(initial=0.0) <= _BETWEEN)

@@ -8,7 +8,7 @@ speed Ω.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +22,7 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.rotating_axes import FRAMES, turning_harmonics
 
 At = str | int | Sequence[float]
+Harmonics = dict[int, np.ndarray]
 _BALANCED = 1e-13  # rounding leaves this much of the unbalance of a perfectly balanced mesh
 
 # ------------------------------------------------------------------ places
@@ -49,17 +50,36 @@ class Place:
     is_node: bool
     ratio: float = 1.0
 
-    def motion(self, coordinates: Mapping[int, np.ndarray], frame: str) -> dict[int, np.ndarray]:
+    def motion(self, coordinates: Mapping[int, np.ndarray], frame: str) -> Harmonics:
         """Return the harmonics (…, 6) of the motion, given the harmonics (…, k) of coordinates.
 
         In axes that stand still, or in axes that turn with the speed of the analysis.
         """
         seen = self.seen if frame == "inertial" else turned(self.seen, -1)
-        motion: dict[int, np.ndarray] = {}
-        for m, U in seen.items():
-            for n, x in coordinates.items():
-                motion[m + n] = motion.get(m + n, 0.0) + x @ U.T
-        return motion
+        return _sum({m + n: x @ U.T} for m, U in seen.items() for n, x in coordinates.items())
+
+    def pulled(self, wrench: np.ndarray, frame: str, speed: float) -> Harmonics:
+        """Return the generalised force, as harmonics (k,), of a force and moment (6,).
+
+        Along and about (n1, n2, e), which stand still or turn with the rotor.
+
+        Raises
+        ------
+        ValueError
+            For what turns with a rotor of another speed than that of the analysis [rad/s].
+        """
+        acting = {0: wrench}
+        if frame == "rotor" and self.ratio not in (0.0, 1.0):
+            owner, _, _ = self.label.partition(":")
+            raise ValueError(
+                f"at: {self.label!r}: turns with {self.ratio:g} times the speed of the analysis; "
+                f"give train.relative_to({owner!r}), over the speed of that rotor"
+            )
+        if frame == "rotor" and speed:
+            acting = {n: R @ wrench for n, R in turning_harmonics(6).items()}
+        return _sum(
+            {m + n: U.T @ force} for m, U in self.seen.items() for n, force in acting.items()
+        )
 
 
 def place(model: LinearModel, at: At, speed: float = 1.0) -> Place:
@@ -88,7 +108,11 @@ def place(model: LinearModel, at: At, speed: float = 1.0) -> Place:
             f"at: {at!r}: mesh nodes need a rotor with mode shapes; reduce with "
             "keep_shapes=True, or name an interface"
         )
-    number = _node_number(at, first.shapes.nodes)
+    nodes, number = first.shapes.nodes, at
+    if not isinstance(at, int):
+        number = int(np.argmin(np.linalg.norm(nodes - np.asarray(at), axis=1)))
+    elif at >= len(nodes):
+        raise ValueError(f"at: {at}: no such node; the mesh has nodes 0 to {len(nodes) - 1}")
     return Place(f"node {number}", model.seen_at_node(number, speed), is_node=True)
 
 
@@ -117,15 +141,6 @@ def places(model: LinearModel, at: Sequence[At] | None, speed: float = 1.0) -> l
     if len(set(labels)) < len(labels):
         raise ValueError(f"at: a place is named twice: {', '.join(labels)}")
     return observed
-
-
-def _node_number(at: int | Sequence[float], nodes: np.ndarray) -> int:
-    """Return a node's number; the nearest one to a position."""
-    if isinstance(at, int):
-        if at >= len(nodes):
-            raise ValueError(f"at: {at}: no such node; the mesh has nodes 0 to {len(nodes) - 1}")
-        return at
-    return int(np.argmin(np.linalg.norm(nodes - np.asarray(at), axis=1)))
 
 
 # ------------------------------------------------------------------ unbalances
@@ -241,10 +256,13 @@ class Unbalance:
         amount, angle = 1e6 * self.amount, np.degrees(self.angle)
         return f"unbalance of {amount:.4g} g mm at {self.at!r}, angle {angle:.4g} deg"
 
-    @property
-    def vector(self) -> np.ndarray:
-        """Unbalance along (n1, n2, e), rotor frame, shape (3,) [kg m]."""
-        return self.amount * np.array([np.cos(self.angle), np.sin(self.angle), 0.0])
+    def _harmonics(self, model: LinearModel, speed: float) -> Harmonics:
+        """Return the harmonics (k,) of the load per Ω² at a speed [rad/s]."""
+        point = place(model, self.at, speed)
+        if point.ratio == 0.0:
+            raise ValueError(f"unbalance at {self.at!r}: a foundation does not turn")
+        force = self.amount * np.array([np.cos(self.angle), np.sin(self.angle)])
+        return point.pulled(np.r_[force, np.zeros(4)], "rotor", speed)
 
 
 # ------------------------------------------------------------------ loads over a frequency
@@ -294,19 +312,14 @@ class HarmonicForce:
             vector = _vector(getattr(self, name), f"{name} at {self.at!r}", unit)
             object.__setattr__(self, name, vector)
 
-    def _harmonics(self, model: LinearModel, speed: float) -> dict[int, np.ndarray]:
-        """Return the harmonics (k,) of the load."""
+    def _harmonics(self, model: LinearModel, speed: float) -> Harmonics:
+        """Return the harmonics (k,) of the load at a spin speed [rad/s]."""
         point = place(model, self.at, speed)
         if point.is_node and np.any(self.moment):
             raise ValueError(
                 f"moment at {self.at!r}: a mesh node has no rotation; use an interface"
             )
-        parts = {0: np.concatenate([self.force, self.moment])}
-        if self.frame == "rotor":
-            _check_turning(model, point)
-            if speed:
-                parts = {n: R @ parts[0] for n, R in turning_harmonics(6).items()}
-        return _pulled(point, parts)
+        return point.pulled(np.r_[self.force, self.moment], self.frame, speed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -350,8 +363,8 @@ class BaseAcceleration:
         vector = _vector(self.acceleration, "acceleration", "m/s²")
         object.__setattr__(self, "acceleration", vector)
 
-    def _harmonics(self, model: LinearModel, speed: float) -> dict[int, np.ndarray]:
-        """Return the harmonics (k,) of the load."""
+    def _harmonics(self, model: LinearModel, speed: float) -> Harmonics:
+        """Return the harmonics (k,) of the load at a spin speed [rad/s]."""
         loads = model.base_loads(speed)
         if loads is None:
             raise ValueError(
@@ -361,10 +374,29 @@ class BaseAcceleration:
         return {n: each.T @ self.acceleration for n, each in loads.items()}
 
 
-def unbalance_load(
-    model: LinearModel, unbalances: Sequence[Unbalance], own: bool
-) -> dict[int, np.ndarray]:
-    """Return the load per Ω² of all unbalances, as harmonics (k,).
+# ------------------------------------------------------------------ all loads together
+
+
+def total(
+    loads: Sequence[HarmonicForce | BaseAcceleration], model: LinearModel, speed: float
+) -> Harmonics:
+    """Return the harmonics (k,) of the sum of all loads at a spin speed [rad/s].
+
+    Raises
+    ------
+    ValueError
+        If there is no load or all of them are zero.
+    """
+    found = _sum(load._harmonics(model, speed) for load in loads)
+    if not any(np.any(force) for force in found.values()):
+        raise ValueError(
+            "no load, so no response: give loads=[HarmonicForce(…)] that move the rotor"
+        )
+    return found
+
+
+def unbalance_load(model: LinearModel, unbalances: Sequence[Unbalance], own: bool) -> Harmonics:
+    """Return the harmonics (k,) of the load per Ω² of all unbalances.
 
     Raises
     ------
@@ -376,15 +408,16 @@ def unbalance_load(
     if not unbalances and (balanced or not own):
         reason = "the rotor itself is balanced" if own else "own=False leaves out the rotor's own"
         raise ValueError(f"no unbalance, so no response: {reason}; give unbalances=[Unbalance(…)]")
-    load = dict(model.unbalance()) if own else {0: np.zeros(model.size)}
-    for unbalance in unbalances:
-        point = place(model, unbalance.at)
-        if point.ratio == 0.0:
-            raise ValueError(f"unbalance at {unbalance.at!r}: a foundation does not turn")
-        _check_turning(model, point)
-        for n, force in model.unbalance_at(point.seen, unbalance.vector).items():
-            load[n] = load.get(n, 0.0) + force
-    return load
+    of_rotor = model.unbalance() if own else {0: np.zeros(model.size)}
+    return _sum([of_rotor, *(unbalance._harmonics(model, 1.0) for unbalance in unbalances)])
+
+
+def _sum(parts: Iterable[Harmonics]) -> Harmonics:
+    found: Harmonics = {}
+    for part in parts:
+        for n, force in part.items():
+            found[n] = found.get(n, 0.0) + force
+    return found
 
 
 def in_words(model: LinearModel, unbalances: Sequence[Unbalance], own: bool) -> tuple[str, ...]:
@@ -418,46 +451,6 @@ def _is_balanced(rotor: ReducedRotor) -> bool:
     second = np.trace(inv.J)
     arm = np.sqrt(second / inv.mass)
     return bool(np.linalg.norm(static) * arm + np.linalg.norm(couple) <= _BALANCED * second)
-
-
-def total(
-    loads: Sequence[HarmonicForce | BaseAcceleration], model: LinearModel, speed: float
-) -> dict[int, np.ndarray]:
-    """Return the harmonics (k,) of the sum of all loads at a spin speed [rad/s].
-
-    Raises
-    ------
-    ValueError
-        If there is no load or all of them are zero.
-    """
-    harmonics: dict[int, np.ndarray] = {}
-    for load in loads:
-        for n, force in load._harmonics(model, speed).items():
-            harmonics[n] = harmonics.get(n, 0.0) + force
-    if not any(np.any(force) for force in harmonics.values()):
-        raise ValueError(
-            "no load, so no response: give loads=[HarmonicForce(…)] that move the rotor"
-        )
-    return harmonics
-
-
-def _check_turning(model: LinearModel, point: Place) -> None:
-    """Refuse what turns with a rotor of another speed than that of the analysis."""
-    if point.ratio not in (0.0, 1.0):
-        owner, _, _ = point.label.partition(":")
-        raise ValueError(
-            f"at: {point.label!r}: turns with {point.ratio:g} times the speed of the analysis; "
-            f"give train.relative_to({owner!r}), over the speed of that rotor"
-        )
-
-
-def _pulled(point: Place, wrench: dict[int, np.ndarray]) -> dict[int, np.ndarray]:
-    """Return the generalised force (k,) of harmonics of a force and moment that stand still."""
-    load: dict[int, np.ndarray] = {}
-    for n, force in wrench.items():
-        for m, U in point.seen.items():
-            load[m + n] = load.get(m + n, 0.0) + U.T @ force
-    return load
 
 
 def _vector(value: ArrayLike, name: str, unit: str) -> np.ndarray:

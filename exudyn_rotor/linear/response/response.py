@@ -1,24 +1,19 @@
-"""Results of forced responses: harmonics of a steady motion at places of the rotor."""
+"""Results of responses: motions of places of the rotor, and steady ones in harmonics."""
 
 from __future__ import annotations
 
 import warnings
-from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.calls import user_level
-from exudyn_rotor.linear.over import NOT_KNOWN, in_table
-from exudyn_rotor.linear.response.run_start import RunStart
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.multibody.rotor.start_state import StartState
-from exudyn_rotor.plotting import COLORS, LINES, axes_or_new, figure
-from exudyn_rotor.results import numbers, storable, words
+from exudyn_rotor.linear.over import NOT_KNOWN, table_lines
+from exudyn_rotor.plotting import COLORS, LINES, axes_or_new, figure, legend_above, plot_orbits
+from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.theory.stiffening import LEVELS
 from exudyn_rotor.units import Units
@@ -37,7 +32,23 @@ _DRAWN = (*DIRECTIONS, *CIRCULAR)
 
 
 @dataclass(frozen=True, eq=False)
-class Response(RunStart, ABC):
+class AtPlaces(Result):
+    """What is seen at places: interfaces and nodes, 'node 12'.
+
+    Attributes
+    ----------
+    places : tuple of str
+    """
+
+    places: tuple[str, ...] = words("places")
+
+    def _at(self, place: str | None, name: str = "place") -> int:
+        """Return the number of a place, of the first one by default."""
+        return 0 if place is None else self.places.index(checks.choice(place, name, self.places))
+
+
+@dataclass(frozen=True, eq=False)
+class Response(AtPlaces):
     """Steady motion ``u(t) = Re Σ_n a_n exp(i rate_n t)`` at places of the rotor.
 
     Attributes
@@ -64,13 +75,15 @@ class Response(RunStart, ABC):
         Whether points were added around resonances.
     """
 
-    places: tuple[str, ...] = words("places")
     orders: np.ndarray = numbers("orders", dtype=int)
     motion: np.ndarray = numbers("abscissa", "places", "orders", 6, dtype=complex, finite=False)
     frame: str
     basis_errors: np.ndarray | None = numbers("abscissa", "places", finite=False, optional=True)
     stiffening: str | None = field(default=None, kw_only=True)
     refined: bool = field(default=False, kw_only=True)
+
+    _over: ClassVar[str] = "speeds"
+    _what: ClassVar[str] = "spin speed"
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -79,13 +92,18 @@ class Response(RunStart, ABC):
             checks.choice(self.stiffening, "stiffening", LEVELS)
 
     @property
-    @abstractmethod
     def abscissa(self) -> np.ndarray:
         """What the response was computed over, shape (s,) [rad/s]."""
+        return getattr(self, self._over)
 
-    @abstractmethod
     def rates(self, order: int) -> np.ndarray:
         """Return the angular frequencies of a harmonic, shape (s,) [rad/s]."""
+        raise NotImplementedError
+
+    @property
+    def _rounding(self) -> np.ndarray:
+        """Amplitudes up to which a displacement is rounding, (s,) [m]."""
+        return _NO_MOTION * np.abs(self.motion[..., :3]).max(axis=(1, 2, 3), initial=0.0)
 
     @property
     def main_order(self) -> int:
@@ -136,7 +154,8 @@ class Response(RunStart, ABC):
 
         The minor one is negative where the rotor whirls backward.
         """
-        forward, backward = _sizes(self.whirl(place, order), _least(self.motion))
+        sizes = np.abs(self.whirl(place, order))
+        forward, backward = np.where(sizes <= self._rounding, 0.0, sizes)
         return forward + backward, forward - backward
 
     def peak(self, place: str | None = None, order: int | None = None) -> tuple[float, float]:
@@ -155,14 +174,14 @@ class Response(RunStart, ABC):
         if inner.size == 0:
             more = "" if self.refined else ", or compute with refine=True"
             raise ValueError(
-                f"{self._place(place)}: the motion has no peak between {self.abscissa[0]:g} and "
-                f"{self.abscissa[-1]:g} rad/s; extend the range{more}"
+                f"{self.places[self._at(place)]}: the motion has no peak between "
+                f"{self.abscissa[0]:g} and {self.abscissa[-1]:g} rad/s; extend the range{more}"
             )
         index = int(inner[major[inner].argmax()])
         at, size, is_near = resolved_peak(self.abscissa, major, index)
         if not is_near:
-            coarse = [(self._place(place), float(self.abscissa[index]))]
-            warn_of_coarse_peaks(coarse, self.refined)
+            peak = self.places[self._at(place)], float(self.abscissa[index])
+            warn_of_coarse_peaks([peak], self.refined)
         return at, size
 
     def orbit(
@@ -192,33 +211,27 @@ class Response(RunStart, ABC):
 
         `units` are those of :meth:`table`.
         """
-        shown = self._shown(units)
         cases = [(place, int(order)) for place in self.places for order in self.orders]
-        parts = [self._columns(place, order, *shown) for place, order in cases]
+        parts = [self._columns(place, order, units) for place, order in cases]
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
-    def _columns(
-        self, place: str, order: int, values: np.ndarray, unit: str
-    ) -> dict[str, np.ndarray]:
+    def _columns(self, place: str, order: int, units: str) -> dict[str, np.ndarray]:
         """Return the columns of one place and harmonic."""
-        count, least = len(values), _least(self.motion)
+        values, unit = self._shown(units)
         columns = {
             f"{self._what} [{unit}]": values,
-            "place": np.full(count, place),
-            "order": np.full(count, order),
+            "place": np.full(len(values), place),
+            "order": np.full(len(values), order),
         }
         for name in ("n1", "n2", "e"):
             phasor = self.phasor(place, name, order)
-            columns |= {
-                f"{name} [m]": np.abs(phasor),
-                f"{name} phase [deg]": _degrees(phasor, least),
-            }
+            phases = np.where(np.abs(phasor) <= self._rounding, 0.0, np.degrees(_angles(phasor)))
+            columns |= {f"{name} [m]": np.abs(phasor), f"{name} phase [deg]": phases}
         forward, backward = np.abs(self.whirl(place, order))
-        errors = np.full(count, np.nan)
+        errors = np.full(len(values), np.nan)
         if self.basis_errors is not None:
-            errors = self.basis_errors[:, self.places.index(place)]
-        ends = {"forward [m]": forward, "backward [m]": backward, "basis error": errors}
-        return columns | ends
+            errors = self.basis_errors[:, self._at(place)]
+        return columns | {"forward [m]": forward, "backward [m]": backward, "basis error": errors}
 
     def _shown(self, units: str) -> tuple[np.ndarray, str]:
         """Return what the response was computed over in its unit, and that unit."""
@@ -236,35 +249,13 @@ class Response(RunStart, ABC):
         units : {'rpm', 'Hz', 'SI'}
             'rpm' is for spin speeds, frequencies are in Hz then; 'SI' is rad/s.
         """
-        place, order = self._place(place), self._order(order)
-        values, unit = self._shown(units)
-        a, b = (self.phasor(place, name, order) for name in ("n1", "n2"))
-        phases = (_degrees(phasor, _least(self.motion)) for phasor in (a, b))
-        forward, backward = self.whirl(place, order)
-        errors = self.basis_errors
-        reduced = errors is not None and np.any(errors > 0.0)
-        labels = ("  basis", "  error") if reduced else ("", "")
-        lines = [
-            f"{place}, order {order}, {self.frame} frame",
-            f"{self._what:>16}  {'n1':>11} {'phase':>7}  {'n2':>11} {'phase':>7}  "
-            f"{'forward':>11} {'backward':>11}{labels[0]}",
-            f"{'[' + unit + ']':>16}  {'[m]':>11} {'[deg]':>7}  {'[m]':>11} {'[deg]':>7}  "
-            f"{'[m]':>11} {'[m]':>11}{labels[1]}",
-        ]
-        column = np.zeros(len(values)) if errors is None else errors[:, self.places.index(place)]
-        for row in zip(values, a, b, *phases, forward, backward, column, strict=True):
-            at, x, y, p, q, f, g, error = row
-            shown = f"  {in_table(error, 0):>5}" if reduced else ""
-            lines.append(
-                f"{at:16.6g}  {abs(x):11.4e} {p:7.1f}  {abs(y):11.4e} {q:7.1f}"
-                f"  {abs(f):11.4e} {abs(g):11.4e}{shown}"
-            )
+        place, order = self.places[self._at(place)], self._order(order)
+        left_out = "place", "order", "e [m]", "e phase [deg]"
+        lines = [self._title(place, order)]
+        lines += table_lines(self._columns(place, order, units), *left_out)
         if self.stiffening:
             lines.append(f"stiffening: {self.stiffening}")
-        if reduced and np.any(np.isnan(column)):
-            looked = ", ".join(f"{at:.5g}" for at in values[np.isfinite(column)])
-            lines.append(f"basis error estimated at [{unit}]: {looked}")
-        return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
+        return "\n".join(lines if self.basis_errors is not None else [*lines, NOT_KNOWN])
 
     def plot(
         self,
@@ -300,18 +291,32 @@ class Response(RunStart, ABC):
         names = checks.labels(directions, "directions", _DRAWN)
         checks.flag(log, "log")
         values, unit = self._shown(units)
-        place, order = self._place(place), self._order(order)
+        place, order = self.places[self._at(place)], self._order(order)
         if ax is None:
             ax = figure(2, 1, size=(7.0, 5.5), sharex=True)[1]
         from matplotlib.axes import Axes
+        from matplotlib.ticker import MultipleLocator
 
         pair = checks.instances(ax, "ax", Axes)
         if len(pair) != 2:
             raise ValueError(f"ax: needs two Axes, for size and phase, got {len(pair)}")
+        size, phase = pair
+        style = {"lw": 1.4, "marker": "." if len(values) == 1 else None}  # one point is no line
         curves = {name: self._drawn(name, place, order) for name in names}
-        _draw_bode(*pair, values, curves, log)
-        pair[0].set_title(self._title(place, order), loc="right", fontsize=10)
-        pair[1].set_xlabel(f"{self._what} [{unit}]")
+        for (name, curve), color, line in zip(curves.items(), COLORS, LINES, strict=False):
+            size.plot(values, 1e6 * np.abs(curve), label=name, color=color, ls=line, **style)
+            phase.plot(values, _phase(curve), color=color, ls=line, **style)
+        # nothing is nowhere on a log scale
+        moves = any(np.any(np.nan_to_num(curve)) for curve in curves.values())
+        size.set_yscale("log" if log and moves else "linear")
+        size.set_ylabel("amplitude [µm]")
+        size.set_title(self._title(place, order), loc="right", fontsize=10)
+        phase.set_ylabel("phase [deg]")
+        phase.yaxis.set_major_locator(MultipleLocator(90.0))
+        phase.set_xlabel(f"{self._what} [{unit}]")
+        for one in pair:
+            one.grid(alpha=0.3, which="both")
+        legend_above(size, 4)
         return np.array(pair)
 
     def plot_polar(
@@ -340,10 +345,25 @@ class Response(RunStart, ABC):
         """
         checks.choice(direction, "direction", _DRAWN)
         marks, shown = checks.count(marks, "marks"), self._shown(units)
-        place, order = self._place(place), self._order(order)
+        place, order = self.places[self._at(place)], self._order(order)
         ax = axes_or_new(ax, (5.5, 5.5))
-        _draw_polar(ax, *shown, self._drawn(direction, place, order), marks)
+        amplitudes = self._drawn(direction, place, order)
+        known = np.isfinite(amplitudes)
+        at, curve = shown[0][known], 1e6 * amplitudes[known]
+        ax.plot(curve.real, curve.imag, color=COLORS[0], lw=1.4)
+        path = np.cumsum(np.abs(np.diff(curve, prepend=curve[:1])))
+        even = np.searchsorted(path, np.linspace(0.0, path[-1], marks)) if path.size else []
+        for index in np.unique(even).astype(int):
+            point = curve.real[index], curve.imag[index]
+            ax.plot(*point, "o", color=COLORS[1], ms=4)
+            ax.annotate(f"{at[index]:.5g} {shown[1]}", point, textcoords="offset points",
+                        xytext=(5, 4), fontsize=8)  # fmt: skip
+        ax.axhline(0.0, color="0.6", lw=0.7)
+        ax.axvline(0.0, color="0.6", lw=0.7)
+        ax.set_aspect("equal", adjustable="datalim")
         ax.set_xlabel(f"in phase, {direction} [µm]")
+        ax.set_ylabel("a quarter turn ahead [µm]")
+        ax.grid(alpha=0.3)
         ax.set_title(self._title(place, order), loc="right", fontsize=10)
         return ax
 
@@ -379,7 +399,14 @@ class Response(RunStart, ABC):
             names = checks.labels(places, "places", self.places)
         order = self._order(order)
         ax = axes_or_new(ax, (5.5, 5.5))
-        _draw_orbits(ax, {name: self.orbit(value, name, order) for name in names})
+        orbits = {name: self.orbit(value, name, order) for name in names}
+        plot_orbits(ax, orbits)
+        for points, color in zip(orbits.values(), COLORS, strict=False):
+            x, y = 1e6 * points.T
+            ax.plot(x[0], y[0], "o", color=color, ms=5)
+            ax.annotate("", (x[24], y[24]), (x[20], y[20]),
+                        arrowprops={"arrowstyle": "->", "color": color, "lw": 1.4})  # fmt: skip
+        ax.set(xlabel="n1 [µm]", ylabel="n2 [µm]")
         nearest = shown[np.argmin(np.abs(self.abscissa - value))]
         ax.set_title(f"{self._what} {nearest:.4g} {unit}", loc="right", fontsize=10)
         return ax
@@ -393,24 +420,13 @@ class Response(RunStart, ABC):
     def _title(self, place: str, order: int) -> str:
         return f"{place}, order {order}, {self.frame} frame"
 
-    @property
-    @abstractmethod
-    def _what(self) -> str:
-        """What the response was computed over, as a picture names it."""
-
     def _harmonic(self, place: str | None, order: int | None) -> np.ndarray:
         """Return the amplitudes (s, 6) of one harmonic at one place."""
         order = self._order(order)
-        motion = self.motion[
-            :, self.places.index(self._place(place)), list(self.orders).index(order)
-        ]
+        motion = self.motion[:, self._at(place), list(self.orders).index(order)]
         rates = np.abs(self.rates(order))
         constant = rates <= _CONSTANT * np.abs(self.abscissa).max()
         return np.where(constant[:, None], motion.real, motion)
-
-    def _place(self, place: str | None) -> str:
-        """Return the name of a place, the first one by default."""
-        return self.places[0] if place is None else checks.choice(place, "place", self.places)
 
     def _order(self, order: int | None) -> int:
         """Return a harmonic that matters, the main one by default."""
@@ -457,49 +473,9 @@ class UnbalanceResponse(Response):
         """Return the table of :meth:`Response.table`, with the unbalances."""
         return "\n".join([super().table(place, order, units=units), *self.loads])
 
-    @property
-    def abscissa(self) -> np.ndarray:
-        """The spin speeds [rad/s]."""
-        return self.speeds
-
     def rates(self, order: int) -> np.ndarray:
         """Return nΩ, shape (s,) [rad/s]."""
         return checks.whole_number(order, "order") * self.speeds
-
-    def state(self, speed: float, body: RotorBody, *, angle: float | None = None) -> StartState:
-        """Return the state of a scene in which a run begins in this steady motion.
-
-        The scene's supports and unbalances must be those of the response; there is no transient
-        then but for the integrator's error and what linear equations leave out. Loads such as
-        gravity are not in a response: :func:`exudyn_rotor.steady_state` has them.
-
-        Parameters
-        ----------
-        speed : float
-            One of :attr:`speeds` [rad/s].
-        body : RotorBody
-            Of the reduced rotor that the response is of, or in the scene that it is of; the system
-            is assembled. Foundation and controllers of magnetic bearings start with it; bodies that
-            the response does not know stand still as they are.
-        angle : float, optional
-            Spin angle θ [rad]; the one with which the rotor starts by default.
-
-        Returns
-        -------
-        StartState
-            For :meth:`RotorBody.start_from`.
-
-        Raises
-        ------
-        TypeError, ValueError
-            For a response of a SolidRotor, of another rotor, or with another foundation or
-            controllers, a speed at which it was not computed, or a system that is not assembled.
-        """
-        return self._start_at_speed(speed, body, angle)
-
-    @property
-    def _what(self) -> str:
-        return "spin speed"
 
 
 @storable
@@ -530,39 +506,12 @@ class HarmonicResponse(Response):
     frequencies: np.ndarray = numbers("abscissa")
     speed: float
 
-    @property
-    def abscissa(self) -> np.ndarray:
-        """The frequencies of the loads [rad/s]."""
-        return self.frequencies
+    _over: ClassVar[str] = "frequencies"
+    _what: ClassVar[str] = "frequency"
 
     def rates(self, order: int) -> np.ndarray:
         """Return ω + nΩ, shape (s,) [rad/s]."""
         return self.frequencies + checks.whole_number(order, "order") * self.speed
-
-    def state(self, frequency: float, body: RotorBody) -> StartState:
-        """Return the state of a scene in which a run begins in this steady motion.
-
-        It is that of t = 0 and θ = 0, where the loads have the real parts of their amplitudes; see
-        :meth:`UnbalanceResponse.state`.
-
-        Parameters
-        ----------
-        frequency : float
-            One of :attr:`frequencies` [rad/s].
-        body : RotorBody
-            With the spin speed of the response.
-
-        Raises
-        ------
-        TypeError, ValueError
-            As :meth:`UnbalanceResponse.state`.
-        """
-        frequency = checks.number(frequency, "frequency", "rad/s")
-        return self._start(frequency, body, 0.0, self.speed)
-
-    @property
-    def _what(self) -> str:
-        return "frequency"
 
     def _shown(self, units: str) -> tuple[np.ndarray, str]:
         return Units.of(units).frequencies(self.abscissa), Units.of(units).frequency
@@ -614,96 +563,18 @@ def peak_between(at: np.ndarray, size: np.ndarray) -> tuple[float, float]:
     return float(at[1] + place), float(size[1] / np.sqrt(max(least, 0.25)))
 
 
-# ------------------------------------------------------------------ drawing
-
-
-def _draw_bode(
-    size: Axes, phase: Axes, over: np.ndarray, curves: Mapping[str, np.ndarray], log: bool
-) -> None:
-    """Draw amplitudes [m], complex, as sizes [µm] and phases over a speed or frequency."""
-    from matplotlib.ticker import MultipleLocator
-
-    marker = "." if len(over) == 1 else None  # a line of one point is not seen
-    for (name, values), color, line in zip(curves.items(), COLORS, LINES, strict=False):
-        style = {"ls": line, "color": color, "lw": 1.4, "marker": marker}
-        size.plot(over, 1e6 * np.abs(values), label=name, **style)
-        phase.plot(over, _phase(values), **style)
-    # nothing is nowhere on a log scale
-    moves = any(np.any(np.nan_to_num(values)) for values in curves.values())
-    size.set_yscale("log" if log and moves else "linear")
-    size.set_ylabel("amplitude [µm]")
-    phase.set_ylabel("phase [deg]")
-    phase.yaxis.set_major_locator(MultipleLocator(90.0))
-    for one in (size, phase):
-        one.grid(alpha=0.3, which="both")
-    size.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, frameon=False)
-
-
-def _draw_polar(ax: Axes, at: np.ndarray, unit: str, amplitudes: np.ndarray, marks: int) -> None:
-    """Draw complex amplitudes [m] in their plane [µm]; some points carry where they are."""
-    known = np.isfinite(amplitudes)
-    at, values = at[known], 1e6 * amplitudes[known]
-    ax.plot(values.real, values.imag, color=COLORS[0], lw=1.4)
-    for index in _spread(values, marks):
-        ax.plot(values.real[index], values.imag[index], "o", color=COLORS[1], ms=4)
-        ax.annotate(f"{at[index]:.5g} {unit}", (values.real[index], values.imag[index]),
-                    textcoords="offset points", xytext=(5, 4), fontsize=8)  # fmt: skip
-    ax.axhline(0.0, color="0.6", lw=0.7)
-    ax.axvline(0.0, color="0.6", lw=0.7)
-    ax.set_aspect("equal", adjustable="datalim")
-    ax.set_ylabel("a quarter turn ahead [µm]")
-    ax.grid(alpha=0.3)
-
-
-def _draw_orbits(ax: Axes, orbits: Mapping[str, np.ndarray]) -> None:
-    """Draw orbits, each (points, 2) [m], in µm: a dot at the first point, an arrow ahead."""
-    for (name, points), color, line in zip(orbits.items(), COLORS, LINES, strict=False):
-        x, y = 1e6 * points.T
-        ax.plot(x, y, ls=line, color=color, lw=1.4, label=name)
-        ax.plot(x[0], y[0], "o", color=color, ms=5)
-        ax.annotate("", (x[24], y[24]), (x[20], y[20]),
-                    arrowprops={"arrowstyle": "->", "color": color, "lw": 1.4})  # fmt: skip
-    ax.set_aspect("equal", adjustable="datalim")
-    ax.set_xlabel("n1 [µm]")
-    ax.set_ylabel("n2 [µm]")
-    ax.grid(alpha=0.3)
-    ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, frameon=False)
+# ------------------------------------------------------------------ phases
 
 
 def _phase(values: np.ndarray) -> np.ndarray:
     """Return phases [deg] without jumps; none where there is no motion."""
-    phase = np.full(len(values), np.nan)
-    sizes_of = np.nan_to_num(np.abs(values))
-    moving = sizes_of > _NO_MOTION * sizes_of.max(initial=0.0)
+    phase, sizes = np.full(len(values), np.nan), np.nan_to_num(np.abs(values))
+    moving = sizes > _NO_MOTION * sizes.max(initial=0.0)
     phase[moving] = np.degrees(np.unwrap(_angles(values[moving])))
     return phase
-
-
-def _least(motion: np.ndarray) -> np.ndarray:
-    """Return up to which amplitude the displacements of a motion (s, …, 6) are rounding, (s,)."""
-    return _NO_MOTION * np.abs(motion[..., :3]).max(axis=(1, 2, 3), initial=0.0)
-
-
-def _sizes(values: ArrayLike, least: np.ndarray) -> np.ndarray:
-    """Return sizes of complex amplitudes; 0 of those up to the `least` that is told."""
-    found = np.abs(values)
-    return np.where(found <= least, 0.0, found)
-
-
-def _degrees(values: np.ndarray, least: np.ndarray) -> np.ndarray:
-    """Return phases, above −180° up to 180°; 0 of amplitudes up to the `least` that is told."""
-    return np.where(np.abs(values) <= least, 0.0, np.degrees(_angles(values)))
 
 
 def _angles(values: np.ndarray) -> np.ndarray:
     """Return angles above −π up to π; what is −π but for rounding is π."""
     found = np.angle(values)
     return np.where(found <= _ROUNDING - np.pi, found + 2.0 * np.pi, found)
-
-
-def _spread(values: np.ndarray, count: int) -> np.ndarray:
-    """Return indices of points evenly spread along a curve."""
-    path = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(values)))])
-    return np.unique(
-        np.searchsorted(path, np.linspace(0.0, path[-1], count)).clip(0, len(path) - 1)
-    )

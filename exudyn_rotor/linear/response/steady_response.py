@@ -6,8 +6,10 @@ Both are steady motions: they are reached in time only where the rotor is stable
 from __future__ import annotations
 
 import warnings
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -32,7 +34,6 @@ from exudyn_rotor.linear.response.loads import (
     unbalance_load,
 )
 from exudyn_rotor.linear.response.response import HarmonicResponse, UnbalanceResponse
-from exudyn_rotor.linear.response.run_start import kept_coordinates
 from exudyn_rotor.linear.solve.forced import forced_motions
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.theory.rotating_axes import FRAMES
@@ -41,7 +42,6 @@ from exudyn_rotor.units import Units
 Coordinates = dict[int, np.ndarray]  # harmonics (s, k) over speeds or frequencies
 Motions = dict[int, np.ndarray]  # harmonics (s, p, 6) of places
 _AT_ONCE = 2_000_000  # entries of the matrices that are solved in one call
-_PER_BAR = 16  # of speeds in a step of a progress bar
 _MOST_TURN = 0.3  # phase [rad] between neighbours: 1 − cos(0.15) = 1 % of a peak lies between
 _SMALL = 1e-3  # share of the largest motion below which a motion does not count
 _NARROWEST = 1e-7  # of the range: without damping a resonance has no width
@@ -65,8 +65,6 @@ def unbalance_response(
     refine: bool = False,
     accuracy: float | None = 1e-2,
     allow_negative: bool = False,
-    axes: str = "auto",
-    progress: bool = False,
 ) -> UnbalanceResponse:
     """Compute the steady motion of an unbalanced rotor over its spin speed.
 
@@ -79,7 +77,7 @@ def unbalance_response(
     Parameters
     ----------
     target : ReducedRotor, SolidRotor, RotorTrain, exudyn.MainSystem or LinearModel
-        See :func:`linear_model`.
+        See :func:`linear_model`, whose axes count; of others nothing of the rotor is averaged.
     speeds : array_like, shape (s,)
         Ascending spin speeds [rad/s], ≥ 0 but with `allow_negative`.
     unbalances : sequence of Unbalance, optional
@@ -108,11 +106,6 @@ def unbalance_response(
         is given: see :attr:`Response.basis_errors`. None for no estimate.
     allow_negative : bool, optional
         Accept speeds below zero: the rotor spins the other way round.
-    axes : {'auto', 'inertial', 'rotor'}
-        Axes of the equations, see :func:`linear_model`; by default the axes of the rotor, in which
-        nothing is averaged.
-    progress : bool, optional
-        Show a progress bar.
 
     Raises
     ------
@@ -137,43 +130,14 @@ def unbalance_response(
     values = checks.spin_speeds(speeds, allow_negative)
     unbalances = checks.instances(unbalances, "unbalances", Unbalance)
     checks.flag(own, "own")
-    _check(frame, tolerance, refine, accuracy, progress)
+    _check(frame, tolerance, refine, accuracy)
     at = checked_places(at)
-    model = linear_model(target, supports=supports, body=body, stiffening=stiffening, axes=axes)
+    model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
     warn_of_left_out_stiffening(model, np.abs(values).max())
-    told: list[float] = []
-
-    def solve(model: LinearModel, speeds: np.ndarray) -> Coordinates:
-        load, held = unbalance_load(model, unbalances, own), model.held_basis
-        moving = np.flatnonzero(speeds)  # at rest there is no load
-        if not moving.size:
-            return {0: np.zeros((len(speeds), model.size), dtype=complex)}
-        stack = model.at_all(speeds[moving], "held")
-        model.warn_beyond(np.abs(speeds[moving]))
-        known = moving[stack.known]
-        if len(known) < len(moving):
-            stack = stack[np.flatnonzero(stack.known)]
-            told.extend(speeds[np.setdiff1d(moving, known)].tolist())
-
-        def part(rows: slice) -> Coordinates:
-            squares = speeds[known[rows], None] ** 2
-            acting = {n: squares * F for n, F in load.items()}
-            none = np.zeros(len(squares))
-            return forced_motions(stack[rows], acting, none, held=held, tolerance=tolerance)
-
-        found = _in_parts(part, model.size, known, len(speeds), progress, "unbalance response")
-        for X in found.values():
-            X[np.setdiff1d(moving, known)] = np.nan
-        return found
-
-    def folded(motions: Motions, _: np.ndarray) -> Motions:
-        return _folded(motions)
-
-    steady = _Steady(model.for_responses, solve, at, frame, 1.0, folded, tolerance, told)
-    values, found = steady.over(values, refine, accuracy)
+    sweep = _OverSpeed(model.for_responses, at, frame, tolerance, unbalances=unbalances, own=own)
+    values, found = sweep.over(values, refine, accuracy)
     loads = in_words(model, unbalances, own)
-    response = UnbalanceResponse(frame=frame, speeds=values, loads=loads, **found)
-    return _with_warning(steady.model, response, accuracy, "rpm")
+    return UnbalanceResponse(frame=frame, speeds=values, loads=loads, **found)
 
 
 def harmonic_response(
@@ -190,8 +154,6 @@ def harmonic_response(
     tolerance: float = 1e-6,
     refine: bool = False,
     accuracy: float | None = 1e-2,
-    axes: str = "auto",
-    progress: bool = False,
 ) -> HarmonicResponse:
     """Compute the steady motion under harmonic loads over their frequency, at one spin speed.
 
@@ -209,7 +171,7 @@ def harmonic_response(
         All of one frequency, with their complex amplitudes.
     speed : float, optional
         Spin speed Ω [rad/s].
-    target, supports, body, at, frame, stiffening, tolerance, refine, accuracy, axes, progress
+    target, supports, body, at, frame, stiffening, tolerance, refine, accuracy
         See :func:`unbalance_response`.
 
     Raises
@@ -237,82 +199,80 @@ def harmonic_response(
     )
     speed = checks.number(speed, "speed", "rad/s")
     loads = checks.instances(loads, "loads", (HarmonicForce, BaseAcceleration))
-    _check(frame, tolerance, refine, accuracy, progress)
+    _check(frame, tolerance, refine, accuracy)
     at = checked_places(at)
-    model = linear_model(target, supports=supports, body=body, stiffening=stiffening, axes=axes)
+    model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
     warn_of_left_out_stiffening(model, speed)
+    sweep = _OverFrequency(model.for_responses, at, frame, tolerance, loads=loads, speed=speed)
+    values, found = sweep.over(values, refine, accuracy)
+    return HarmonicResponse(frame=frame, frequencies=values, speed=speed, **found)
 
-    def solve(model: LinearModel, frequencies: np.ndarray) -> Coordinates:
-        load = total(loads, model, speed)
-        model.warn_beyond(np.abs(np.add.outer(frequencies, speed * np.array(list(load)))))
-        given = {"driven": model.free_spins, "tolerance": tolerance}
 
-        def part(rows: slice) -> Coordinates:
-            return forced_over(model, speed, load, frequencies[rows], **given)
+def _check(frame: str, tolerance: float, refine: bool, accuracy: float | None) -> None:
+    checks.choice(frame, "frame", FRAMES)
+    checks.tolerance(tolerance)
+    checks.flag(refine, "refine")
+    checks.accuracy(accuracy)
 
-        count = len(frequencies)
-        every = np.arange(count)
-        return _in_parts(part, model.size, every, count, progress, "harmonic response")
 
-    def joined(motions: Motions, frequencies: np.ndarray) -> Motions:
-        return _joined(motions, frequencies, speed)
-
-    steady = _Steady(model.for_responses, solve, at, frame, speed, joined, tolerance)
-    values, found = steady.over(values, refine, accuracy)
-    response = HarmonicResponse(frame=frame, frequencies=values, speed=speed, **found)
-    return _with_warning(steady.model, response, accuracy, "Hz")
+# ------------------------------------------------------------------ over speeds or frequencies
 
 
 @dataclass(frozen=True, eq=False)
-class _Steady:
+class _Sweep(ABC):
     """Steady motions of a model at places, over speeds or frequencies.
 
     Attributes
     ----------
     model : LinearModel
-    solve : callable
-        Takes a model, and values (s,); gives the harmonics of the coordinates at each.
     at : sequence or None
         Places to look at.
     frame : str
         Axes of the motions.
-    speed : float
-        Spin speed at which places are looked at, or any but 0 [rad/s].
-    joined : callable
-        Takes motions and values; gives motions in which no two harmonics have one frequency.
     tolerance : float
         Share of the largest motion below which a harmonic does not matter.
-    told : sequence of float
-        Speeds without equations, as a warning tells.
+    told : list of float
+        Where there are no equations, as a warning tells.
+    speed : float
+        Spin speed at which places are looked at, or any but 0 [rad/s].
+    unit : str
+        Of speeds or frequencies in warnings.
     """
 
     model: LinearModel
-    solve: Callable[[LinearModel, np.ndarray], Coordinates]
     at: Sequence[At] | None
     frame: str
-    speed: float
-    joined: Callable[[Motions, np.ndarray], Motions]
     tolerance: float
-    told: Sequence[float] = ()
+    told: list[float] = field(default_factory=list)
+    speed: float = field(default=1.0, kw_only=True)
+    unit: ClassVar[str]
+
+    @abstractmethod
+    def coordinates(self, model: LinearModel, values: np.ndarray) -> Coordinates:
+        """Return the harmonics (s, k) of the coordinates of a model at values (s,)."""
+
+    @abstractmethod
+    def joined(self, motions: Motions, values: np.ndarray) -> Motions:
+        """Return motions in which no two harmonics have one frequency."""
 
     def over(
         self, values: np.ndarray, refine: bool, accuracy: float | None
     ) -> tuple[np.ndarray, dict[str, object]]:
         """Return speeds or frequencies, and the fields of a response there."""
         model, observed = self.model, places(self.model, self.at, self.speed)
-        found = self.solve(model, values)
+        found = self.coordinates(model, values)
         if refine:
-
-            def phasors(found: Coordinates) -> np.ndarray:
-                motions = self.seen(observed, found).values()
-                return np.hstack([each[..., :3].reshape(len(each), -1) for each in motions])
-
-            values, found = refined(lambda more: self.solve(model, more), phasors, values, found)
-        _warn_of_missing(values, found, self.told)
-        motions = self.joined(self.seen(observed, found), values)
+            values, found = self._refined(values, found, observed)
+        self._warn_of_missing(values, found)
+        motions = self.joined(self._seen(observed, found), values)
         errors = basis_errors(model, accuracy, values, motions, self._at_places)
+        if errors is not None and np.any(np.isfinite(errors)):
+            at, place = np.unravel_index(np.nanargmax(errors), errors.shape)
+            where = f"{Units.of(self.unit).speeds(values[at]):.5g} {self.unit}"
+            what = f"the motion of {observed[place].label!r} at {where}"
+            warn(errors, what, model, accuracy)
         orders, motion = _collected(motions, observed, self.tolerance, model.radius)
-        fields = {
+        return values, {
             "places": tuple(one.label for one in observed),
             "orders": orders,
             "motion": motion,
@@ -320,9 +280,8 @@ class _Steady:
             "stiffening": model.stiffening,
             "refined": refine,
         }
-        return values, fields | kept_coordinates(model, found, self.speed)
 
-    def seen(self, observed: Sequence[Place], found: Sequence[Coordinates]) -> Motions:
+    def _seen(self, observed: Sequence[Place], found: Coordinates) -> Motions:
         """Return the motions of places."""
         frame = self.frame if self.speed else "inertial"  # at θ = 0 the axes are the same
         parts = [one.motion(found, frame) for one in observed]
@@ -335,66 +294,152 @@ class _Steady:
     def _at_places(self, model: LinearModel, values: np.ndarray) -> Motions:
         """Return the motions that a model has at values."""
         observed = places(model, self.at, self.speed)
-        return self.joined(self.seen(observed, self.solve(model, values)), values)
+        return self.joined(self._seen(observed, self.coordinates(model, values)), values)
+
+    def _warn_of_missing(self, values: np.ndarray, found: Coordinates) -> None:
+        """Warn where there is no steady motion, but for what was told already.
+
+        Raises
+        ------
+        ValueError
+            Where there is no motion at all.
+        """
+        missing = ~np.all([np.all(np.isfinite(X), axis=1) for X in found.values()], axis=0)
+        untold = missing & ~np.isin(values, self.told)
+        if not np.any(untold):
+            return
+        why = "a constant load acts on a motion that nothing holds, or nothing damps a resonance"
+        shown = ", ".join(f"{value:.5g}" for value in values[untold][:5])
+        shown += " …" if untold.sum() > 5 else ""
+        if np.all(missing):
+            raise ValueError(f"no steady motion at {shown} rad/s: {why}")
+        warnings.warn(
+            f"no steady motion at {shown} rad/s, NaN there: {why}",
+            UserWarning,
+            stacklevel=user_level(),
+        )
+
+    def _refined(
+        self, values: np.ndarray, found: Coordinates, observed: Sequence[Place]
+    ) -> tuple[np.ndarray, Coordinates]:
+        """Add points until the phase of every motion turns little between neighbours.
+
+        No point is added where there is no steady motion, as at a resonance without damping, nor
+        beside such a value.
+        """
+
+        def phasors() -> np.ndarray:
+            motions = self._seen(observed, found).values()
+            return np.hstack([each[..., :3].reshape(len(each), -1) for each in motions])
+
+        given, narrowest = values, _NARROWEST * np.ptp(values)
+        for _ in range(_MOST_ROUNDS):
+            wide = (np.diff(values) > narrowest) & (_turns(phasors()) > _MOST_TURN)
+            between = np.flatnonzero(wide)[: len(given) + _MOST_ADDED - len(values)]
+            if between.size == 0:
+                break
+            added = 0.5 * (values[between] + values[between + 1])
+            order = np.argsort(np.r_[values, added], kind="stable")
+            found = _merged(found, self.coordinates(self.model, added), order)
+            values = np.r_[values, added][order]
+        known = np.all(np.isfinite(phasors()), axis=1) | np.isin(values, given)
+        return values[known], {n: X[known] for n, X in found.items()}
 
 
-def _in_parts(
-    solve: Callable[[slice], Coordinates],
-    size: int,
-    rows: np.ndarray,
-    count: int,
-    progress: bool,
-    label: str,
-) -> Coordinates:
-    """Return harmonics (count, k), solved for some of the rows at a time: for memory, and a bar."""
+@dataclass(frozen=True, eq=False)
+class _OverSpeed(_Sweep):
+    """The motion of an unbalanced rotor over its speed, in harmonics n ≥ 0 of it."""
+
+    unbalances: Sequence[Unbalance] = field(kw_only=True)
+    own: bool = field(kw_only=True)
+    unit: ClassVar[str] = "rpm"
+
+    def coordinates(self, model: LinearModel, values: np.ndarray) -> Coordinates:
+        load, held = unbalance_load(model, self.unbalances, self.own), model.held_basis
+        found = {0: np.zeros((len(values), model.size), dtype=complex)}
+        moving = np.flatnonzero(values)  # at rest there is no load
+        if not moving.size:
+            return found
+        stack = model.at_all(values[moving], "held")
+        model.warn_beyond(np.abs(values[moving]))
+        lost, rows = moving[~stack.known], moving[stack.known]
+        self.told.extend(values[lost].tolist())
+        if lost.size:
+            stack = stack[np.flatnonzero(stack.known)]
+        squares, none = values[rows, None] ** 2, np.zeros(len(rows))
+
+        def solve(part: slice) -> Coordinates:
+            acting = {n: squares[part] * F for n, F in load.items()}
+            options = {"held": held, "tolerance": self.tolerance}
+            return forced_motions(stack[part], acting, none[part], **options)
+
+        for n, X in _in_parts(solve, len(rows), model.size).items():
+            found.setdefault(n, np.zeros_like(found[0]))[rows] = X
+        for X in found.values():
+            X[lost] = np.nan
+        return found
+
+    def joined(self, motions: Motions, values: np.ndarray) -> Motions:
+        """Return real periodic motions by their harmonics n ≥ 0: ``Re Σ a_n exp(inΩt)``."""
+        folded: Motions = {0: np.zeros_like(next(iter(motions.values())))}
+        for n, a in motions.items():
+            folded[abs(n)] = folded.get(abs(n), 0.0) + (a if n > 0 else a.conj())
+        return folded | {0: folded[0].real + 0j}
+
+
+@dataclass(frozen=True, eq=False)
+class _OverFrequency(_Sweep):
+    """The motion under harmonic loads over their frequency, in harmonics ω + nΩ."""
+
+    loads: Sequence[HarmonicForce | BaseAcceleration] = field(kw_only=True)
+    unit: ClassVar[str] = "Hz"
+
+    def coordinates(self, model: LinearModel, values: np.ndarray) -> Coordinates:
+        load = total(self.loads, model, self.speed)
+        model.warn_beyond(np.abs(np.add.outer(values, self.speed * np.array(list(load)))))
+        options = {"driven": model.free_spins, "tolerance": self.tolerance}
+
+        def solve(part: slice) -> Coordinates:
+            return forced_over(model, self.speed, load, values[part], **options)
+
+        return _in_parts(solve, len(values), model.size)
+
+    def joined(self, motions: Motions, values: np.ndarray) -> Motions:
+        """Return motions in which no two harmonics ω + nΩ have one frequency.
+
+        Where ω + nΩ = −(ω + mΩ), the conjugate of the harmonic with the negative rate is added to
+        the other one.
+        """
+        if self.speed == 0.0:
+            return motions
+        joined = {n: a.copy() for n, a in motions.items()}
+        twice = 2.0 * values / self.speed
+        whole = np.abs(twice - np.round(twice)) <= _WHOLE * np.maximum(np.abs(twice), 1.0)
+        for row in np.flatnonzero(whole):
+            total = round(twice[row])  # the harmonics n and −total − n have opposite rates
+            for n in motions:
+                partner = -total - n
+                if (n + 0.5 * total) * self.speed < 0.0:
+                    added = motions[n][row].conj()
+                    if partner not in joined:
+                        joined[partner] = np.zeros_like(motions[n])
+                    joined[partner][row] += added
+                    joined[n][row] = 0.0
+        return joined
+
+
+@one_thread()
+def _in_parts(solve: Callable[[slice], Coordinates], count: int, size: int) -> Coordinates:
+    """Return harmonics (count, size), solved for some of the rows at a time: for memory."""
     most = max(1, _AT_ONCE // size**2)
-    if progress:
-        most = min(most, _PER_BAR)
-    parts = range(0, len(rows), most)
-    if progress:
-        from tqdm import tqdm
-
-        parts = tqdm(parts, desc=label)
+    if count <= most:
+        return solve(slice(count))
     found: Coordinates = {}
-    with one_thread():
-        for first in parts:
-            part = slice(first, first + most)
-            for n, X in solve(part).items():
-                found.setdefault(n, np.zeros((count, size), dtype=complex))[rows[part]] = X
+    for first in range(0, count, most):
+        part = slice(first, first + most)
+        for n, X in solve(part).items():
+            found.setdefault(n, np.zeros((count, size), dtype=complex))[part] = X
     return found
-
-
-def _folded(motions: Motions) -> Motions:
-    """Return real periodic motions by their harmonics n ≥ 0: ``Re Σ a_n exp(inΩt)``."""
-    folded: Motions = {}
-    for n, a in motions.items():
-        folded[abs(n)] = folded.get(abs(n), 0.0) + (a if n > 0 else a.conj())
-    folded[0] = folded[0].real + 0j if 0 in folded else np.zeros_like(a)
-    return folded
-
-
-def _joined(motions: Motions, frequencies: np.ndarray, speed: float) -> Motions:
-    """Return motions of harmonics ω + nΩ in which no two have one frequency.
-
-    Where ω + nΩ = −(ω + mΩ), the conjugate of the harmonic with the negative rate is added to the
-    other one.
-    """
-    if speed == 0.0:
-        return motions
-    joined = {n: a.copy() for n, a in motions.items()}
-    twice = 2.0 * frequencies / speed
-    whole = np.abs(twice - np.round(twice)) <= _WHOLE * np.maximum(np.abs(twice), 1.0)
-    for row in np.flatnonzero(whole):
-        total = round(twice[row])  # the harmonics n and −total − n have opposite rates
-        for n in motions:
-            partner = -total - n
-            if (n + 0.5 * total) * speed < 0.0:
-                added = motions[n][row].conj()
-                if partner not in joined:
-                    joined[partner] = np.zeros_like(motions[n])
-                joined[partner][row] += added
-                joined[n][row] = 0.0
-    return joined
 
 
 def _collected(
@@ -413,94 +458,6 @@ def _collected(
     return orders[keep], full[:, :, keep]
 
 
-def _warn_of_missing(values: np.ndarray, found: Coordinates, told: Sequence[float]) -> None:
-    """Warn where there is no steady motion, but for what was told already.
-
-    Raises
-    ------
-    ValueError
-        Where there is no motion at all.
-    """
-    missing = ~np.all([np.all(np.isfinite(X), axis=1) for X in found.values()], axis=0)
-    untold = missing & ~np.isin(values, told)
-    if not np.any(untold):
-        return
-    why = "a constant load acts on a motion that nothing holds, or nothing damps a resonance"
-    shown = ", ".join(f"{value:.5g}" for value in values[untold][:5])
-    shown += " …" if untold.sum() > 5 else ""
-    if np.all(missing):
-        raise ValueError(f"no steady motion at {shown} rad/s: {why}")
-    warnings.warn(
-        f"no steady motion at {shown} rad/s, NaN there: {why}", UserWarning, stacklevel=user_level()
-    )
-
-
-def _with_warning(model: LinearModel, response, accuracy: float | None, unit: str):
-    """Return the response; warn where the basis leaves out too much, in `unit`, Hz or rpm."""
-    errors = response.basis_errors
-    if errors is not None and np.any(np.isfinite(errors)):
-        at, place = np.unravel_index(np.nanargmax(errors), errors.shape)
-        value = Units.of(unit).speeds(response.abscissa[at])
-        what = f"the motion of {response.places[place]!r} at {value:.5g} {unit}"
-        warn(errors, what, model, accuracy)
-    return response
-
-
-def _check(
-    frame: str, tolerance: float, refine: bool, accuracy: float | None, progress: bool
-) -> None:
-    checks.choice(frame, "frame", FRAMES)
-    checks.tolerance(tolerance)
-    checks.flag(refine, "refine")
-    checks.flag(progress, "progress")
-    checks.accuracy(accuracy)
-
-
-# ------------------------------------------------------------------ points around resonances
-
-
-def refined(
-    solve: Callable[[np.ndarray], Coordinates],
-    phasors: Callable[[Coordinates], np.ndarray],
-    values: np.ndarray,
-    solved: Coordinates,
-) -> tuple[np.ndarray, Coordinates]:
-    """Add points until the phase of every motion turns little between neighbours.
-
-    No point is added where there is no steady motion, as at a resonance without damping, nor
-    beside such a value.
-
-    Parameters
-    ----------
-    solve : callable
-        Gives the solutions at an array of speeds or frequencies.
-    phasors : callable
-        Gives the complex amplitudes (s, c) of solutions.
-    values : ndarray, shape (s,)
-        Ascending speeds or frequencies [rad/s].
-    solved : mapping of int to ndarray, shape (s, k)
-        The solutions there, by their harmonics.
-
-    Returns
-    -------
-    ndarray, mapping
-        All speeds or frequencies, and their solutions.
-    """
-    narrowest, most = _NARROWEST * np.ptp(values), len(values) + _MOST_ADDED
-    given = values
-    for _ in range(_MOST_ROUNDS):
-        wide = (np.diff(values) > narrowest) & (_turns(phasors(solved)) > _MOST_TURN)
-        between = np.flatnonzero(wide)[: most - len(values)]
-        if between.size == 0:
-            break
-        added = 0.5 * (values[between] + values[between + 1])
-        order = np.argsort(np.r_[values, added], kind="stable")
-        solved = _merged(solved, solve(added), order)
-        values = np.r_[values, added][order]
-    known = np.all(np.isfinite(phasors(solved)), axis=1) | np.isin(values, given)
-    return values[known], {n: X[known] for n, X in solved.items()}
-
-
 def _merged(first: Coordinates, second: Coordinates, order: np.ndarray) -> Coordinates:
     """Return solutions of some values and of others, in order; a harmonic may be in one of them."""
     parts = [(each, np.zeros_like(next(iter(each.values())))) for each in (first, second)]
@@ -511,16 +468,16 @@ def _merged(first: Coordinates, second: Coordinates, order: np.ndarray) -> Coord
 
 
 def _turns(phasors: np.ndarray) -> np.ndarray:
-    """Return the largest change of phase between neighbours, shape (s − 1,) [rad]."""
+    """Return the largest change of phase between neighbours, shape (s − 1,) [rad].
+
+    Half a turn beside rest without a load, where there is no phase and may be a resonance.
+    """
     known = np.all(np.isfinite(phasors), axis=1)
     size = np.abs(np.where(known[:, None], phasors, 0.0))
     matters = np.maximum(size[1:], size[:-1]) > _SMALL * size.max(initial=0.0)
-    matters &= np.minimum(size[1:], size[:-1]) > 0.0
-    turned = np.abs(np.angle(np.where(matters, phasors[1:] * phasors[:-1].conj(), 1.0)))
-    # at rest without a load there is no phase, and beside it may be a resonance
-    sizes = size.max(axis=1, initial=0.0)
-    beside_rest = (np.minimum(sizes[1:], sizes[:-1]) == 0.0) & (
-        np.maximum(sizes[1:], sizes[:-1]) > _SMALL * sizes.max(initial=0.0)
-    )
-    turned = np.where(beside_rest, np.pi, turned.max(axis=1, initial=0.0))
-    return np.where(known[1:] & known[:-1], turned, 0.0)
+    moves = np.minimum(size[1:], size[:-1]) > 0.0
+    turned = np.abs(
+        np.angle(np.where(matters & moves, phasors[1:] * phasors[:-1].conj(), 1.0))
+    ).max(axis=1, initial=0.0)
+    beside_rest = ~np.any(moves, axis=1) & np.any(matters, axis=1)
+    return np.where(known[1:] & known[:-1], np.where(beside_rest, np.pi, turned), 0.0)

@@ -54,7 +54,8 @@ def floquet_motions(system: PeriodicSystem, made: States) -> Exponents:
     before = _with_steps(system, made, _STEPS[0])[0]
     for steps in _STEPS[1:]:
         values, states, orders, upper = _with_steps(system, made, steps)
-        away = np.abs(values[:, None] - before)
+        # a negative multiplier has ± Im λ alike, and rounding chooses
+        away = np.abs(values[:, None] - np.r_[before, before.conj()])
         least = np.maximum(np.abs(values), abs(system.speed))
         still = np.fmin.reduce(away, axis=1, initial=np.inf) <= _STILL * least
         still[upper + 1] = still[upper]

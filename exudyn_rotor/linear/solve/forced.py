@@ -151,23 +151,21 @@ def _static(A: np.ndarray, F: np.ndarray, driven: np.ndarray | None) -> np.ndarr
         basis = others(driven)  # mixes no soft coordinates with stiff ones
         return basis @ _static(basis.T @ A @ basis, basis.T @ F, None)
     size = np.abs(A).max(axis=2)
-    alone = size <= _FREE * size.max(axis=1, initial=0.0, keepdims=True)
-    scale = 1.0 / np.sqrt(np.where(alone, 1.0, size))[..., None]
-    A, b = scale * A * scale[:, None, :, 0], scale * F
-    A[alone], A.swapaxes(1, 2)[alone] = 0.0, 0.0
-    row, place = np.nonzero(alone)
-    A[row, place, place] = 1.0
-    loads = np.linalg.norm(b, axis=1)
-    X = _one_by_one(A, np.where(alone[..., None], 0.0, b))
-    free = np.linalg.norm(b * alone[..., None], axis=1) > _LOADED * loads
-    plain = (np.linalg.norm(X, axis=1) <= _FAR * loads) & ~free
-    for i in np.flatnonzero(~np.all(plain, axis=1)):
-        A[i, alone[i], alone[i]] = 0.0
+    resisted = size > _FREE * size.max(axis=1, initial=0.0, keepdims=True)
+    scale = 1.0 / np.sqrt(np.where(resisted, size, 1.0))[..., None]
+    A = scale * A * scale[:, None, :, 0] * (resisted[:, :, None] & resisted[:, None])
+    b = scale * F
+    if np.all(resisted):
+        X = _one_by_one(A, b)
+        held = np.linalg.norm(X, axis=1) <= _FAR * np.linalg.norm(b, axis=1)
+    else:
+        X, held = np.empty_like(b), np.zeros((len(b), 1), dtype=bool)
+    for i in np.flatnonzero(~np.all(held, axis=1)):
         X[i] = _beside_free(A[i], b[i])
     return scale * X
 
 
-def static_motion(A: np.ndarray, load: np.ndarray, driven: np.ndarray | None = None) -> np.ndarray:
+def static_motion(A: np.ndarray, load: np.ndarray) -> np.ndarray:
     """Return the motion (k,) under a constant load; free motions that it does not act on rest.
 
     NaN where it acts on a motion that nothing holds.
@@ -177,11 +175,8 @@ def static_motion(A: np.ndarray, load: np.ndarray, driven: np.ndarray | None = N
     A : ndarray, shape (k, k)
         Stiffness.
     load : ndarray, shape (k,)
-    driven : ndarray, shape (k, d), optional
-        Momenta of motions that a drive keeps at zero.
     """
-    driven = None if driven is None or not driven.shape[1] else driven
-    return _static(A[None], load[None, :, None], driven)[0, :, 0]
+    return _static(A[None], load[None, :, None], None)[0, :, 0]
 
 
 def _beside_free(A: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -307,26 +302,9 @@ def _whole(
     orders: Sequence[int],
 ) -> np.ndarray:
     """Return the harmonics (h, k) of one motion from one matrix."""
-    A, nu = coupled_stiffness(system, float(rate), orders)
-    none, momenta = np.zeros(system.size), None
-    F = np.concatenate([loads.get(n, none) for n in orders])
-    still = np.flatnonzero(np.array(nu) == 0.0)
-    if still.size and driven is not None:
-        momenta = np.zeros((len(orders), *driven.shape))
-        momenta[still[0]] = driven
-        momenta = momenta.reshape(len(F), -1)
-    kind = np.array([0.0 if still.size else 1.0])
-    X = _solved(A[None], kind, F[None, :, None] + 0j, momenta)
-    return X.reshape(len(orders), system.size)
-
-
-def coupled_stiffness(
-    system: PeriodicSystem, rate: float, orders: Sequence[int]
-) -> tuple[np.ndarray, list[float]]:
-    """Return the dynamic stiffness between harmonics, (h k, h k), and their frequencies [rad/s]."""
     h, k = len(orders), system.size
-    A = np.zeros((h, k, h, k), dtype=complex)
-    nu = [float(_rate(rate, int(n), system.speed)) for n in orders]
+    A, momenta = np.zeros((h, k, h, k), dtype=complex), None
+    nu = np.array([float(_rate(rate, n, system.speed)) for n in orders])
     for a, m in enumerate(orders):
         for b, n in enumerate(orders):
             for terms, factor in ((system.K, 1.0), (system.D, 1j * nu[b])):
@@ -335,4 +313,11 @@ def coupled_stiffness(
         A[a, :, a] -= nu[a] ** 2 * system.M
         for n, H in system.H:
             A[a, :, a] += 1j * np.sign(_rate(nu[a], -n, system.speed)) * H
-    return A.reshape(h * k, h * k), nu
+    F = np.concatenate([loads.get(n, np.zeros(k)) for n in orders])
+    still = np.flatnonzero(nu == 0.0)
+    if still.size and driven is not None:
+        momenta = np.zeros((h, *driven.shape))
+        momenta[still[0]] = driven
+        momenta = momenta.reshape(h * k, -1)
+    kind = np.array([0.0 if still.size else 1.0])
+    return _solved(A.reshape(1, h * k, h * k), kind, F[None, :, None] + 0j, momenta).reshape(h, k)

@@ -124,7 +124,7 @@ def motions_of(
         parts = _constant(reduced, told)
     else:
         parts = _periodic(reduced, method, tolerance, least_stable, told)
-    found = _joined(stack.speed, [(known[places], part) for places, part in parts])
+    found = joined_motions(stack.speed, [(known[places], part) for places, part in parts])
     return found if basis is None else found.in_all(basis, free)
 
 
@@ -208,7 +208,7 @@ def _ascending(speed: float, found: Exponents, made: States, bound: float) -> Mo
     return Motions(np.array([speed]), *given, np.array([bound]))
 
 
-def _joined(speeds: np.ndarray, parts: Sequence[tuple[np.ndarray, Motions]]) -> Motions:
+def joined_motions(speeds: np.ndarray, parts: Sequence[tuple[np.ndarray, Motions]]) -> Motions:
     """Return parts, each with its places among the speeds (s,), as one; NaN elsewhere."""
     if len(parts) == 1 and len(parts[0][0]) == len(speeds):
         return parts[0][1]

@@ -17,8 +17,8 @@ from exudyn_rotor.checks import ascending
 from exudyn_rotor.linear.modal import basis_error
 from exudyn_rotor.linear.modal.whirl import UNKNOWN, WHIRLS, Content, families
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_structural_damping
-from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.over import NOT_KNOWN, basis_column, motions_in, warn_of_refused
+from exudyn_rotor.linear.model.linear_model import LinearModel, warn_of_refused
+from exudyn_rotor.linear.over import NOT_KNOWN, basis_column, motions_in
 from exudyn_rotor.linear.stability.stability import WHAT, check_options, of_motions
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.units import Units

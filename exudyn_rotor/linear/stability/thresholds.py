@@ -30,13 +30,12 @@ from exudyn_rotor.linear.model.build import (
     warn_of_left_out_stiffening,
     warn_of_structural_damping,
 )
-from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.model.linear_model import LinearModel, warn_of_refused
 from exudyn_rotor.linear.over import (
     NOT_KNOWN,
     basis_column,
     motions_in,
     table_lines,
-    warn_of_refused,
 )
 from exudyn_rotor.linear.solve.motions import Motions
 from exudyn_rotor.linear.stability.stability import (

@@ -21,7 +21,7 @@ from exudyn_rotor.bearings.series import FloatingRingBearing, SeriesSupport
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.equations import Terms, turned
 from exudyn_rotor.linear.model.assembly import Element
-from exudyn_rotor.linear.model.body import RotorBody, rigid_columns_of
+from exudyn_rotor.linear.model.body import RotorBody
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
@@ -139,7 +139,7 @@ class Problem:
             For a moment at a node, and gravity across a rotor in axes that turn with it.
         """
         model, axes = self.model, self.axes
-        total = np.zeros(model.size)
+        total = self._of_rotation()
         for key, wrench in loads.items():
             point = place(model, key, self.speed)
             if point.is_node and np.any(wrench[3:]):
@@ -155,17 +155,16 @@ class Problem:
             if base is None:
                 raise ValueError("gravity: needs a foundation with its participation")
             total -= base[0].real.T @ (axes.T @ gravity)
-        return total + self._of_rotation()
+        return total
 
     def _of_rotation(self) -> np.ndarray:
         """Return the centrifugal load (k,) that stands still."""
-        assembly = self.model.assembly(self.speed)
-        total = np.zeros(assembly.size)
-        for body, place_of in zip(assembly.bodies, assembly.slices, strict=True):
-            if self.speed and isinstance(body, RotorBody):
-                total[place_of] = (body.ratio * self.speed) ** 2 * body.unbalance.get(
-                    0, np.zeros(1)
-                ).real
+        total = np.zeros(self.model.size)
+        if self.speed:
+            assembly = self.model.assembly(self.speed)
+            for body, place_of in zip(assembly.bodies, assembly.slices, strict=True):
+                if isinstance(body, RotorBody) and 0 in body.unbalance:
+                    total[place_of] = (body.ratio * self.speed) ** 2 * body.unbalance[0].real
         return total
 
     @property
@@ -182,24 +181,17 @@ class Problem:
     def _elements(self) -> tuple[Element, ...]:
         return self.model.assembly(self.speed).elements
 
-    def _rate(self, element: Element) -> float:
-        """Return the spin speed of the rotor in a support [rad/s]."""
-        return self.model.ratios[element.ends[0][0]] * self.speed
-
     @cached_property
     def journals(self) -> dict[int, Journal]:
         """Bearings with a law of their own by the numbers of their elements."""
         sensors = {one: i for i, one in enumerate(self.acting) if isinstance(one, int)}
-        return {
-            i: Journal(
-                one,
-                self._rate(self._elements[i]),
-                self._motions[i][:2],
-                self._motions[sensors.get(i, i)][:2],
-            )
-            for i, one in enumerate(self.acting)
-            if isinstance(one, Nonlinear)
-        }
+        found = {}
+        for i, one in enumerate(self.acting):
+            if isinstance(one, Nonlinear):
+                speed = self.model.ratios[self._elements[i].ends[0][0]] * self.speed
+                moved = self._motions[i][:2], self._motions[sensors.get(i, i)][:2]
+                found[i] = Journal(one, speed, *moved)
+        return found
 
     def solved(self, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the coordinates (k,) and the force on the rotor of each bearing (b, 2) [N].
@@ -212,26 +204,12 @@ class Problem:
         journals = list(self.journals.values())
         y, forces = equilibrium(self.stiffness, load, journals, self.model.free_spins)
         if y is None:
+            free = " or ".join(self.model.free_motions) or "a combination of rigid motions"
             raise ValueError(
-                f"loads: {self._not_held(load)}: a motion that no support holds; give one that "
-                "does (a 3 × 3 stiffness acts along the axis, too)"
+                f"loads: one acts on {free}, a motion that no support holds; give one that does (a "
+                "3 × 3 stiffness acts along the axis, too)"
             )
         return y, forces
-
-    def _not_held(self, load: np.ndarray) -> str:
-        """Name the rigid motions that a load acts on and nothing resists."""
-        K = self.stiffness + sum(one.U.T @ one.U for one in self.journals.values())
-        names, assembly = [], self.model.assembly(self.speed)
-        most = np.abs(np.diag(K)).max()
-        for body, place_of in zip(assembly.bodies, assembly.slices, strict=True):
-            if not isinstance(body, RotorBody):
-                continue
-            rigid, columns = rigid_columns_of(body.alone)
-            acted = np.abs(columns.T @ load[place_of]) > _ROUNDING * np.linalg.norm(load)
-            resisted = np.einsum("ik,ij,jk->k", columns, K[place_of, place_of], columns)
-            for name, is_free in zip(rigid, acted & (resisted <= _ROUNDING * most), strict=True):
-                names += [": ".join(filter(None, (body.name, name)))] if is_free else []
-        return f"a load acts on {', '.join(names) or 'a combination of rigid motions'}"
 
     def seen(self, y: np.ndarray, forces: np.ndarray, at: Sequence[At] | None) -> dict[str, object]:
         """Return the fields of a result that are known of coordinates and forces of bearings."""
@@ -246,15 +224,16 @@ class Problem:
             moved[row] = u[:6]
             reactions[row] = -(self._resistance(element) @ u)[:6]
             reactions[row, :2] += own.get(i, 0.0)
-        ends = [self._elements[i].ends for i in shown]
+        names = [self._label(self._elements[i].ends) for i in shown]
+        begins = [self._label(self._elements[i].ends[:1]) for i in shown]
         return {
             "places": tuple(one.label for one in observed),
             "motion": motion,
-            "supports": _different([self._label(each) for each in ends]),
+            "supports": _different(names),
             "reactions": reactions,
             "journals": moved,
             "heights": np.array([self._height(one.label) for one in observed]),
-            "support_heights": np.array([self._height(self._label(each[:1])) for each in ends]),
+            "support_heights": np.array([self._height(name) for name in begins]),
             "axes": self.axes,
         }
 
@@ -272,12 +251,12 @@ class Problem:
         """Return the position of a place along the axis [m]."""
         rotor = next(iter(self.model.rotors.values()))
         if label.startswith("node ") and label not in self.model.interfaces:
-            place_of = rotor.shapes.nodes[int(label.removeprefix("node "))]
+            point = rotor.shapes.nodes[int(label.removeprefix("node "))]
         else:
             body, name = self.model.owner(label)
             rotor = body.alone.rotor if isinstance(body, RotorBody) else rotor
-            place_of = rotor.interfaces[name].reference
-        return float((place_of - rotor.axis.point) @ rotor.axis.direction)
+            point = rotor.interfaces[name].reference
+        return float((point - rotor.axis.point) @ rotor.axis.direction)
 
     def mesh(self, y: np.ndarray, stress: bool) -> dict[str, np.ndarray]:
         """Return the fields of a result at the nodes of the only rotor, as far as they are known.
@@ -309,8 +288,5 @@ class Problem:
 
 def _different(names: Sequence[str]) -> tuple[str, ...]:
     """Return names with a number behind each that came before."""
-    found: list[str] = []
-    for name in names:
-        number = sum(each == name for each in names[: len(found)]) + 1
-        found.append(name if number == 1 else f"{name}, {number}")
-    return tuple(found)
+    numbers = [names[: i + 1].count(name) for i, name in enumerate(names)]
+    return tuple(name if n == 1 else f"{name}, {n}" for name, n in zip(names, numbers, strict=True))

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.linear.response.response import AtPlaces
 from exudyn_rotor.plotting import axes_or_new, draw_surface, legend_above
-from exudyn_rotor.results import Result, numbers, storable, words
+from exudyn_rotor.results import numbers, storable, text_table, words
 from exudyn_rotor.solid.tensor import von_mises
 from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.units import Units
@@ -24,7 +25,7 @@ _SEEN = 0.1  # share of the rotor's length as which the largest displacement is 
 
 @storable
 @dataclass(frozen=True, eq=False)
-class StaticResponse(Result):
+class StaticResponse(AtPlaces):
     """Equilibrium of a rotor under loads that stand still; made by :func:`static_response`.
 
     Vectors are along (n1, n2, e) of :attr:`SpinAxis.plane`, in axes that stand still or turn with
@@ -79,7 +80,6 @@ class StaticResponse(Result):
     [19.62 19.62]
     """
 
-    places: tuple[str, ...] = words("places")
     motion: np.ndarray = numbers("places", 6, finite=False)
     supports: tuple[str, ...] = words("supports")
     reactions: np.ndarray = numbers("supports", 6)
@@ -102,22 +102,22 @@ class StaticResponse(Result):
 
     def deflection(self, place: str | None = None) -> np.ndarray:
         """Return the displacement along (n1, n2, e) of a place, the first by default, (3,) [m]."""
-        return self.motion[self._index(place, self.places, "place"), :3].copy()
+        return self.motion[self._at(place), :3].copy()
 
     def rotation(self, place: str | None = None) -> np.ndarray:
         """Return the rotation about (n1, n2, e) of a place, the first by default, (3,) [rad]."""
-        return self.motion[self._index(place, self.places, "place"), 3:].copy()
+        return self.motion[self._at(place), 3:].copy()
 
     def reaction(self, support: str | None = None) -> np.ndarray:
         """Return force [N] and moment [N m] of a support on the rotor, the first by default, (6,).
 
         Along and about (n1, n2, e). The load on the support, as a bearing's `load`, is less that.
         """
-        return self.reactions[self._index(support, self.supports, "support")].copy()
+        return self.reactions[self._support(support)].copy()
 
     def journal(self, support: str | None = None) -> np.ndarray:
         """Return where the rotor rests in a support, the first by default, (2,) [m]."""
-        return self.journals[self._index(support, self.supports, "support"), :2].copy()
+        return self.journals[self._support(support), :2].copy()
 
     @property
     def von_mises(self) -> np.ndarray:
@@ -132,47 +132,28 @@ class StaticResponse(Result):
             raise ValueError("stress: was not asked for; use static_response(…, stress=True)")
         return von_mises(self.stress)
 
-    def _index(self, name: str | None, known: tuple[str, ...], what: str) -> int:
-        if name is None and known:
-            return 0
-        if name not in known:
-            raise ValueError(f"{what}: {name!r} is unknown; there are: {', '.join(known) or None}")
-        return known.index(name)
+    def _support(self, name: str | None) -> int:
+        known = self.supports
+        return 0 if name is None and known else known.index(checks.choice(name, "support", known))
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return a row for every place and every support; `units` change nothing."""
         Units.of(units)
-        names = ["n1", "n2", "e", "about n1", "about n2", "about e"]
         kinds = ["displacement"] * len(self.places) + ["reaction"] * len(self.supports)
         values = np.vstack([self.motion, self.reactions])
-        return {
-            "what": np.array(kinds),
-            "at": np.array([*self.places, *self.supports]),
-            **{
-                f"{name} [{'m or N' if i < 3 else 'rad or N m'}]": values[:, i]
-                for i, name in enumerate(names)
-            },
-        }
+        columns = {"what": np.array(kinds), "at": np.array([*self.places, *self.supports])}
+        return columns | _six(values, "{} [m or N]", "about {} [rad or N m]")
 
     def table(self, units: str = "rpm") -> str:
         """Return deflections and reactions as text, the speed in `units`: 'rpm', 'Hz' or 'SI'."""
         unit = Units.of(units)
         at = f"{unit.speeds(self.speed):.6g} {unit.speed}" if self.speed else "rest"
         frame = "" if self.frame == "inertial" else ", in axes that turn with the rotor"
-        lines = [f"static response at {at}{frame}"]
-        heads = (
-            (("place", self.places, self.motion), ("[m]", "[rad]"), ""),
-            (("support", self.supports, self.reactions), ("[N]", "[N m]"), "reaction "),
-        )
-        for (head, names, values), (first, second), what in heads:
-            if names:
-                labels = [f"{what}{axis} {first}" for axis in ("n1", "n2", "e")]
-                labels += [f"about {axis} {second}" for axis in ("n1", "n2", "e")]
-                lines.append(f"{head:>16}  " + "  ".join(f"{label:>15}" for label in labels))
-            for name, row in zip(names, values, strict=True):
-                shown = (f"{'-' if np.isnan(x) else f'{x + 0.0:.6g}':>15}" for x in row)
-                lines.append(f"{name:>16}  " + "  ".join(shown))
-        return "\n".join(lines)
+        places, supports = {"place": np.array(self.places)}, {"support": np.array(self.supports)}
+        places |= _six(self.motion, "{} [m]", "about {} [rad]")
+        supports |= _six(self.reactions, "reaction {} [N]", "about {} [N m]")
+        lines = [f"static response at {at}{frame}", *text_table(places)]
+        return "\n".join([*lines, *text_table(supports)] if self.supports else lines)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the deflection across the axis over the position along it, and the supports.
@@ -197,15 +178,11 @@ class StaticResponse(Result):
         if self.nodes is None:
             order = np.argsort(self.heights, kind="stable")
             return self.heights[order], self.motion[order, :2]
-        edges = np.linspace(self.along.min(), self.along.max(), _SLICES + 1)
-        index = np.clip(np.searchsorted(edges, self.along) - 1, 0, _SLICES - 1)
-        count = np.bincount(index, minlength=_SLICES)
-        across = self.displacement @ self.axes[:, :2]
-        z, a, b = (
-            np.bincount(index, weights, _SLICES)[count > 0] / count[count > 0]
-            for weights in (self.along, *across.T)
-        )
-        return z, np.column_stack([a, b])
+        edges = np.linspace(self.along.min(), self.along.max(), _SLICES + 1)[1:-1]
+        index = np.searchsorted(edges, self.along)
+        values = np.column_stack([self.along, self.displacement @ self.axes[:, :2]])
+        means = np.array([values[index == i].mean(axis=0) for i in np.unique(index)])
+        return means[:, 0], means[:, 1:]
 
     def plot_surface(self, scale: float | None = None, ax: Axes3D | None = None) -> Axes3D:
         """Draw the deflected surface and the size of the displacement on it.
@@ -231,4 +208,10 @@ class StaticResponse(Result):
         scale = checks.number(scale, "scale")
         moved = self.nodes + scale * self.displacement
         label = f"displacement [µm], drawn {scale:.3g} times"
-        return draw_surface(moved, self.triangles, 1e6 * sizes, label, ax, undeformed=self.nodes)
+        return draw_surface(moved, self.triangles, 1e6 * sizes, label, ax)
+
+
+def _six(values: np.ndarray, along: str, about: str) -> dict[str, np.ndarray]:
+    """Return values (r, 6) along and about the axes as columns."""
+    names = [kind.format(axis) for kind in (along, about) for axis in ("n1", "n2", "e")]
+    return dict(zip(names, values.T + 0.0, strict=True))  # no zero is negative

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import exudyn
 import numpy as np
@@ -11,82 +10,59 @@ from exudyn.itemInterface import CoordinateSpringDamper, MarkerNodeCoordinate, N
 
 from exudyn_rotor import checks
 from exudyn_rotor.drives.drive import Drive
-from exudyn_rotor.multibody.full.full_body import FullRotorBody
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.multibody.rotor.sensors import add_function_sensor
-from exudyn_rotor.multibody.supports.connector import Connector, Force
+from exudyn_rotor.multibody.supports.connector import (
+    CURRENT,
+    PYTHON,
+    SYMBOLIC,
+    Body,
+    Connector,
+    Force,
+    SceneLaw,
+    check_body,
+)
 from exudyn_rotor.multibody.supports.ends import Base, BaseEnd, RotorEnd, Seat
-from exudyn_rotor.multibody.supports.native import PYTHON, SYMBOLIC, symbolic_function
+from exudyn_rotor.multibody.supports.native import symbolic_function
 
 _KINDS = exudyn.OutputVariableType
 _STEP = 1e-6  # of the speed, or of 1 rad/s
 
 
 @dataclass(frozen=True, eq=False)
-class SceneDrive:
-    """A drive in a scene.
+class SceneDrive(SceneLaw):
+    """A drive in a scene; without a connector where it acts on the whole rotor.
 
     Attributes
     ----------
-    body : RotorBody or FullRotorBody
+    body, objects, evaluation, connector
+        See :class:`SceneLaw`.
     drive : Drive
     at : str or None
         Its interface; None for the whole rotor.
-    object : ObjectIndex
-        Its connector.
-    evaluation : str
-        Who evaluates it in a time step.
-    connector : DriveConnector or None
-        Its law by the coordinates of the rotor and of the base; None for the whole rotor.
     """
 
-    body: RotorBody | FullRotorBody
     drive: Drive
     at: str | None
-    object: exudyn.ObjectIndex
-    evaluation: str
-    connector: DriveConnector | None = None
 
-    @property
-    def uses_python(self) -> bool:
-        """True when a time step calls Python for it."""
-        return self.evaluation == PYTHON
-
-    def add_sensor(self, **options: Any) -> exudyn.SensorIndex:
-        """Add a sensor of torque about e [N m] and power [W] on the rotor.
-
-        Parameters
-        ----------
-        **options
-            Of ``SensorUserFunction``: name, storeInternal, writeToFile, fileName.
-
-        Raises
-        ------
-        TypeError, ValueError
-            For other options.
-        """
-        law, made = self.drive.law, self.connector
-        node, spin = self.body.nodes["rigid"], self.body.locks.spin
-
-        def output(mbs, t, sensors, factors, configuration):
-            if made is None:
-                speed = float(mbs.GetNodeOutput(node, _KINDS.Coordinates_t, configuration)[spin])
-            else:
-                made.read(*made.state(mbs, configuration))
-                speed = made.speed
-            torque = float(law(speed, t))
-            return [torque, torque * speed]
-
-        return add_function_sensor(self.body, output, options)
+    def values(self, configuration: exudyn.ConfigurationType = CURRENT) -> tuple[float, float]:
+        """Return torque about e [N m] and power [W] on the rotor."""
+        mbs, made = self.body.mbs, self.connector
+        if made is None:
+            node, spin = self.body.nodes["rigid"], self.body.locks.spin
+            speed = float(mbs.GetNodeOutput(node, _KINDS.Coordinates_t, configuration)[spin])
+        else:
+            made.read(*made.state(mbs, configuration))
+            speed = made.speed
+        torque = float(self.drive.law(speed, mbs.systemData.GetTime(configuration)))
+        return torque, torque * speed
 
     def __str__(self) -> str:
         """Return kind, place and who evaluates it."""
         where = "" if self.at is None else f" at {self.at}"
-        return f"{type(self.drive).__name__}{where} by {self.evaluation}"
+        return f"{type(self.drive).__name__}{where} by {self.evaluation[0]}"
 
 
 def add_drive(
-    body: RotorBody | FullRotorBody,
+    body: Body,
     drive: Drive,
     at: str | None = None,
     base: Base | None = None,
@@ -146,33 +122,28 @@ def add_drive(
     >>> float(body.coordinates()[1][0].round(2))
     63.21
     """
-    checks.instance(body, "body", (RotorBody, FullRotorBody), "add_rotor returns one")
-    body.check_present()
+    check_body(body, "body")
     checks.instance(drive, "drive", Drive, "DirectCurrentMotor, Drag and others are")
     if not body.formulation.has_spin:
         raise ValueError(
             f"body: rotor {body.name!r} has a prescribed spin, which no torque changes; add it "
             "with spin='free', or read its drive torque with body.add_drive_torque_sensor()"
         )
-    if "marker_body" not in body.objects:
-        raise ValueError(
-            f"body: rotor {body.name!r} was added with marker_body=False; drives need the marker "
-            "body"
-        )
     drive.torque(body.plan.setup.placement.speed)  # a curve that fails does so here, not in a run
     if at is None:
         if base is not None:
             raise ValueError("base: a drive on the whole rotor has none; give at='…', an interface")
-        made = _on_the_spin(body, drive)
+        added = _on_the_spin(body, drive)
     else:
         check_turning_interface(body, at, "at")
-        made = _on_an_interface(body, drive, at, Seat.of(body, at, base))
-    added = SceneDrive(body, drive, at, *made)
+        made = DriveConnector(drive, RotorEnd(body, at), Seat.of(body, at, base).end(body.mbs))
+        number = body.mbs.AddObject(made.item())
+        added = SceneDrive(body, (number,), (PYTHON,), made, drive, at)
     body.drives.append(added)
     return added
 
 
-def check_turning_interface(body: RotorBody | FullRotorBody, name: str, argument: str) -> None:
+def check_turning_interface(body: Body, name: str, argument: str) -> None:
     """Refuse what is no interface of the rotor, or has no rotation.
 
     Raises
@@ -188,7 +159,7 @@ def check_turning_interface(body: RotorBody | FullRotorBody, name: str, argument
         )
 
 
-def _on_the_spin(body: RotorBody | FullRotorBody, drive: Drive) -> tuple[exudyn.ObjectIndex, str]:
+def _on_the_spin(body: Body, drive: Drive) -> SceneDrive:
     mbs, law = body.mbs, drive.law
     ground = MarkerNodeCoordinate(nodeNumber=mbs.AddNode(NodePointGround()), coordinate=0)
     spin = MarkerNodeCoordinate(nodeNumber=body.nodes["rigid"], coordinate=body.locks.spin)
@@ -200,20 +171,12 @@ def _on_the_spin(body: RotorBody | FullRotorBody, drive: Drive) -> tuple[exudyn.
     if drive.is_formula:
         force = symbolic_function(mbs, force, item, "springForceUserFunction")
     item.springForceUserFunction = force
-    return mbs.AddObject(item), SYMBOLIC if drive.is_formula else PYTHON
-
-
-def _on_an_interface(
-    body: RotorBody | FullRotorBody, drive: Drive, at: str, seat: Seat
-) -> tuple[exudyn.ObjectIndex, str, DriveConnector]:
-    made = DriveConnector(drive, RotorEnd(body, at), seat.end(body.mbs))
-    return body.mbs.AddObject(made.item()), PYTHON, made
+    told = (SYMBOLIC if drive.is_formula else PYTHON,)
+    return SceneDrive(body, (mbs.AddObject(item),), told, None, drive, None)
 
 
 class DriveConnector(Connector):
     """A torque about the axis by the speed of an interface against what carries the stator."""
-
-    whole = True
 
     def __init__(self, drive: Drive, end: RotorEnd, base: BaseEnd | None) -> None:
         super().__init__(end, base)

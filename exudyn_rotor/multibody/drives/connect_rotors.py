@@ -7,88 +7,63 @@ both interfaces: action and reaction are exact, and the Jacobian has what couple
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import exudyn
 import numpy as np
+from scipy.linalg import block_diag
 
 from exudyn_rotor import checks
 from exudyn_rotor.drives.connection import Connection
 from exudyn_rotor.multibody.drives.add_drive import check_turning_interface
-from exudyn_rotor.multibody.full.full_body import FullRotorBody
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.multibody.rotor.sensors import add_function_sensor
-from exudyn_rotor.multibody.supports.connector import Connector, Force
+from exudyn_rotor.multibody.supports.connector import (
+    CURRENT,
+    PYTHON,
+    Body,
+    Connector,
+    Force,
+    SceneLaw,
+    check_body,
+)
 from exudyn_rotor.multibody.supports.ends import RotorEnd, Seat
-from exudyn_rotor.multibody.supports.native import PYTHON
 from exudyn_rotor.solid.places import off_place
-from exudyn_rotor.theory.formulation import ConstantSpeed, PrescribedMotion, start_values
+from exudyn_rotor.theory.formulation import ConstantSpeed
 
 _SAME_SPEED = 1e-9  # share of a speed by which constant ones may differ
-_SHAFTS = (ConstantSpeed, PrescribedMotion)
-Body = RotorBody | FullRotorBody
 
 
 @dataclass(frozen=True, eq=False)
-class SceneConnection:
+class SceneConnection(SceneLaw):
     """A gear mesh or coupling in a scene.
 
     Attributes
     ----------
+    body, objects, evaluation, connector
+        See :class:`SceneLaw`; `body` is the first rotor.
     connection : Connection
-    body : RotorBody or FullRotorBody
-        The first rotor.
     at : str
+        Interface of the first rotor.
+    other : RotorBody or FullRotorBody
+        The second rotor.
+    other_at : str
         Its interface.
-    object : ObjectIndex
-    connector : RotorConnector
-        Its law by the coordinates of both rotors.
-    other : RotorBody or FullRotorBody, optional
-        The second rotor; None for a shaft.
-    other_at : str, optional
-        Its interface.
-    shaft : ConstantSpeed or PrescribedMotion, optional
-        The angle of a shaft in place of a second rotor.
     """
 
     connection: Connection
-    body: Body
     at: str
-    object: exudyn.ObjectIndex
-    connector: RotorConnector
-    other: Body | None = None
-    other_at: str | None = None
-    shaft: ConstantSpeed | PrescribedMotion | None = None
+    other: Body
+    other_at: str
 
-    @property
-    def uses_python(self) -> bool:
-        """True: a time step calls Python for it."""
-        return True
-
-    def add_sensor(self, **options: Any) -> exudyn.SensorIndex:
-        """Add a sensor of what is transmitted, elastic energy [J] and power lost [W].
+    def values(
+        self, configuration: exudyn.ConfigurationType = CURRENT
+    ) -> tuple[float, float, float]:
+        """Return what is transmitted, elastic energy [J] and power lost [W].
 
         Transmitted is the force of a mesh [N], the torque of a coupling on the second rotor [N m].
-
-        Parameters
-        ----------
-        **options
-            Of ``SensorUserFunction``: name, storeInternal, writeToFile, fileName.
-
-        Raises
-        ------
-        TypeError, ValueError
-            For other options.
         """
-        law = self.connection.law
-
-        def output(mbs, t, sensors, factors, configuration):
-            made = self.connector
-            made.read(*made.state(mbs, configuration))
-            x, x_t = made.motion(t)
-            return [law.transmitted(x, x_t), law.energy(x), law.loss(x, x_t)]
-
-        return add_function_sensor(self.body, output, options)
+        law, made = self.connection, self.connector
+        made.read(*made.state(self.body.mbs, configuration))
+        x, x_t = made.motion()
+        return law.transmitted(x, x_t), law.energy(x), law.loss(x, x_t)
 
     def __str__(self) -> str:
         """Return kind, place and who evaluates it."""
@@ -99,26 +74,25 @@ def connect_rotors(
     connection: Connection,
     body: Body,
     at: str,
-    other: Body | ConstantSpeed | PrescribedMotion,
-    other_at: str | None = None,
+    other: Body,
+    other_at: str,
 ) -> SceneConnection:
-    """Put a gear mesh or a coupling between two rotors in a scene, or a rotor and a shaft.
+    """Put a gear mesh or a coupling between two rotors in a scene.
 
     Call it before ``mbs.Assemble()``. Teeth mesh, and couplings are relaxed, where both rotors
     start: spin angles count from there.
 
     Parameters
     ----------
-    connection : GearMesh, FlexibleCoupling or CardanJoint
+    connection : GearMesh or FlexibleCoupling
         Its axes are those of `body` as it is mounted.
     body : RotorBody or FullRotorBody
         The first rotor, with its marker body; spin free or prescribed.
     at : str
         Its interface.
-    other : RotorBody, FullRotorBody, ConstantSpeed or PrescribedMotion
-        The second rotor, in the same system; or the angle of a shaft whose axis stands still where
-        the connection needs it.
-    other_at : str, optional
+    other : RotorBody or FullRotorBody
+        The second rotor, in the same system.
+    other_at : str
         Interface of the second rotor.
 
     Returns
@@ -166,53 +140,36 @@ def connect_rotors(
     """
     checks.instance(connection, "connection", Connection, "GearMesh is one")
     first = _checked_end(body, at, "body", "at")
-    if isinstance(other, _SHAFTS):
-        if other_at is not None:
-            raise ValueError("other_at: a shaft has no interface; leave it out")
-        start_values(other, "spin")
-        _check_speeds(connection, body, other, 1.0)
-        ends = [(body, at, first)]
-    else:
-        second = _checked_end(other, other_at, "other", "other_at")
-        if other.mbs is not body.mbs or other is body:
-            raise ValueError("other: needs another rotor of the same system")
-        apart = off_place(second.place - first.place, first.leeway, second.leeway)
-        axis = first.axes.T @ second.axes[:, 2]
-        connection.law.check_places(first.axes.T @ apart, axis)
-        sense = float(np.sign(axis @ connection.second_axis))
-        _check_speeds(connection, body, other.formulation.spin, sense)
-        ends = [(body, at, first), (other, other_at, second)]
-    parts = [RotorEnd(rotor, name) for rotor, name, _ in ends]
-    shaft = other if isinstance(other, _SHAFTS) else None
-    made = RotorConnector(connection, parts[0], parts[1] if parts[1:] else None, shaft)
-    end = ends[1][:2] if ends[1:] else (None, None, other)
-    added = SceneConnection(connection, body, at, body.mbs.AddObject(made.item()), made, *end)
-    for rotor, *_ in ends:
+    second = _checked_end(other, other_at, "other", "other_at")
+    if other.mbs is not body.mbs or other is body:
+        raise ValueError("other: needs another rotor of the same system")
+    apart = off_place(second.place - first.place, first.leeway, second.leeway)
+    axis = first.axes.T @ second.axes[:, 2]
+    connection.check_places(first.axes.T @ apart, axis)
+    _check_speeds(connection, body, other, float(np.sign(axis[2])))
+    made = RotorConnector(connection, RotorEnd(body, at), RotorEnd(other, other_at))
+    number = body.mbs.AddObject(made.item())
+    added = SceneConnection(body, (number,), (PYTHON,), made, connection, at, other, other_at)
+    for rotor in (body, other):
         rotor.drives.append(added)
     return added
 
 
 def _checked_end(body: Body, at: str, argument: str, place: str) -> Seat:
-    checks.instance(body, argument, (RotorBody, FullRotorBody), "add_rotor returns one")
-    body.check_present()
-    if "marker_body" not in body.objects:
-        raise ValueError(
-            f"{argument}: rotor {body.name!r} was added with marker_body=False; gears and "
-            "couplings need the marker body"
-        )
+    check_body(body, argument)
     check_turning_interface(body, at, place)
     return Seat.of(body, at, None)
 
 
-def _check_speeds(connection: Connection, body: Body, other: object, sense: float) -> None:
+def _check_speeds(connection: Connection, body: Body, other: Body, sense: float) -> None:
     """Refuse constant speeds between which a connection winds up; `sense` is of the second axis."""
-    own = body.formulation.spin
-    if not (isinstance(own, ConstantSpeed) and isinstance(other, ConstantSpeed)):
+    own, second = body.formulation.spin, other.formulation.spin
+    if not (isinstance(own, ConstantSpeed) and isinstance(second, ConstantSpeed)):
         return
     expected = sense * connection.mean_speed_ratio * own.speed
-    if abs(other.speed - expected) > _SAME_SPEED * max(abs(other.speed), abs(expected)):
+    if abs(second.speed - expected) > _SAME_SPEED * max(abs(second.speed), abs(expected)):
         raise ValueError(
-            f"other: its constant speed of {other.speed:g} rad/s would wind up the connection to "
+            f"other: its constant speed of {second.speed:g} rad/s would wind up the connection to "
             f"rotor {body.name!r} at {own.speed:g} rad/s without bound; prescribe "
             f"{expected!r} rad/s, or leave one spin free"
         )
@@ -221,53 +178,38 @@ def _check_speeds(connection: Connection, body: Body, other: object, sense: floa
 class RotorConnector(Connector):
     """A gear or coupling between two rotors, whose motions count from where they start.
 
-    In axes of the first rotor, in which the second has rows of its own; or between a rotor and a
-    shaft, whose angle is a function of time.
+    In axes of the first rotor, in which the second has rows of its own.
     """
 
-    whole = True
-
-    def __init__(
-        self,
-        connection: Connection,
-        end: RotorEnd,
-        other: RotorEnd | None = None,
-        shaft: ConstantSpeed | PrescribedMotion | None = None,
-    ) -> None:
+    def __init__(self, connection: Connection, end: RotorEnd, other: RotorEnd) -> None:
         super().__init__(end, None)
-        self._law, self._other, self._shaft = connection.law, other, shaft
-        if other is not None:
-            self.nodes = (*end.nodes, *other.nodes)
-            self.size = end.size + other.size
-            self._into = np.kron(np.eye(2), end.axes.T @ other.axes)
+        self._law, self._other = connection, other
+        self.nodes = (*end.nodes, *other.nodes)
+        self.size = end.size + other.size
+        self._into = np.kron(np.eye(2), end.axes.T @ other.axes)
 
     def read(self, q: list[float], q_t: list[float]) -> None:
         """Take the motion of both ends from coordinates and their rates."""
-        super().read(q, q_t)
-        if self._other is not None:
-            self._other.read(q[self._first :], q_t[self._first :], True)
+        first = self.end.size
+        self.end.read(q[:first], q_t[:first])
+        self._other.read(q[first:], q_t[first:])
 
-    def motion(self, t: float) -> tuple[np.ndarray, np.ndarray]:
+    def motion(self) -> tuple[np.ndarray, np.ndarray]:
         """Return motion and rate of both ends, each (12,)."""
-        x, x_t = self.end.motion
-        if self._other is not None:
-            y, y_t = self._other.motion
-            return np.concatenate([x, self._into @ y]), np.concatenate([x_t, self._into @ y_t])
-        axis, none = self._law.second_axis, np.zeros(3)
-        angle, rate = self._shaft.value(t) - self._shaft.value(0.0), self._shaft.rate(t)
-        return np.concatenate([x, none, angle * axis]), np.concatenate([x_t, none, rate * axis])
+        pairs = zip(self.end.motion, self._other.motion, strict=True)
+        return tuple(np.concatenate([one, self._into @ two]) for one, two in pairs)
 
     def rows(self) -> np.ndarray:
         """Return the rows J (12, size) of both ends."""
-        J = np.zeros((12, self.size))
-        J[:6, : self._first] = self.end.rows()
-        if self._other is not None:
-            J[6:, self._first :] = self._into @ self._other.rows()
-        return J
+        return block_diag(self.end.rows(), self._into @ self._other.rows())
+
+    def rate_rows(self) -> np.ndarray:
+        """Return the derivative (12, size) of the rates of both ends by the coordinates."""
+        return block_diag(self.end.rate_rows(), self._into @ self._other.rate_rows())
 
     def wrench(self, t: float) -> tuple[np.ndarray]:
         """Return the forces on all coordinates."""
-        return (self._law.forces(*self.motion(t)) @ self.rows(),)
+        return (self._law.forces(*self.motion()) @ self.rows(),)
 
     def pull(self, forces: np.ndarray) -> list[float]:
         """Return the forces on all coordinates as a list."""
@@ -275,14 +217,6 @@ class RotorConnector(Connector):
 
     def tangent(self, t: float) -> Force:
         """Return the law's forces on both ends, its tangent, and rows (12, size)."""
-        x, x_t = self.motion(t)
+        x, x_t = self.motion()
         rows = self.rows(), self.rate_rows()
         return Force(self._law.forces(x, x_t), *rows, *self._law.tangent(x, x_t))
-
-    def rate_rows(self) -> np.ndarray:
-        """Return the derivative (12, size) of the rates of both ends by the coordinates."""
-        L = np.zeros((12, self.size))
-        L[:6, : self._first] = self.end.rate_rows()
-        if self._other is not None:
-            L[6:, self._first :] = self._into @ self._other.rate_rows()
-        return L

@@ -70,7 +70,7 @@ def spin_coupling_object(motion: FullMotion, layout: Layout, nodes: list) -> Obj
     matrix = exudyn.MatrixContainer()
 
     def mass(mbs, t, item, q, q_t):
-        moment, row = motion.varying_inertia(np.asarray(q)[places], q_t[spin])
+        moment, row = motion.varying_inertia(np.asarray(q)[places])
         table[0, 2] = moment
         table[1 : count + 1, 2] = table[count + 1 :, 2] = row
         matrix.SetWithSparseMatrixCSR(size, size, table, False)

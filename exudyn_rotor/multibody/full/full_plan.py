@@ -15,11 +15,10 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor.plan import Plan, Setup, laid_out
 from exudyn_rotor.prestress.static_solution import relief_rotations
-from exudyn_rotor.solid.clamp import clamped_coordinates
-from exudyn_rotor.solid.damping import sparse_damping
+from exudyn_rotor.reduction.selection import NEGLIGIBLE
+from exudyn_rotor.solid.rigid import clamped_coordinates
 from exudyn_rotor.solid_rotor import SolidRotor
-from exudyn_rotor.solvers.choice import estimated_fill
-from exudyn_rotor.solvers.memory import TooLittleMemoryError, available_memory
+from exudyn_rotor.solvers.factor import TooLittleMemoryError, available_memory, factor_entries
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.full_motion import (
     Conditions,
@@ -40,8 +39,9 @@ _PER_ENTRY, _PER_FACTOR_ENTRY = 300.0, 22.0
 
 def needed_bytes(rotor: SolidRotor) -> float:
     """Return about what a full body takes in an implicit run, beside the rotor itself [bytes]."""
-    fill = estimated_fill(3 * rotor.node_count)
-    return _PER_ENTRY * rotor.stiffness.nnz + _PER_FACTOR_ENTRY * fill.entries
+    return _PER_ENTRY * rotor.stiffness.nnz + _PER_FACTOR_ENTRY * factor_entries(
+        3 * rotor.node_count
+    )
 
 
 def check_memory(rotor: SolidRotor) -> None:
@@ -56,6 +56,17 @@ def check_memory(rotor: SolidRotor) -> None:
             f"step of Exudyn's sparse solver, and {available / 1e9:.2g} GB of memory are "
             "available; add the reduced rotor, rotor.reduce(…), or use a coarser mesh"
         )
+
+
+def _damping(rotor: SolidRotor) -> sp.csr_array | None:
+    """Return the damping (3n, 3n); in proportion to a mass that moves freely it is not sparse."""
+    if rotor.mass_damping:
+        raise ValueError(
+            "with_damping(mass=…): a large model that rigid motions are free in cannot be analysed "
+            "with damping in proportion to its mass; reduce it, rotor.reduce(…), or give "
+            "stiffness=… alone"
+        )
+    return rotor.damping
 
 
 _ROUNDING = 1e-12  # of the accelerations that balance a load, for one of 1 rad/s²
@@ -82,15 +93,7 @@ class NodalFields:
     conditions: Conditions
 
 
-@dataclass(frozen=True, eq=False)
-class FullPlan(Plan):
-    """A full body, laid out; as :class:`Plan`, with nodal displacements [m] for modes."""
-
-    selection: NodalFields
-    motion: FullMotion
-
-
-def make_full_plan(rotor: SolidRotor, setup: Setup) -> FullPlan:
+def make_full_plan(rotor: SolidRotor, setup: Setup) -> Plan:
     """Check what needs the model, and lay out the equations.
 
     `rotor` carries its prestress where ``setup.stiffening`` is 'full'.
@@ -112,7 +115,7 @@ def make_full_plan(rotor: SolidRotor, setup: Setup) -> FullPlan:
         turns = np.where(np.abs(turns) > _ROUNDING, turns, 0.0)
         whole = replace(whole, K2=carried.per_square, B=carried.euler, K4=carried.per_fourth_power)
     second = full_stiffening(whole, setup.stiffening, turns)
-    held = conditions(whole, setup.formulation, rotor.grounded, setup.negligible)
+    held = conditions(whole, setup.formulation, rotor.grounded, NEGLIGIBLE)
     inv = replace(held.invariants, K2=None, B=None, K4=None)
     fields = NodalFields(checks.read_only(origin), inv, rotor, held)
 
@@ -121,14 +124,11 @@ def make_full_plan(rotor: SolidRotor, setup: Setup) -> FullPlan:
     ) -> FullMotion:
         return FullMotion(inv, formulation, second, setup.placement.rotation, plane, gravity)
 
-    return laid_out(
-        FullPlan,
-        setup,
-        fields,
-        motion,
-        modal_start=_start(setup.modal_coordinates, "modal_coordinates", held),
-        modal_start_rate=_start(setup.modal_velocities, "modal_velocities", held),
+    start = (
+        _start(setup.modal_coordinates, "modal_coordinates", held),
+        _start(setup.modal_velocities, "modal_velocities", held),
     )
+    return laid_out(setup, fields, motion, start)
 
 
 def _invariants(rotor: SolidRotor, origin: np.ndarray) -> Invariants:
@@ -139,7 +139,7 @@ def _invariants(rotor: SolidRotor, origin: np.ndarray) -> Invariants:
     """
     clamped = clamped_coordinates(rotor.stiffness).astype(float)
     basis = sp.csr_array(sp.diags_array(1.0 - clamped))
-    matrices = (rotor.mass, rotor.stiffness, sparse_damping(rotor))
+    matrices = (rotor.mass, rotor.stiffness, _damping(rotor))
     moving = Invariants.of(rotor.nodes - origin, *matrices, basis, rotor.axis.direction)
     M, K = (
         sp.csr_array(one + sp.diags_array(clamped * whole.diagonal()))

@@ -100,55 +100,35 @@ class Ties:
         return sp.csr_array(sp.block_diag([sp.eye_array(local), sp.csr_array(mixing)]))
 
 
-@dataclass(frozen=True, eq=False)
-class FieldNode:
-    """The node of the nodal displacements.
-
-    Attributes
-    ----------
-    number : exudyn.NodeIndex
-    size, first : int
-        Number of its coordinates, and the first of the displacements, which are the last.
-    """
-
-    number: exudyn.NodeIndex
-    size: int
-    first: int
-
-
 def add_ties(
     mbs: exudyn.MainSystem,
-    fields: FieldNode,
+    fields: exudyn.NodeIndex,
     ties: Ties,
     invariants: Invariants,
     start: tuple[np.ndarray, np.ndarray],
-) -> tuple[exudyn.NodeIndex | None, exudyn.ObjectIndex]:
-    """Add the coordinates z and the ties; return the node of z, None if there are none.
+) -> tuple[exudyn.NodeIndex, exudyn.ObjectIndex]:
+    """Add the coordinates z and the ties to the node of the displacements; return their node.
 
     `start` holds displacements and velocities (3n,) at the start.
     """
-    nodes, z_node = [fields.number], None
-    if ties.count:
-        z_node = mbs.AddNode(generic_node(*(ties.rows @ values for values in start)))
-        nodes.append(z_node)
+    tied = mbs.AddNode(generic_node(*(ties.rows @ values for values in start)))
     T = ties.matrix(invariants)
-    width, z = fields.size, ties.count
-    multipliers = T.shape[0] - (width - fields.first) - z
-    nodes.append(mbs.AddNode(generic_node(*np.zeros((2, multipliers)))))
-    size = fields.first + T.shape[0]
-    T = _shifted(T, fields.first, size)
+    width, size = invariants.size, T.shape[0]
+    multipliers = generic_node(*np.zeros((2, size - width - ties.count)))
     stiffness = RATE**2 * T
     if ties.stiffness is not None:
-        stiffness = stiffness + _shifted(sp.csr_array(ties.stiffness), width, size)
+        entries = sp.coo_array(ties.stiffness)
+        place = tuple(width + part for part in entries.coords)
+        stiffness = stiffness + sp.csr_array((entries.data, place), shape=T.shape)
     item = ObjectGenericODE2(
-        nodeNumbers=nodes,
+        nodeNumbers=[fields, tied, mbs.AddNode(multipliers)],
         massMatrix=container(T),
         dampingMatrix=container(2.0 * RATE * T),
         stiffnessMatrix=container(stiffness),
         jacobianUserFunction=no_jacobian(size),
         visualization=VObjectGenericODE2(show=False),
     )
-    return z_node, mbs.AddObject(item)
+    return tied, mbs.AddObject(item)
 
 
 def container(matrix: sp.sparray) -> exudyn.MatrixContainer:
@@ -168,10 +148,3 @@ def no_jacobian(size: int):
     """
     zero = container(sp.csr_array((size, size)))
     return lambda mbs, t, item, q, q_t, factor_q, factor_v: zero
-
-
-def _shifted(matrix: sp.csr_array, first: int, size: int) -> sp.csr_array:
-    """Return the matrix at the place (first, first) of one of `size`."""
-    entries = sp.coo_array(matrix)
-    rows, columns = entries.coords
-    return sp.csr_array((entries.data, (rows + first, columns + first)), shape=(size, size))

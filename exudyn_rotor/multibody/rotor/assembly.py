@@ -14,7 +14,8 @@ Before a scene is assembled:
   Exudyn's body, which are modes here, so the three nodes take the offset.
 - Where the axes of the flexible body are not those of the mesh, rigid markers get the latter.
 - What a script attaches to rigid and position markers at the node of the frame is pointed at
-  markers that move as the node of Exudyn's body (:mod:`exudyn_rotor.multibody.rotor.node_motion`).
+  markers that move as the node of Exudyn's body ; see
+  :func:`mean_motion`.
 
 Afterwards one warning names what a rotor cannot carry.
 """
@@ -26,93 +27,97 @@ import warnings
 import exudyn
 import numpy as np
 
-from exudyn_rotor.multibody.rotor.connections import ConnectionWarning, lost_connections
-from exudyn_rotor.multibody.rotor.marker_body import append_nodes, virtual_nodes
-from exudyn_rotor.multibody.rotor.node_motion import NODE_MARKERS, add_node_marker
-from exudyn_rotor.multibody.rotor.rotor_items import KnownRotor, known_rotors
+from exudyn_rotor.multibody.rotor.connections import (
+    NODE_MARKERS,
+    ConnectionWarning,
+    lost_connections,
+)
+from exudyn_rotor.multibody.rotor.markers import Carrier, append_nodes, virtual_nodes
+from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, known_rotors
 from exudyn_rotor.solid.interface import rotation_moments
-from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
 
 _NEEDED = {"SuperElementPosition": 1, "SuperElementRigid": 3}  # nodes of a condensed marker
 _UNIT_SUM = 1e-12  # error of a sum of weights that is one
 _SINGULAR = 1e-10  # ratio of eigenvalues of W: nodes on a line, which Exudyn refuses itself
-_Z = SpinAxis([0.0, 0.0, 1.0])  # of the plane of the three nodes; any serves
 
 
 def prepare(mbs: exudyn.MainSystem) -> None:
     """Condense a script's markers on rotors, and let those at their nodes carry tilts."""
-    for rotor in known_rotors(mbs):
-        if rotor.is_full:
+    for body in known_rotors(mbs):
+        if body.motion.invariants.is_sparse:  # a full body has no mesh here, and no modes
             continue
-        _refuse_foreign_stress(mbs, rotor)
-        _give_mesh_axes(mbs, rotor)
-        if rotor.plan.setup.condense_markers:
-            _condense(mbs, rotor)
-        _carry(mbs, rotor)
+        _refuse_foreign_stress(body)
+        _give_mesh_axes(body)
+        _condense(body)
+        _carry(body)
 
 
 def warn_of_lost_connections(mbs: exudyn.MainSystem, stacklevel: int) -> None:
     """Warn once of what rotors cannot carry, all of it in one sentence for each."""
-    for rotor in known_rotors(mbs):
-        new = [each for each in lost_connections(mbs, rotor) if each not in rotor.told]
-        rotor.told.update(new)
+    for body in known_rotors(mbs):
+        new = [each for each in lost_connections(body) if each not in body.script.told]
+        body.script.told.update(new)
         if new:
-            message = f"rotor {rotor.plan.setup.name!r}: {'; '.join(new)}"
+            message = f"rotor {body.name!r}: {'; '.join(new)}"
             warnings.warn(message, ConnectionWarning, stacklevel=stacklevel)
 
 
-def _markers(mbs: exudyn.MainSystem, rotor: KnownRotor) -> dict[int, dict]:
+def _markers(body: RotorItems) -> dict[int, dict]:
     """Return the super-element markers on a rotor."""
-    every = {n: mbs.GetMarker(n) for n in range(mbs.systemData.NumberOfMarkers())}
+    every = {n: body.mbs.GetMarker(n) for n in range(body.mbs.systemData.NumberOfMarkers())}
     return {
         number: marker
         for number, marker in every.items()
-        if marker["markerType"] in _NEEDED and int(marker["bodyNumber"]) == rotor.marker_body
+        if marker["markerType"] in _NEEDED
+        and int(marker["bodyNumber"]) == int(body.objects["marker_body"])
     }
 
 
-def _refuse_foreign_stress(mbs: exudyn.MainSystem, rotor: KnownRotor) -> None:
+def _refuse_foreign_stress(body: RotorItems) -> None:
     """Refuse stress modes of a FEMinterface, which are in other coordinates than the rotor's."""
-    body = mbs.GetObject(rotor.marker_body)
-    shape, stress = np.shape(body["modeBasis"]), np.asarray(body["outputVariableModeBasis"])
+    item = body.mbs.GetObject(body.objects["marker_body"])
+    shape, stress = np.shape(item["modeBasis"]), np.asarray(item["outputVariableModeBasis"])
     if stress.size and stress.shape != (shape[0] // 3, 6 * shape[1]):
         raise ValueError(
-            f"outputVariableModeBasis: of the flexible body of rotor {rotor.plan.setup.name!r} "
+            f"outputVariableModeBasis: of the flexible body of rotor {body.name!r} "
             f"needs the shape {(shape[0] // 3, 6 * shape[1])}, got {stress.shape}; the rotor takes "
             "the stress modes that a FEMinterface has when it is added"
         )
 
 
-def _give_mesh_axes(mbs: exudyn.MainSystem, rotor: KnownRotor) -> None:
+def _give_mesh_axes(body: RotorItems) -> None:
     """Turn rigid markers of a script, and their offsets, to the axes of the mesh."""
-    B = rotor.plan.frame.B
-    if rotor.plan.frame.has_mesh_axes:
+    B, mbs = body.frame.B, body.mbs
+    if body.frame.has_mesh_axes:
         return
-    for number, marker in _markers(mbs, rotor).items():
-        if marker["markerType"] != "SuperElementRigid" or number in rotor.turned:
+    for number, marker in _markers(body).items():
+        if marker["markerType"] != "SuperElementRigid" or number in body.script.turned:
             continue
-        if max(marker["meshNodeNumbers"], default=-1) >= rotor.mesh_node_count:
+        if max(marker["meshNodeNumbers"], default=-1) >= body.mesh_node_count:
             continue  # the package's own
-        rotor.turned.add(number)
+        body.script.turned.add(number)
         local = np.array(marker["localHT"], dtype=float)
         local[:3, :3] = B @ local[:3, :3]
         mbs.SetMarkerParameter(number, "localHT", local)
         mbs.SetMarkerParameter(number, "offset", B @ marker["offset"])
 
 
-def _condense(mbs: exudyn.MainSystem, rotor: KnownRotor) -> None:
+def _condense(body: RotorItems) -> None:
     """Move markers on many mesh nodes to nodes that are added to the flexible body.
 
     Markers stay as they are where their weights do not add up to one, where a rigid marker takes
     the rotation by the other formula (``useAlternativeApproach=False``) or has its nodes on a line.
     """
-    chosen = {n: m for n, m in _markers(mbs, rotor).items() if _can_be_condensed(m)}
+    chosen = {n: m for n, m in _markers(body).items() if _can_be_condensed(m)}
     if not chosen:
         return
-    body, tilts = mbs.GetObject(rotor.marker_body), _tilts(rotor)
-    points = np.asarray(body["referencePositions"]).reshape(-1, 3)
-    shapes = np.asarray(body["modeBasis"]).reshape(len(points), 3, -1)
+    mbs, marker_body = body.mbs, body.objects["marker_body"]
+    # the rigid rotation that the modal coordinates hold, axes of the body
+    tilts = body.frame.B @ body.motion.invariants.mean_rotation
+    item = mbs.GetObject(marker_body)
+    points = np.asarray(item["referencePositions"]).reshape(-1, 3)
+    shapes = np.asarray(item["modeBasis"]).reshape(len(points), 3, -1)
     places, columns, numbers = [], [], {}
     count = len(points)
     for number, marker in chosen.items():
@@ -126,17 +131,12 @@ def _condense(mbs: exudyn.MainSystem, rotor: KnownRotor) -> None:
         numbers[number] = list(range(count, count + len(moved[0])))
         count += len(moved[0])
     if numbers:
-        append_nodes(mbs, rotor.marker_body, np.vstack(places), np.vstack(columns))
+        append_nodes(mbs, marker_body, np.vstack(places), np.vstack(columns))
     for number, nodes in numbers.items():
         mbs.SetMarkerParameter(number, "meshNodeNumbers", nodes)
         mbs.SetMarkerParameter(number, "weightingFactors", [1.0 / len(nodes)] * len(nodes))
         if len(nodes) == 3:
             mbs.SetMarkerParameter(number, "offset", np.zeros(3))
-
-
-def _tilts(rotor: KnownRotor) -> np.ndarray:
-    """Return the rigid rotation that the modal coordinates hold, axes of the body, (3, m)."""
-    return rotor.plan.frame.B @ rotor.plan.motion.invariants.mean_rotation
 
 
 def _can_be_condensed(marker: dict) -> bool:
@@ -167,27 +167,26 @@ def _condensed(
         return None
     turn = np.linalg.solve(W, np.einsum("nab,nbk->ak", levers, shapes - mean))
     motion = np.vstack([mean, turn])
-    return virtual_nodes(center, float(np.sqrt(sizes[-1])), motion, _Z)
+    return virtual_nodes(center, float(np.sqrt(sizes[-1])), motion)
 
 
-def _carry(mbs: exudyn.MainSystem, rotor: KnownRotor) -> None:
+def _carry(body: RotorItems) -> None:
     """Point what uses markers at the node of a rotor's frame at markers that carry its tilts."""
+    mbs, carriers = body.mbs, body.script.carriers
     own = {
         number: marker
         for number in range(mbs.systemData.NumberOfMarkers())
         if (marker := mbs.GetMarker(number))["markerType"] in NODE_MARKERS
-        and int(marker["nodeNumber"]) == rotor.node
+        and int(marker["nodeNumber"]) == int(body.nodes["rigid"])
     }
     if not own:
         return
 
     def carrier(number: object) -> int:
         number = int(number)
-        if number not in own:
-            return number
-        if number not in rotor.carriers:
-            rotor.carriers[number] = int(add_node_marker(mbs, rotor, own[number]))
-        return rotor.carriers[number]
+        if number in own and number not in carriers:
+            carriers[number] = int(_add_node_marker(body, own[number]))
+        return carriers.get(number, number)
 
     for number in range(mbs.systemData.NumberOfObjects()):
         given = list(map(int, mbs.GetObject(number).get("markerNumbers", [])))
@@ -201,3 +200,46 @@ def _carry(mbs: exudyn.MainSystem, rotor: KnownRotor) -> None:
         sensor = mbs.GetSensor(number)
         if sensor["sensorType"] == "Marker" and int(sensor["markerNumber"]) in own:
             mbs.SetSensorParameter(number, "markerNumber", carrier(sensor["markerNumber"]))
+
+
+def _add_node_marker(body: RotorItems, given: dict) -> exudyn.MarkerIndex:
+    """Add a marker that stands for a script's `given` rigid or position marker at the node."""
+    frame, inv = body.frame, body.motion.invariants
+    point = Carrier(
+        body.objects["marker_body"],
+        frame.points(np.zeros(3)),
+        mean_motion(body),
+        float(np.sqrt(np.trace(inv.J) / inv.mass)),
+    )
+    if given["markerType"] == "NodePosition":
+        return point.add_marker(body.mbs, "position")
+    # Exudyn takes no other place than the node's
+    axes = frame.B @ np.asarray(given["localHT"], dtype=float)[:3, :3]
+    return point.add_marker(body.mbs, "rigid", axes)
+
+
+def mean_motion(body: RotorItems) -> np.ndarray:
+    """Return the mean displacement and rotation at the node (6, m), axes of the flexible body.
+
+    The frame of Exudyn's flexible body tilts, and moves, with the rotor. The frame of a fixed axis
+    turns only; tilts are modes, and so are translations that the formulation does not have. What
+    moves as the node of Exudyn's body is the mean rigid motion of the rotor at the mesh origin x,
+
+        u = A (Sζ/m + φ × (x − χ)),    φ = I⁻¹ Σ M y × ψ ζ,
+
+    in which rigid modes have a share alone, and Craig–Bampton modes, which hold Exudyn's frame at a
+    boundary (:mod:`exudyn_rotor.reduction.mean_axis`).
+
+    Tilts about the node's place in the basis, ``S ≠ 0``, would move the node itself, but not tilt
+    it; they couple translations and tilts by ``A S``, so that no matrix is constant, and a step
+    takes five times as long with a free spin and twelve times at constant speed.
+    """
+    selection, B = body.selection, body.frame.B
+    reduced = selection.source
+    inv, rigid = reduced.invariants, len(reduced.rigid_kinds)
+    columns = selection.T[:rigid]
+    if body.script.frame_shares is not None:
+        columns = columns + body.script.frame_shares @ selection.T[rigid:]
+    turn = inv.mean_rotation[:, :rigid]
+    shift = inv.S[:, :rigid] / inv.mass + skew(reduced.center_of_mass) @ turn
+    return np.vstack([B @ shift, B @ turn]) @ columns

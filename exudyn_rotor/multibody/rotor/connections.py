@@ -1,23 +1,24 @@
 """What a scene attaches to a rotor and the rotor cannot carry, found by a walk through the ``mbs``.
 
-Rigid and position markers at the node of the frame move with the rotor
-(:mod:`exudyn_rotor.multibody.rotor.node_motion`). Markers of its coordinates see the frame alone:
+Rigid and position markers at the node of the frame are pointed at others that move with the rotor
+(:mod:`exudyn_rotor.multibody.rotor.assembly`). Markers of its coordinates see the frame alone:
 it turns about the spin axis and translates as the formulation says, and its translation is that of
 the centre of mass. Tilts are modal coordinates.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import exudyn
 import numpy as np
 
-from exudyn_rotor.multibody.rotor.node_motion import NODE_MARKERS
-from exudyn_rotor.multibody.rotor.rotor_items import KnownRotor, RotorItems, known_rotor
+from exudyn_rotor.multibody.rotor.frame import MODES
+from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 
 _ALONG = 1e-6  # sine of the angle up to which a direction counts as that of the spin axis
+NODE_MARKERS = ("NodeRigid", "NodePosition")
 _COORDINATES = ("NodeCoordinate", "NodeCoordinates", "NodeRotationCoordinate")
 _KINDS = exudyn.OutputVariableType
 # what a sensor of the node shows without the rotor's tilts
@@ -27,6 +28,7 @@ _WITHOUT_TILTS = (
 )
 _APART = 1e-3  # of the radius of gyration, by which the node is off the centre of mass
 _INSTEAD = "; use body.marker(interface) or body.add_marker(nodes)"
+_OFFSET = f"a force at a marker's own offset has no lever for tilts, which are modes{_INSTEAD}"
 
 
 class ConnectionWarning(UserWarning):
@@ -43,15 +45,14 @@ class ConnectionWarning(UserWarning):
     """
 
 
-def lost_connections(mbs: exudyn.MainSystem, rotor: KnownRotor) -> tuple[str, ...]:
+def lost_connections(body: RotorItems) -> tuple[str, ...]:
     """Return what the rotor cannot carry, one sentence each, for an assembled system."""
-    walk = _Walk(mbs, rotor)
-    loads = [(f"load {mbs.GetLoad(n)['name']!r}", reason) for n, reason in walk.loads()]
-    objects = [
-        (f"{(item := mbs.GetObject(n))['objectType']} {item['name']!r}", reason)
-        for n, reason in walk.objects()
-    ]
-    return tuple(f"{item}: {reason}" for item, reason in (*loads, *objects, *walk.sensors()))
+    mbs, found = body.mbs, []
+    for is_load, number, reason in _lost(body):
+        item = mbs.GetLoad(number) if is_load else mbs.GetObject(number)
+        kind = "load" if is_load else item["objectType"]
+        found.append(f"{kind} {item['name']!r}: {reason}")
+    return (*found, *_sensors(body))
 
 
 def lost_items(body: RotorItems) -> list[tuple[bool, int]]:
@@ -59,154 +60,116 @@ def lost_items(body: RotorItems) -> list[tuple[bool, int]]:
 
     Sensors change no motion and do not count.
     """
-    if "marker_body" not in body.objects:
-        return []
-    walk = _Walk(body.mbs, known_rotor(body))
-    loads = [(True, number) for number, _ in walk.loads()]
-    return loads + [(False, number) for number, _ in walk.objects()]
+    return [(is_load, number) for is_load, number, _ in _lost(body)]
 
 
-class _Walk:
-    """The items of an ``mbs`` that act on one rotor where it may not carry them."""
+def _lost(body: RotorItems) -> Iterator[tuple[bool, int, str]]:
+    """Yield whether an item is a load, its number, and why the rotor cannot carry it."""
+    mbs, markers = body.mbs, _Markers(body)
+    for number in range(mbs.systemData.NumberOfLoads()):
+        load = mbs.GetLoad(number)
+        reason = markers.why_lost(int(load["markerNumber"]), "a load")
+        if reason and not (reason is _OFFSET and load["loadType"] != "ForceVector"):
+            yield True, number, reason
+    own = set(map(int, body.constraints.values()))
+    own |= {int(number) for drive in body.drives for number in drive.objects}
+    for number in range(mbs.systemData.NumberOfObjects()):
+        item = mbs.GetObject(number)
+        if number in own or "markerNumbers" not in item or not item.get("activeConnector", 1):
+            continue
+        for place, marker in enumerate(map(int, item["markerNumbers"])):
+            used = np.atleast_2d(item.get(f"scalingMarker{place}", np.zeros((0, 0))))
+            columns = np.flatnonzero(np.any(used != 0.0, axis=0)) if used.size else ()
+            reason = markers.why_lost(marker, "a connector", columns)
+            if marker in body.script.carriers.values():
+                reason = _false_damping(body, item)
+            if reason:
+                yield False, number, reason
 
-    def __init__(self, mbs: exudyn.MainSystem, rotor: KnownRotor) -> None:
-        self.mbs, self.rotor = mbs, rotor
-        self.n, locks = rotor.axis, rotor.plan.locks
-        self.locked = {*locks.tilts, *(i for i in (*locks.fixed, *locks.prescribed) if i < 3)}
-        self.apart = self._distance_to_centre_of_mass()
-        numbers = range(mbs.systemData.NumberOfMarkers())
-        every = {number: mbs.GetMarker(number) for number in numbers}
-        at_node = {n: m for n, m in every.items() if int(m.get("nodeNumber", -1)) == rotor.node}
+
+class _Markers:
+    """The markers of an ``mbs`` at which one rotor may not carry what acts."""
+
+    def __init__(self, body: RotorItems) -> None:
+        mbs, self.body = body.mbs, body
+        every = {n: mbs.GetMarker(n) for n in range(mbs.systemData.NumberOfMarkers())}
+        node = int(body.nodes["rigid"])
+        at_node = {n: m for n, m in every.items() if int(m.get("nodeNumber", -1)) == node}
         self.coordinates = {n: m for n, m in at_node.items() if m["markerType"] in _COORDINATES}
         self.rigid = {n for n, m in at_node.items() if m["markerType"] in NODE_MARKERS}
+        marker_body = int(body.objects["marker_body"])
         self.offset = {
             number
             for number, marker in every.items()
             if marker["markerType"] == "SuperElementRigid"
-            and int(marker["bodyNumber"]) == rotor.marker_body
+            and int(marker["bodyNumber"]) == marker_body
             and np.any(marker["offset"])
         }
-        self.carriers = set(rotor.carriers.values())
 
-    def _distance_to_centre_of_mass(self) -> float:
-        """Return how far the node's place is off the centre of mass that its coordinates move."""
-        plan, inv = self.rotor.plan, self.rotor.plan.motion.invariants
-        apart = float(np.linalg.norm(plan.frame.node - plan.selection.origin - inv.center))
-        return apart if apart > _APART * np.sqrt(np.trace(inv.J) / inv.mass) else 0.0
-
-    def loads(self) -> Iterator[tuple[int, str]]:
-        """Yield numbers of loads, and why they are lost."""
-        for number in range(self.mbs.systemData.NumberOfLoads()):
-            load = self.mbs.GetLoad(number)
-            marker, reason = int(load["markerNumber"]), None
-            if marker in self.coordinates:
-                reason = self._coordinate(int(self.coordinates[marker]["coordinate"]), "a load")
-            elif marker in self.rigid:
-                reason = self._of_full()
-            elif marker in self.offset and load["loadType"] == "ForceVector":
-                reason = _offset("a force")
-            if reason:
-                yield number, reason
-
-    def objects(self) -> Iterator[tuple[int, str]]:
-        """Yield numbers of connectors and joints, and what of them is lost or wrong."""
-        own = self.rotor.own | {int(drive.object) for drive in self.rotor.drives}
-        for number in range(self.mbs.systemData.NumberOfObjects()):
-            item = self.mbs.GetObject(number)
-            if number in own or "markerNumbers" not in item or not item.get("activeConnector", 1):
-                continue
-            for place, marker in enumerate(map(int, item["markerNumbers"])):
-                reason = None
-                if marker in self.coordinates:
-                    reason = self._connector(item, place, marker)
-                elif marker in self.rigid:
-                    reason = self._of_full()
-                elif marker in self.offset:
-                    reason = _offset("its force")
-                elif marker in self.carriers:
-                    reason = self._damping(item)
-                if reason:
-                    yield number, reason
-
-    def sensors(self) -> Iterator[tuple[str, str]]:
-        """Yield sensors of the frame's node that show less than on Exudyn's body."""
-        for number in range(self.mbs.systemData.NumberOfSensors()):
-            sensor = self.mbs.GetSensor(number)
-            if sensor["sensorType"] != "Node" or int(sensor["nodeNumber"]) != self.rotor.node:
-                continue
-            kind = sensor["outputVariableType"]
-            if kind in _WITHOUT_TILTS:
-                yield (
-                    f"sensor {sensor['name']!r}",
-                    f"{kind.name} of the frame's node is that of spin and centre of mass alone, "
-                    "without tilts; take a sensor of a MarkerNodeRigid there",
-                )
-
-    def _of_full(self) -> str:
-        """Return why a rigid or position marker at the node is lost: only full bodies have none."""
-        return f"the node of a full body does not tilt: what acts there is lost{_INSTEAD}"
-
-    def _connector(self, item: dict[str, Any], place: int, number: int) -> str | None:
-        marker, spin = self.coordinates[number], self.rotor.plan.locks.spin
+    def why_lost(self, number: int, what: str, columns: Sequence[int] = ()) -> str | None:
+        """Return why what acts at a marker is lost; of several coordinates on `columns`."""
+        if number in self.offset:
+            return _OFFSET
+        if number in self.rigid:  # mbs.Assemble() has pointed the others elsewhere
+            return f"the node of a full body does not tilt: what acts there is lost{_INSTEAD}"
+        if number not in self.coordinates:
+            return None
+        marker, frame, locks = self.coordinates[number], self.body.frame, self.body.locks
         if marker["markerType"] == "NodeCoordinate":
-            return self._coordinate(int(marker["coordinate"]), "a connector")
-        if marker["markerType"] == "NodeRotationCoordinate":
+            columns = [int(marker["coordinate"])]
+        elif marker["markerType"] == "NodeRotationCoordinate":
             axis = np.eye(3)[int(marker["rotationCoordinate"])]
-            if not self.rotor.plan.frame.has_mesh_axes:
-                return "the node's axes are those of the mesh turned by body.frame.B"
-            across = np.linalg.norm(np.cross(axis, self.n)) > _ALONG
-            return _tilts("a connector") if across else self._coordinate(spin, "a connector")
-        used = np.atleast_2d(item.get(f"scalingMarker{place}", np.zeros((0, 0))))
-        columns = np.flatnonzero(np.any(used != 0.0, axis=0)) if used.size else ()
-        reasons = (self._coordinate(int(column), "a connector") for column in columns)
+            along = abs(axis @ self.body.standing_axes[:, 2]) > 1.0 - _ALONG
+            columns = [locks.spin if along and frame.has_mesh_axes else locks.tilts[0]]
+        reasons = (self._of_coordinate(int(column), what) for column in columns)
         return next(filter(None, reasons), None)
 
-    def _coordinate(self, index: int, what: str) -> str | None:
-        if index in self.rotor.plan.locks.tilts:
-            return _tilts(f"{what} on its coordinate {index}")
-        if index in self.locked:
+    def _of_coordinate(self, index: int, what: str) -> str | None:
+        body = self.body
+        if index in body.locks.unknown or index == body.locks.spin:
+            inv = body.motion.invariants
+            apart = float(np.linalg.norm(body.selection.origin + inv.center))
+            if index >= MODES // 2 or apart < _APART * np.sqrt(np.trace(inv.J) / inv.mass):
+                return None
             return (
-                f"the frame's node does not move so: {what} on its coordinate {index} has no "
-                f"effect{_INSTEAD}"
-            )
-        if index == self.rotor.plan.locks.spin and self.rotor.frame_shares is not None:
-            return (
-                "the angle of the frame's node is the rotor's mean rotation, on Exudyn's body with "
-                f"these Craig–Bampton modes that of the first boundary: {what} on it acts there; "
-                "use a MarkerNodeRigid"
-            )
-        if index < 3 and self.apart:
-            return (
-                f"the coordinates of the frame's node move the centre of mass, {self.apart:.3g} m "
-                f"off the node's place: {what} on its coordinate {index} acts there; use a "
+                f"the coordinates of the frame's node move the centre of mass, {apart:.3g} m off "
+                f"the node's place: {what} on its coordinate {index} acts there; use a "
                 "MarkerNodeRigid or MarkerNodePosition"
             )
-        return None
-
-    def _damping(self, item: dict[str, Any]) -> str | None:
-        """Return what is wrong with a damper of tilts: Exudyn takes their rate in other axes."""
-        if item["objectType"] != "ConnectorRigidBodySpringDamper":
-            return None
-        damping = item["damping"][3:, 3:]
-        first = self._axes(int(item["markerNumbers"][0])) @ item["rotationMarker0"]
-        across = np.eye(3) - np.outer(self.n, self.n)
-        lost = np.linalg.norm(across @ first @ damping, 2)
-        if lost <= _ALONG * np.linalg.norm(damping, 2):
-            return None
         return (
-            f"its damping of tilts, {lost:.3g} N m s/rad, comes with a false cross stiffness of as "
-            "much times the spin speed, since Exudyn gives a marker's angular velocity in axes of "
-            "the frame; damp tilts by translational dampers at two places"
+            f"the frame's node does not tilt (tilts are modes), nor move where the formulation has "
+            f"no translation: {what} on its coordinate {index} has no effect{_INSTEAD}"
         )
 
-    def _axes(self, marker: int) -> np.ndarray:
-        """Return the axes of a rigid marker in space."""
-        return np.reshape(self.mbs.GetMarkerOutput(marker, _KINDS.RotationMatrix), (3, 3))
+
+def _false_damping(body: RotorItems, item: dict[str, Any]) -> str | None:
+    """Return what is wrong with a damper of tilts: Exudyn takes their rate in other axes."""
+    if item["objectType"] != "ConnectorRigidBodySpringDamper":
+        return None
+    damping, first = item["damping"][3:, 3:], int(item["markerNumbers"][0])
+    axes = np.reshape(body.mbs.GetMarkerOutput(first, _KINDS.RotationMatrix), (3, 3))
+    along = body.standing_axes[:, 2]
+    across = np.eye(3) - np.outer(along, along)
+    lost = np.linalg.norm(across @ axes @ item["rotationMarker0"] @ damping, 2)
+    if lost <= _ALONG * np.linalg.norm(damping, 2):
+        return None
+    return (
+        f"its damping of tilts, {lost:.3g} N m s/rad, comes with a false cross stiffness of as "
+        "much times the spin speed, since Exudyn gives a marker's angular velocity in axes of the "
+        "frame; damp tilts by translational dampers at two places"
+    )
 
 
-def _tilts(what: str) -> str:
-    return f"the frame's node does not tilt (tilts are modes): {what} has no effect{_INSTEAD}"
-
-
-def _offset(what: str) -> str:
-    return f"{what} at a marker's own offset has no lever for tilts, which are modes{_INSTEAD}"
+def _sensors(body: RotorItems) -> Iterator[str]:
+    """Yield sensors of the frame's node that show less than on Exudyn's body."""
+    for number in range(body.mbs.systemData.NumberOfSensors()):
+        sensor = body.mbs.GetSensor(number)
+        at_node = sensor["sensorType"] == "Node"
+        if not at_node or int(sensor["nodeNumber"]) != int(body.nodes["rigid"]):
+            continue
+        kind = sensor["outputVariableType"]
+        if kind in _WITHOUT_TILTS:
+            yield (
+                f"sensor {sensor['name']!r}: {kind.name} of the frame's node is that of spin and "
+                "centre of mass alone, without tilts; take a sensor of a MarkerNodeRigid there"
+            )

@@ -24,6 +24,7 @@ _NO_FORCES = {
     "dampingMatrix": np.zeros((0, 0)),
     "forceVector": np.zeros(0),
     "forceUserFunction": 0,
+    "jacobianUserFunction": 0,
 }
 
 StateForce = Callable[[float, list, list], np.ndarray]
@@ -46,11 +47,6 @@ class Layout:
     size: int
     unknowns: np.ndarray
     lock_mass: np.ndarray
-
-    @classmethod
-    def unlocked(cls, size: int) -> Layout:
-        """Return the layout of a node that holds the unknowns alone."""
-        return cls(size, np.arange(size), np.zeros(size))
 
     def spread(self, matrix: np.ndarray, diagonal: np.ndarray | float = 0.0) -> np.ndarray:
         """Return a (size, size) matrix with `matrix` on the unknowns and `diagonal` added."""
@@ -155,7 +151,7 @@ def _varying_mass(
     fill = matrix.SetWithSparseMatrixCSR
 
     def mass_matrix(mbs, t, item, q, q_t):
-        values = kernel.mass_entries(t, q, q_t)
+        values = kernel.mass_entries(t, q)
         one[:], mirrored[:] = values, values[skipped:]
         fill(size, size, table, False)
         return matrix

@@ -33,7 +33,6 @@ from scipy.spatial.transform import Rotation
 
 from exudyn_rotor.theory.formulation import ConstantSpeed, Formulation, PrescribedMotion
 
-CENTRE_OF_MASS, MESH_ORIGIN = FRAME_NODES = ("centre_of_mass", "mesh_origin")
 FIRST, SECOND, THIRD = 3, 4, 5  # the angles among the coordinates of the node
 _ALONG = 1e-8  # sine of the angle up to which an axis counts as a coordinate axis
 
@@ -46,8 +45,6 @@ class BodyFrame:
     ----------
     origin : ndarray, shape (3,)
         Frame origin, mesh coordinates [m].
-    node : ndarray, shape (3,)
-        Where markers and sensors of the frame's node are, mesh coordinates [m].
     B : ndarray, shape (3, 3)
         Mesh axes → axes of the marker body; the identity where the body can have the mesh axes.
     orientation : ndarray, shape (3, 3)
@@ -61,7 +58,6 @@ class BodyFrame:
     """
 
     origin: np.ndarray
-    node: np.ndarray
     B: np.ndarray
     orientation: np.ndarray
     position: np.ndarray
@@ -70,40 +66,29 @@ class BodyFrame:
 
     @classmethod
     def of(
-        cls,
-        direction: np.ndarray,
-        origin: np.ndarray,
-        mesh_position: np.ndarray,
-        orientation: np.ndarray,
-        node: str = CENTRE_OF_MASS,
+        cls, direction: np.ndarray, center: np.ndarray, position: np.ndarray, rotation: np.ndarray
     ) -> BodyFrame:
-        """Place a rotor whose mesh origin lies at `mesh_position` with `orientation`.
+        """Place a rotor whose mesh origin lies at `position` with the orientation `rotation`.
 
-        `origin` is that of the formulation. With the node at the mesh origin, it moves along the
-        spin axis next to that: a frame that does not tilt has the same motion there.
+        The origin is next to the mesh origin, where Exudyn's own body has its node. The frame does
+        not tilt, so that its motion there is that of the `center`, the formulation's origin.
         """
-        place = origin
-        if node == MESH_ORIGIN:
-            origin, place = origin - direction * (direction @ origin), np.zeros(3)
+        origin = center - direction * (direction @ center)
         B = np.eye(3)
-        orientation_of_node = _with_mesh_axes(direction, orientation)
-        if orientation_of_node is None:
+        angles_and_spin = _with_mesh_axes(direction, rotation)
+        if angles_and_spin is None:
             B = _turn_to_z(direction)
-            orientation_of_node = _tait_bryan(orientation @ B.T), THIRD
-        position = mesh_position + orientation @ origin
-        return cls(origin, place, B, orientation, position, *orientation_of_node)
+            angles_and_spin = _tait_bryan(rotation @ B.T), THIRD
+        return cls(origin, B, rotation, position + rotation @ origin, *angles_and_spin)
 
     @property
     def has_mesh_axes(self) -> bool:
         """True where the axes of the marker body are those of the mesh."""
         return np.array_equal(self.B, np.eye(3))
 
-    def axes_of_angles(self, moved: np.ndarray = (0.0, 0.0, 0.0)) -> np.ndarray:
-        """Return the inertial axes (3, 3), in rows, that the node's angles turn about.
-
-        `moved` are its coordinates: angles beyond those of the reference [rad].
-        """
-        a, b, _ = self.angles + np.asarray(moved)
+    def axes_of_angles(self) -> np.ndarray:
+        """Return the inertial axes (3, 3), in rows, that the node's angles turn about at rest."""
+        a, b, _ = self.angles
         Rx, Ry = Rotation.from_euler("x", a).as_matrix(), Rotation.from_euler("y", b).as_matrix()
         return np.array([[1.0, 0.0, 0.0], Rx[:, 1], Rx @ Ry[:, 2]])
 

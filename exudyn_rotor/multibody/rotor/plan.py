@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
 
 import exudyn
 import numpy as np
@@ -51,15 +50,6 @@ class Placement:
 
 
 @dataclass(frozen=True, eq=False)
-class MarkerRequest:
-    """A marker to be made at an interface: its kind, offset [m, mesh axes], and visibility."""
-
-    kind: str
-    offset: np.ndarray
-    show: bool
-
-
-@dataclass(frozen=True, eq=False)
 class Setup:
     """A rotor body as it was asked for; the attributes are arguments of ``add_rotor``, checked.
 
@@ -75,12 +65,8 @@ class Setup:
     gravity: np.ndarray
     mass_damping: float
     stiffness_damping: float
-    markers: Mapping[str, MarkerRequest]
-    condense_markers: bool
+    markers: Mapping[str, str]
     locking: str
-    frame_node: str
-    marker_body: bool
-    negligible: float
     color: tuple[float, ...]
 
 
@@ -140,7 +126,7 @@ def _check_direction(formulation: Formulation, velocity: np.ndarray, axis: np.nd
         )
 
 
-def modal_values(values: ArrayLike | None, name: str, labels: tuple[str, ...]) -> np.ndarray:
+def _modal_values(values: ArrayLike | None, name: str, labels: tuple[str, ...]) -> np.ndarray:
     """Return one value per mode, zeros for None."""
     if values is None:
         return np.zeros(len(labels))
@@ -156,44 +142,22 @@ def color_of(values: Sequence[float]) -> tuple[float, ...]:
     return tuple(result.tolist())
 
 
-def marker_requests(
-    reduced: ReducedRotor,
-    markers: Mapping[str, str] | str | None,
-    offsets: Mapping[str, ArrayLike] | None,
-    show: bool,
-    marker_body: bool,
-) -> dict[str, MarkerRequest]:
-    """Return the markers to make; None asks for rigid markers at all interfaces.
-
-    Without the marker body none can be made, and None asks for none.
-    """
-    checks.flag(show, "show_markers")
-    checks.flag(marker_body, "marker_body")
+def marker_kinds(
+    interfaces: Mapping[str, object], markers: Mapping[str, str] | str | None
+) -> dict[str, str]:
+    """Return the kind of the marker at every interface that gets one; None makes all rigid."""
     if markers is None:
-        markers = "rigid" if marker_body else {}
+        markers = "rigid"
     if isinstance(markers, str):
-        markers = dict.fromkeys(reduced.interfaces, checks.choice(markers, "markers", MARKER_KINDS))
-    elif not isinstance(markers, Mapping):
+        return dict.fromkeys(interfaces, checks.choice(markers, "markers", MARKER_KINDS))
+    if not isinstance(markers, Mapping):
         raise TypeError(
             "markers: needs 'rigid', 'position' or a mapping of interface to one of them, got "
             f"{checks.shown(markers)}"
         )
-    offsets = {} if offsets is None else offsets
-    checks.mapping(markers, "markers", "kind", reduced.interfaces)
-    checks.mapping(offsets, "marker_offsets", "offset", reduced.interfaces)
-    for name in offsets:
-        if name not in markers:
-            raise ValueError(
-                f"marker_offsets: interface {name!r} gets no marker; add it to markers"
-            )
-    if markers and not marker_body:
-        raise ValueError("markers need the marker body: leave marker_body=True, or ask for none")
+    checks.mapping(markers, "markers", "kind", interfaces)
     return {
-        name: MarkerRequest(
-            checks.choice(kind, f"markers: kind of {name!r}", MARKER_KINDS),
-            checks.vector(offsets.get(name, np.zeros(3)), f"marker_offsets: {name!r}", "m"),
-            show,
-        )
+        name: checks.choice(kind, f"markers: kind of {name!r}", MARKER_KINDS)
         for name, kind in markers.items()
     }
 
@@ -235,22 +199,22 @@ def check_free_names(mbs: exudyn.MainSystem, setup: Setup) -> None:
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """A new rotor body, laid out.
+    """A new rotor body, laid out: a reduced one, or a full one with nodal displacements for modes.
 
     Attributes
     ----------
     setup : Setup
         What was asked for.
-    selection : Selection
+    selection : Selection or NodalFields
     frame : BodyFrame
     locks : Locks
     layout : Layout
         Where the unknowns stand among the coordinates of the nodes.
-    motion : Motion
+    motion : Motion or FullMotion
     marker_body_gravity : ndarray, shape (3,)
         Gravity that Exudyn applies to the marker body, not the equations [m/s²].
-    modal_start, modal_start_rate : ndarray, shape (m,)
-        Initial modal coordinates [√kg m] and velocities [√kg m/s].
+    start : tuple of two ndarray, shape (m,)
+        Initial modal coordinates [√kg m] and velocities [√kg m/s], or displacements and rates.
     """
 
     setup: Setup
@@ -260,38 +224,25 @@ class Plan:
     layout: Layout
     motion: Motion
     marker_body_gravity: np.ndarray
-    modal_start: np.ndarray
-    modal_start_rate: np.ndarray
+    start: tuple[np.ndarray, np.ndarray]
 
-    @property
-    def start(self) -> tuple[np.ndarray, np.ndarray]:
-        """Modal coordinates and velocities at the start."""
-        return self.modal_start, self.modal_start_rate
-
-    def rigid_node(self) -> NodeRigidBodyRxyz:
-        """Return the node of the frame, at its place and with its velocity at the start."""
+    def add_nodes(self, mbs: exudyn.MainSystem) -> tuple[exudyn.NodeIndex, exudyn.NodeIndex]:
+        """Add the node of the frame, and that of modes or displacements, as they start."""
         values, rates = np.zeros(MODES), np.zeros(MODES)
-        start, spin = self.setup.placement, self.locks.spin
+        start, spin, name = self.setup.placement, self.locks.spin, self.setup.name
         values[:3], rates[:3] = start.translation, start.velocity
         values[spin], rates[spin] = start.angle, start.speed
-        return NodeRigidBodyRxyz(
-            name=item_name("NodeRigidBody:", self.setup.name),
+        rigid = NodeRigidBodyRxyz(
+            name=item_name("NodeRigidBody:", name),
             referenceCoordinates=[*self.frame.position, *self.frame.angles],
             initialCoordinates=values,
             initialVelocities=rates,
             visualization=VNodeRigidBodyRxyz(show=False),
         )
-
-    def bare_node(self) -> NodeGenericODE2:
-        """Return the one node of a rotor without a marker body, with all its unknowns."""
-        place, free = self.setup.placement, self.motion.free_directions.T
-        spin = int(self.setup.formulation.has_spin)
-        values = [*(free @ place.translation), *[place.angle] * spin, *self.modal_start]
-        rates = [*(free @ place.velocity), *[place.speed] * spin, *self.modal_start_rate]
-        return generic_node(values, rates, item_name("NodeGeneric:", self.setup.name))
+        modes = generic_node(*self.start, item_name("NodeGeneric:", name))
+        return mbs.AddNode(rigid), mbs.AddNode(modes)
 
 
-PlanKind = TypeVar("PlanKind", bound=Plan)
 # of a formulation, the plane of its translations, and gravity in the equations
 Motions = Callable[[Formulation, np.ndarray | None, np.ndarray | None], Motion]
 
@@ -299,7 +250,7 @@ Motions = Callable[[Formulation, np.ndarray | None, np.ndarray | None], Motion]
 def make_plan(reduced: ReducedRotor, setup: Setup) -> Plan:
     """Check what needs the modes, and lay out the equations."""
     damped = reduced.with_damping(mass=setup.mass_damping, stiffness=setup.stiffness_damping)
-    selection = select_modes(damped, setup.formulation, setup.negligible)
+    selection = select_modes(damped, setup.formulation)
     invariants = selection.invariants
     if setup.stiffening != "none":
         invariants = invariants.loaded
@@ -311,52 +262,38 @@ def make_plan(reduced: ReducedRotor, setup: Setup) -> Plan:
     ) -> Motion:
         return Motion(invariants, formulation, second, orientation, plane, gravity)
 
-    labels = selection.labels
-    return laid_out(
-        Plan,
-        setup,
-        selection,
-        motion,
-        modal_start=modal_values(setup.modal_coordinates, "modal_coordinates", labels),
-        modal_start_rate=modal_values(setup.modal_velocities, "modal_velocities", labels),
+    start = (
+        _modal_values(setup.modal_coordinates, "modal_coordinates", selection.labels),
+        _modal_values(setup.modal_velocities, "modal_velocities", selection.labels),
     )
+    return laid_out(setup, selection, motion, start)
 
 
 def laid_out(
-    kind: type[PlanKind],
     setup: Setup,
     selection: Selection,
     motions: Motions,
-    **more: Any,
-) -> PlanKind:
-    """Return a plan of the given kind, with frame, locks, layout and motion.
-
-    `more` is what else the kind holds.
-    """
-    formulation, invariants = setup.formulation, selection.invariants
-    place = setup.placement
+    start: tuple[np.ndarray, np.ndarray],
+) -> Plan:
+    """Return a plan with frame, locks, layout and motion."""
+    formulation, place = setup.formulation, setup.placement
     turned = turned_origin(selection, place.rotation, place.angle)
-    place = replace(place, translation=place.translation + turned)
-    setup = replace(setup, placement=place)
-    direction = invariants.direction
-    frame = BodyFrame.of(
-        direction, selection.origin, place.position, place.rotation, setup.frame_node
-    )
+    setup = replace(setup, placement=replace(place, translation=place.translation + turned))
+    direction = selection.invariants.direction
+    frame = BodyFrame.of(direction, selection.origin, place.position, place.rotation)
     locks = Locks.of(formulation, place.rotation @ direction, frame.spin)
-    skew = setup.marker_body and locks.normal is not None
+    skew = locks.normal is not None
     if skew and setup.locking == "mass":
         raise ValueError(
             "locking='mass' cannot hold the rotor in a plane that is skew to the inertial axes; "
-            "use locking='constraints', translation='free', or marker_body=False"
+            "use locking='constraints' or translation='free'"
         )
     # gravity on the marker body exerts no moment about e by the deflection Sζ; a free spin needs it
-    in_equations = not setup.marker_body or (
-        formulation.has_spin and formulation.translation_count == 0
-    )
+    in_equations = formulation.has_spin and formulation.translation_count == 0
     # a skew plane of rotation keeps all three translations and adds a linear constraint
     form = replace(formulation, translation="free") if skew else formulation
     motion = motions(form, locks.plane, setup.gravity if in_equations else None)
-    return kind(
+    return Plan(
         setup=setup,
         selection=selection,
         frame=frame,
@@ -364,14 +301,12 @@ def laid_out(
         layout=_layout(setup, locks, motion),
         motion=motion,
         marker_body_gravity=np.zeros(3) if in_equations else setup.gravity,
-        **more,
+        start=start,
     )
 
 
 def _layout(setup: Setup, locks: Locks, motion: Motion) -> Layout:
     """Return where the unknowns stand among the coordinates of the nodes, and what is locked."""
-    if not setup.marker_body:
-        return Layout.unlocked(motion.size)
     inv = motion.invariants
     size = MODES + inv.size
     # a rotor all on its axis has no inertia about it, and its locked spin still needs one
@@ -396,7 +331,7 @@ def turned_origin(selection: Selection, rotation: np.ndarray, angle: float) -> n
     """
     axis = selection.source.axis
     off = axis.radial(selection.origin)
-    return rotation @ ((np.cos(angle) - 1.0) * off + np.sin(angle) * axis.skew @ off)
+    return rotation @ ((np.cos(angle) - 1.0) * off + np.sin(angle) * np.cross(axis.direction, off))
 
 
 def generic_node(

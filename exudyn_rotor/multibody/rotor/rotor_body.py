@@ -1,17 +1,198 @@
-"""A reduced rotor in an Exudyn ``mbs``: what was added, and helpers around it."""
+"""Rotor bodies in an Exudyn ``mbs``: report, markers, sensors, recording and start."""
 
 from __future__ import annotations
 
+import warnings
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import exudyn
+import numpy as np
 from numpy.typing import ArrayLike
 
-from exudyn_rotor.multibody.rotor import more_markers, sensors
+from exudyn_rotor import checks
+from exudyn_rotor.multibody.rotor import sensors
+from exudyn_rotor.multibody.rotor.connections import ConnectionWarning, lost_connections
+from exudyn_rotor.multibody.rotor.markers import Carrier, interface_of_nodes
+from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS
 from exudyn_rotor.multibody.rotor.record import Record, add_recording, read_record
-from exudyn_rotor.multibody.rotor.scene_body import SceneBody
+from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.rotor.start_state import StartState, start_from
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SceneBody(RotorItems, ABC):
+    """A rotor body in a scene, reduced or full.
+
+    The attributes are those of :class:`~exudyn_rotor.multibody.rotor.rotor_items.RotorItems`.
+    """
+
+    def __repr__(self) -> str:
+        """Return one line; :meth:`report` says more."""
+        return (
+            f"{type(self).__name__}({self.name!r}, Sect. {self.formulation.section}, "
+            f"stiffening {self.stiffening!r}, {self._size_in_words}, "
+            f"markers: {', '.join(self.markers) or 'none'})"
+        )
+
+    @property
+    @abstractmethod
+    def _size_in_words(self) -> str:
+        """Number of modes or nodes."""
+
+    @abstractmethod
+    def _report_of_coordinates(self) -> list[str]:
+        """Return lines of :meth:`report` about modes or displacements."""
+
+    @abstractmethod
+    def _nodes_carrier(self, where: Sequence[int], weights: ArrayLike | None, kind: str) -> Carrier:
+        """Return what moves with the mean rigid motion of mesh nodes."""
+
+    @property
+    def uses_python(self) -> bool:
+        """True when a time step calls Python user functions, of the rotor or its supports."""
+        return not self.motion.is_constant or any(
+            each.uses_python for each in (*self.supports, *self.drives)
+        )
+
+    @property
+    def locked(self) -> tuple[str, ...]:
+        """Coordinates that exist only because the marker body's node has them."""
+        return self.locks.locked_names
+
+    def report(self) -> str:
+        """Return a short table of what was added and what it means at run time."""
+        names = {3: "x, y, z", 2: "two in the plane of rotation", 0: "none"}
+        lines = [
+            f"rotor {self.name!r}: Sect. {self.formulation.section}, "
+            f"stiffening {self.stiffening!r}",
+            f"  translations   {names[self.formulation.translation_count]}",
+            f"  spin           {'unknown' if self.formulation.has_spin else 'prescribed'}",
+            *self._report_of_coordinates(),
+            f"  locked         {', '.join(self.locked) or 'none'}",
+            f"  constraints    {len(self.constraints)}",
+            f"  supports       {'; '.join(map(str, self.supports)) or 'none added'}",
+            *([f"  drives         {'; '.join(map(str, self.drives))}"] if self.drives else []),
+            f"  per step       {'Python user functions' if self.uses_python else 'no Python call'}",
+        ]
+        return "\n".join(lines)
+
+    def check_connections(self, *, warn: bool = True) -> tuple[str, ...]:
+        """Return what the scene attaches to the rotor that it cannot carry.
+
+        Loads and connectors on coordinates of the frame's node that are locked (tilts, translations
+        that the formulation does not have) or that move the centre of mass and not the node's
+        place, dampers of tilts at the node, forces at a marker's own offset that has no lever, and
+        sensors of the node that show no tilts: one sentence for each, with what to use instead.
+        Exudyn's own body carries them.
+        ``mbs.Assemble()`` warns of each once, and :func:`exudyn_rotor.check_run` has a row of this.
+
+        Parameters
+        ----------
+        warn : bool
+            Whether there is a ConnectionWarning for each.
+
+        Raises
+        ------
+        ValueError
+            If the system is not assembled.
+        """
+        checks.flag(warn, "warn")
+        self.check_assembled()
+        lost = lost_connections(self)
+        for sentence in lost if warn else ():
+            warnings.warn(f"rotor {self.name!r}: {sentence}", ConnectionWarning, stacklevel=2)
+        return lost
+
+    def add_marker(
+        self,
+        where: str | Sequence[int],
+        offset: ArrayLike = (0.0, 0.0, 0.0),
+        *,
+        weights: ArrayLike | None = None,
+        kind: str = "rigid",
+        name: str | None = None,
+        show: bool = True,
+    ) -> exudyn.MarkerIndex:
+        """Add a marker that moves with the mean rigid motion of an interface or of mesh nodes.
+
+        Its axes are those of the mesh, for every spin axis; forces at an offset have their whole
+        lever, which they lack at the offset of a ``MarkerSuperElementRigid``; and its cost does not
+        depend on the number of nodes. On a full body, every new place has twelve unknowns of its
+        own.
+
+        Parameters
+        ----------
+        where : str or sequence of int
+            Interface, with or without a marker yet, or mesh nodes.
+        offset : array_like, shape (3,)
+            From the interface's reference point or the mean of the nodes, mesh axes [m].
+        weights : array_like, optional
+            Of the nodes, as Exudyn's `weightingFactors`; equal by default.
+        kind : {'rigid', 'position'}
+        name : str, optional
+        show : bool
+            Whether it is drawn.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For bad input, e.g. nodes on a line for a rigid marker; nothing has been added then.
+        """
+        self.check_present()
+        shift = self.frame.B @ checks.vector(offset, "offset", "m")
+        checks.choice(kind, "kind", MARKER_KINDS)
+        checks.flag(show, "show")
+        if name is not None:
+            checks.label(name, "name")
+            if int(self.mbs.GetMarkerNumber(name)) != -1:
+                raise ValueError(f"name: this system already has a marker {name!r}; choose another")
+        if not isinstance(where, str):
+            point = self._nodes_carrier(where, weights, kind)
+        elif weights is None:
+            known = tuple(self.selection.source.interfaces)
+            point = self.interface_carrier(checks.choice(where, "where: interface", known))
+        else:
+            raise ValueError("weights: are for mesh nodes; an interface has its own")
+        if np.any(shift):
+            point = point.shifted(shift)
+        return point.add_marker(self.mbs, kind, self.frame.B, name=name or "", show=show)
+
+    def add_interface_sensor(self, interface: str, output: exudyn.OutputVariableType, **options):
+        """Add a native sensor at an interface's marker; `options` go to ``SensorMarker``."""
+        return sensors.add_interface_sensor(self, interface, output, **options)
+
+    def add_spin_sensor(self, **options):
+        """Add a sensor of spin angle [rad] and spin speed [rad/s]."""
+        return sensors.add_spin_sensor(self, **options)
+
+    def add_drive_torque_sensor(self, **options):
+        """Add a sensor of the torque about e that a prescribed spin needs [N m]."""
+        return sensors.add_drive_torque_sensor(self, **options)
+
+    def add_energy_sensor(self, **options):
+        """Add a sensor of kinetic energy, elastic energy and the potential of the weight [J].
+
+        The kinetic energy is that in the inertial frame, with the spin. The weight's potential is
+        zero where the rotor stands at the start, undeformed and at θ = 0. The sum changes by the
+        work of all other loads and of a prescribed motion (``add_drive_torque_sensor`` gives its
+        torque), less what damping takes; a drift without these is the integrator's error.
+        """
+        return sensors.add_energy_sensor(self, **options)
+
+    def start_recording(self) -> None:
+        """Record all coordinates of the coming run, for :func:`exudyn_rotor.check_run`.
+
+        Adds native sensors, so call it before ``mbs.Assemble()``. They store as often as
+        ``solution.sensors.writePeriod`` says, which decides how much memory a full body takes; a
+        step calls no Python for them.
+        """
+        add_recording(self)
+
+    def recorded(self) -> Record:
+        """Return what :meth:`start_recording` recorded; without it the current state alone."""
+        return read_record(self)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -46,43 +227,20 @@ class RotorBody(SceneBody):
         labels = self.selection.labels
         return [f"  modes          {len(labels)}: {', '.join(labels)}"]
 
-    def add_marker(
-        self,
-        where: str | Sequence[int],
-        offset: ArrayLike = (0.0, 0.0, 0.0),
-        *,
-        weights: ArrayLike | None = None,
-        kind: str = "rigid",
-        name: str | None = None,
-        show: bool = True,
-    ) -> exudyn.MarkerIndex:
-        """Add a marker that moves with the mean rigid motion of an interface or of mesh nodes.
-
-        Its axes are those of the mesh, for every spin axis; forces at an offset have their whole
-        lever, which they lack at the offset of a ``MarkerSuperElementRigid``; and its cost does not
-        depend on the number of nodes.
-
-        Parameters
-        ----------
-        where : str or sequence of int
-            Interface, with or without a marker yet, or mesh nodes.
-        offset : array_like, shape (3,)
-            From the interface's reference point or the mean of the nodes, mesh axes [m].
-        weights : array_like, optional
-            Of the nodes, as Exudyn's `weightingFactors`; equal by default.
-        kind : {'rigid', 'position'}
-        name : str, optional
-        show : bool
-            Whether it is drawn.
-
-        Raises
-        ------
-        TypeError, ValueError
-            For bad input, e.g. nodes on a line for a rigid marker; nothing has been added then.
-        """
-        return more_markers.add_marker(
-            self, where, offset, weights=weights, kind=kind, name=name, show=show
-        )
+    def _nodes_carrier(self, where: Sequence[int], weights: ArrayLike | None, kind: str) -> Carrier:
+        """Return what moves with the mean rigid motion of mesh nodes."""
+        number, nodes = self.objects["marker_body"], tuple(self.nodes.values())
+        count = self.mesh_node_count
+        if not count:
+            raise ValueError(
+                f"where: rotor {self.name!r} was reduced without shapes (keep_shapes=False) and "
+                f"has no mesh nodes here; name an interface, got {checks.shown(where)}"
+            )
+        points = np.reshape(self.mbs.GetObjectParameter(number, "referencePositions"), (-1, 3))
+        interface = interface_of_nodes(points[:count], where, weights, kind)
+        columns = self.mbs.GetObjectParameter(number, "modeBasis")[: 3 * count]
+        motion = interface.mean_motion(count) @ columns
+        return Carrier(number, interface.reference, motion, interface.radius, nodes)
 
     def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``.
@@ -112,15 +270,3 @@ class RotorBody(SceneBody):
             with the rotor's prescribed spin.
         """
         start_from(self, state)
-
-    def start_recording(self) -> None:
-        """Record all coordinates of the coming run, for :func:`exudyn_rotor.check_run`.
-
-        Adds native sensors, so call it before ``mbs.Assemble()``. They store as often as
-        ``solution.sensors.writePeriod`` says, and a step calls no Python for them.
-        """
-        add_recording(self)
-
-    def recorded(self) -> Record:
-        """Return what :meth:`start_recording` recorded; without it the current state alone."""
-        return read_record(self)

@@ -1,15 +1,14 @@
 """What stands for a rotor in an ``mbs``: its plan, its items, and how it is known again.
 
-Numbers and names do not say whether an item is still the one that was added: after ``mbs.Reset()``
-another rotor may have the same. The mark by which a rotor is known is the colour of an object that
-is never drawn. What the scene itself knows of its rotors must not hold the ``mbs``, as bodies do.
+A scene knows its rotors by an entry of ``mbs.sys``, which must not hold the ``mbs`` as bodies do:
+it holds bodies without one, which share everything else with those of the script.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from copy import copy
 from dataclasses import dataclass, field
-from itertools import count
 
 import exudyn
 import numpy as np
@@ -19,18 +18,15 @@ from exudyn_rotor.multibody import ENTRY
 from exudyn_rotor.multibody.evaluation import STATES
 from exudyn_rotor.multibody.rotor.equations import Layout
 from exudyn_rotor.multibody.rotor.frame import BodyFrame, Locks
-from exudyn_rotor.multibody.rotor.plan import Plan, main_system
+from exudyn_rotor.multibody.rotor.markers import Carrier
+from exudyn_rotor.multibody.rotor.plan import Plan, marker_name
 from exudyn_rotor.reduction.selection import Selection
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.rotating_axes import axes_of
 
-_BASE = 2**23  # single precision holds whole numbers up to twice that
-_SIGN = -2.0  # no opacity of a colour
-_numbers = count(1)
-
-Mark = tuple[float, float]
+_ROTORS = "rotors"
 
 
 def entry(mbs: exudyn.MainSystem) -> dict:
@@ -38,34 +34,27 @@ def entry(mbs: exudyn.MainSystem) -> dict:
     return mbs.sys.setdefault(ENTRY, {})
 
 
-def mark_of(mbs: exudyn.MainSystem, item: exudyn.ObjectIndex) -> Mark | None:
-    """Return the mark of an object; None where it has none, or there is no such object."""
-    if int(item) >= mbs.systemData.NumberOfObjects():
-        return None
-    try:
-        color = mbs.GetObjectParameter(item, "Vcolor")
-    # an item of another kind; Exudyn's errors have no common base but this
-    except Exception:
-        return None
-    return (color[0], color[1]) if len(color) == 4 and color[3] == _SIGN else None
+@dataclass(eq=False)
+class ScriptMarkers:
+    """What ``mbs.Assemble()`` has done with a script's own markers on a rotor.
 
+    Attributes
+    ----------
+    carriers : dict
+        Markers that carry tilts, by those of a script at the node.
+    turned : set of int
+        Markers that have been given mesh axes.
+    told : set of str
+        Warnings that have been given.
+    frame_shares : ndarray, shape (r, k − r), or None
+        Motion of the frame of Exudyn's own body by the elastic columns of the reduced rotor, in
+        shares of its r rigid ones (:func:`exudyn_rotor.reduction.mean_axis.frame_shares`).
+    """
 
-def set_mark(mbs: exudyn.MainSystem, item: exudyn.ObjectIndex) -> Mark | None:
-    """Put a new mark on an object that has none, and return its mark; None if it takes none."""
-    known = mark_of(mbs, item)
-    if known is None and int(item) < mbs.systemData.NumberOfObjects():
-        high, low = divmod(next(_numbers), _BASE)
-        mbs.SetObjectParameter(item, "Vcolor", [float(high), float(low), 0.0, _SIGN])
-        known = mark_of(mbs, item)
-    return known
-
-
-_INDICES = {
-    "nodes": exudyn.NodeIndex,
-    "objects": exudyn.ObjectIndex,
-    "markers": exudyn.MarkerIndex,
-    "constraints": exudyn.ObjectIndex,
-}
+    carriers: dict[int, int] = field(default_factory=dict)
+    turned: set[int] = field(default_factory=set)
+    told: set[str] = field(default_factory=set)
+    frame_shares: np.ndarray | None = None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -78,59 +67,44 @@ class RotorItems:
     plan : Plan
         How the rotor was laid out; ``plan.setup`` is what was asked for.
     nodes : mapping of str
-        ``'rigid'`` (frame) and ``'modes'`` (modal coordinates); without the marker body only
-        ``'coordinates'``.
+        ``'rigid'`` (frame), and ``'modes'`` (modal coordinates) or ``'fields'`` (displacements).
     objects : mapping of str
         ``'physics'`` (the equations) and ``'marker_body'`` (markers, sensors, drawing).
-    markers : mapping of str
-        Marker number of every interface.
     constraints : mapping of str
         Locking constraints, where ``locking='constraints'``: ``'locks'`` holds what stands still
         or turns at a constant speed; motions that vary with time have one each.
     gravity_load : LoadIndex or None
-        None without gravity, and where it is part of the equations (``motion.gravity``): without
-        the marker body, and for a free spin without translation.
+        None without gravity, and where it is part of the equations (``motion.gravity``): for a free
+        spin without translation.
     mesh_node_count : int
         Mesh nodes that native sensors can be put at.
-    mesh_stress : bool
-        Whether these sensors know the stress.
+    markers : dict of str
+        Marker number of every interface.
     supports : list
         What :func:`exudyn_rotor.add_supports` added.
     drives : list
         What :func:`exudyn_rotor.add_drive` added.
-    node_places : dict
-        By marker number, mesh nodes and weights of markers that ``add_marker`` put there.
     """
 
     mbs: exudyn.MainSystem
     plan: Plan
     nodes: Mapping[str, exudyn.NodeIndex]
     objects: Mapping[str, exudyn.ObjectIndex]
-    markers: Mapping[str, exudyn.MarkerIndex] = field(default_factory=dict)
     constraints: Mapping[str, exudyn.ObjectIndex] = field(default_factory=dict)
     gravity_load: exudyn.LoadIndex | None = None
     mesh_node_count: int = 0
-    mesh_stress: bool = False
+    markers: dict = field(default_factory=dict, init=False)
     supports: list = field(default_factory=list, init=False)
     drives: list = field(default_factory=list, init=False)
-    node_places: dict = field(default_factory=dict, init=False)
     record_sensors: dict = field(default_factory=dict, init=False)
-    mark: Mark | None = field(default=None, init=False)
+    token: object = field(default_factory=object, init=False)  # of this rotor alone
+    script: ScriptMarkers = field(default_factory=ScriptMarkers, init=False)
 
     def __post_init__(self) -> None:
-        main_system(self.mbs)
         checks.instance(self.plan, "plan", Plan, "add_rotor makes one")
-        for name, kind in _INDICES.items():
-            numbers = checks.mapping(getattr(self, name), name, kind.__name__)
-            for item, number in numbers.items():
-                checks.instance(number, f"{name}: {item!r}", kind)
-            object.__setattr__(self, name, checks.read_only_mapping(numbers))
-        if self.gravity_load is not None:
-            checks.instance(self.gravity_load, "gravity_load", exudyn.LoadIndex)
-        checks.count(self.mesh_node_count, "mesh_node_count")
-        checks.flag(self.mesh_stress, "mesh_stress")
-        physics = self.objects["physics"]
-        object.__setattr__(self, "mark", set_mark(self.mbs, physics))
+        known = copy(self)
+        object.__setattr__(known, "mbs", None)
+        entry(self.mbs).setdefault(_ROTORS, {})[int(self.nodes["rigid"])] = known
 
     @property
     def name(self) -> str | None:
@@ -213,7 +187,7 @@ class RotorItems:
 
     def check_present(self) -> None:
         """Raise ValueError where the system no longer holds this rotor."""
-        if self.mark is None or mark_of(self.mbs, self.objects["physics"]) != self.mark:
+        if not any(rotor.nodes is self.nodes for rotor in known_rotors(self.mbs)):
             raise ValueError(
                 f"mbs: no longer holds rotor {self.name!r} under its numbers: the system was "
                 "reset, or objects were deleted; use the RotorBody that adding the rotor returned "
@@ -227,6 +201,18 @@ class RotorItems:
             raise ValueError(
                 f"mbs: the system of rotor {self.name!r} has no state; call mbs.Assemble() first"
             )
+
+    def interface_carrier(self, interface: str) -> Carrier:
+        """Return what moves with the mean motion of an interface, to which markers can be added."""
+        known = self.selection.source.interfaces
+        found = known[checks.choice(interface, "interface", tuple(known))]
+        return Carrier(
+            self.objects["marker_body"],
+            self.frame.points(found.reference),
+            self.frame.columns(found.motion @ self.selection.T),
+            found.radius,
+            tuple(self.nodes.values()),
+        )
 
     def marker(self, interface: str) -> exudyn.MarkerIndex:
         """Return the marker of an interface.
@@ -245,104 +231,40 @@ class RotorItems:
         return self.markers[interface]
 
 
-_ROTORS = "rotors"
-_KINDS = exudyn.OutputVariableType
+def add_interface_markers(body: RotorItems) -> None:
+    """Add the markers that ``add_rotor`` was asked for, with the axes of the mesh."""
+    for interface, kind in body.plan.setup.markers.items():
+        body.markers[interface] = body.interface_carrier(interface).add_marker(
+            body.mbs, kind, body.frame.B, name=marker_name(body.name, interface), show=True
+        )
 
 
-@dataclass(eq=False)
-class KnownRotor:
-    """A rotor with a marker body in a scene: an ``mbs`` must not hold a body that holds it.
-
-    Attributes
-    ----------
-    plan : Plan
-    node, marker_body, physics : int
-        Numbers of the frame's node, the flexible body and the equations.
-    own : set of int
-        Numbers of the objects that hold its coordinates.
-    drives : list
-        That of the body.
-    mark : tuple or None
-        By which the rotor is known again.
-    mesh_node_count : int
-    frame_shares : ndarray, shape (r, k − r), or None
-        Motion of the frame of Exudyn's own body by the elastic columns of the reduced rotor, in
-        shares of its r rigid ones (:func:`exudyn_rotor.reduction.mean_axis.frame_shares`).
-    carriers : dict
-        Markers that carry tilts, by those of a script at the node.
-    turned : set of int
-        A script's markers that have been given mesh axes.
-    told : set of str
-        What ``mbs.Assemble()`` has warned of.
-    """
-
-    plan: Plan
-    node: int
-    marker_body: int
-    physics: int
-    own: set[int]
-    drives: list
-    mark: Mark | None
-    mesh_node_count: int
-    frame_shares: np.ndarray | None = None
-    carriers: dict[int, int] = field(default_factory=dict)
-    turned: set[int] = field(default_factory=set)
-    told: set[str] = field(default_factory=set)
-
-    @property
-    def axis(self) -> np.ndarray:
-        """Spin axis (3,) in inertial axes."""
-        return self.plan.motion.orientation @ self.plan.motion.invariants.direction
-
-    @property
-    def is_full(self) -> bool:
-        """Whether its coordinates are the displacements of all nodes."""
-        return self.plan.motion.invariants.is_sparse
-
-    def spin(
-        self,
-        mbs: exudyn.MainSystem,
-        state: exudyn.ConfigurationType = exudyn.ConfigurationType.Current,
-    ) -> tuple[float, float]:
-        """Return spin angle [rad] and speed [rad/s]."""
-        read, place = mbs.GetNodeOutput, self.plan.locks.spin
-        angle = read(self.node, _KINDS.Coordinates, state)[place]
-        return float(angle), float(read(self.node, _KINDS.Coordinates_t, state)[place])
-
-
-def note_rotor(body: RotorItems) -> KnownRotor:
-    """Let the scene know a rotor that was added with its marker body."""
-    known = KnownRotor(
-        body.plan,
-        int(body.nodes["rigid"]),
-        int(body.objects["marker_body"]),
-        int(body.objects["physics"]),
-        set(map(int, body.constraints.values())),
-        body.drives,
-        body.mark,
-        body.mesh_node_count,
-    )
-    entry(body.mbs).setdefault(_ROTORS, {})[known.node] = known
-    return known
-
-
-def known_rotors(mbs: exudyn.MainSystem) -> Iterator[KnownRotor]:
+def known_rotors(mbs: exudyn.MainSystem) -> Iterator[RotorItems]:
     """Yield the rotors that still stand in a scene: it can be reset."""
     for rotor in entry(mbs).get(_ROTORS, {}).values():
-        if rotor.mark is not None and mark_of(mbs, exudyn.ObjectIndex(rotor.physics)) == rotor.mark:
-            yield rotor
+        if _stands(mbs, rotor):
+            body = copy(rotor)
+            object.__setattr__(body, "mbs", mbs)
+            yield body
 
 
-def known_rotor(body: RotorItems) -> KnownRotor:
-    """Return what the scene knows of a body."""
-    return entry(body.mbs)[_ROTORS][int(body.nodes["rigid"])]
+def _stands(mbs: exudyn.MainSystem, rotor: RotorItems) -> bool:
+    """Return whether the object with the rotor's equations is still on the rotor's nodes."""
+    physics = rotor.objects["physics"]
+    if int(physics) >= mbs.systemData.NumberOfObjects():
+        return False
+    try:
+        found = mbs.GetObjectParameter(physics, "nodeNumbers")
+    except Exception:  # an object of another kind; Exudyn's errors have no common base but this
+        return False
+    return list(map(int, found)) == list(map(int, rotor.nodes.values()))
 
 
-def carrying_rotor(mbs: exudyn.MainSystem, base: object) -> KnownRotor | None:
+def carrying_rotor(mbs: exudyn.MainSystem, base: object) -> RotorItems | None:
     """Return the rotor to which a marker belongs; None for the ground, bodies and foundations."""
     if not isinstance(base, exudyn.MarkerIndex):
         return None
     body = mbs.GetMarker(base).get("bodyNumber")
     nodes = [] if body is None else mbs.GetObject(body).get("nodeNumbers", [])
     first = int(nodes[0]) if len(nodes) else None
-    return next((rotor for rotor in known_rotors(mbs) if rotor.node == first), None)
+    return next((rotor for rotor in known_rotors(mbs) if int(rotor.nodes["rigid"]) == first), None)

@@ -15,7 +15,6 @@ from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor.frame import LOCKS, driving_force
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.energy import energy_of
 from exudyn_rotor.theory.formulation import ConstantSpeed
 
 _KINDS = exudyn.OutputVariableType
@@ -56,14 +55,14 @@ def add_node_sensor(
     UserWarning
         For stress of a rotor that was reduced with a prestress and spins.
     """
-    marker_body = _marker_body(body)
-    count = body.mesh_node_count
+    marker_body, count = body.objects["marker_body"], body.mesh_node_count
     if checks.count(node, "node", least=-1) not in range(count):
         raise ValueError(
             f"node: rotor {body.name!r} has mesh nodes 0 … {count - 1}, not {node}"
             + ("" if count else "; it was reduced without shapes (keep_shapes=False)")
         )
-    with_stress = body.mesh_stress
+    stress = body.mbs.GetObjectParameter(marker_body, "outputVariableModeBasis")
+    with_stress = np.size(stress) > 0
     _check_output(
         output,
         (*_AT_MESH_NODE, _KINDS.StressLocal) if with_stress else _AT_MESH_NODE,
@@ -73,7 +72,10 @@ def add_node_sensor(
     _warn_of_static_stress(body, output)
     return body.mbs.AddSensor(
         SensorSuperElement(
-            bodyNumber=marker_body, meshNodeNumber=int(node), outputVariableType=output, **settings
+            bodyNumber=marker_body,
+            meshNodeNumber=int(node),
+            outputVariableType=output,
+            **settings,
         )
     )
 
@@ -107,7 +109,7 @@ def add_interface_sensor(
 ) -> exudyn.SensorIndex:
     """Add a ``SensorMarker`` at an interface, stored internally by default."""
     marker = body.marker(interface)
-    kind = body.plan.setup.markers[interface].kind
+    kind = body.plan.setup.markers[interface]
     _check_output(output, _AT_MARKER[kind], f"at a {kind} marker")
     settings = _settings(body, options)
     return body.mbs.AddSensor(
@@ -117,14 +119,7 @@ def add_interface_sensor(
 
 def add_spin_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
     """Add a sensor of θ [rad] and ω [rad/s]."""
-    if "rigid" in body.nodes:
-        node, index = body.nodes["rigid"], body.locks.spin
-    elif body.formulation.has_spin:
-        node, index = body.nodes["coordinates"], body.formulation.translation_count
-    else:
-        raise ValueError(
-            f"rotor {body.name!r}: without the marker body a prescribed spin has no node"
-        )
+    node, index = body.nodes["rigid"], body.locks.spin
 
     def spin(mbs, t, sensors, factors, configuration):
         angle = mbs.GetNodeOutput(node, _KINDS.Coordinates, configuration)[index]
@@ -143,7 +138,6 @@ def add_drive_torque_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIn
     solutions: Exudyn's static solver returns multipliers with the opposite sign. Explicit solvers
     have no accelerations at the first instant, so the first value is wrong with them.
     """
-    _marker_body(body)
     if body.formulation.has_spin:
         raise ValueError(
             f"rotor {body.name!r} spins freely and has no drive; a prescribed spin has one"
@@ -212,24 +206,17 @@ def add_energy_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
         gravity = body.plan.setup.gravity
         if body.gravity_load is not None:  # a script may change it
             gravity = mbs.GetLoadParameter(body.gravity_load, "loadVector")
-        energy = energy_of(body.motion, t, q, q_t, gravity)
-        return [energy.kinetic, energy.elastic, energy.weight]
+        energy = body.motion.energy(t, q, q_t, gravity)
+        return list(energy)
 
     return add_function_sensor(body, energy, options)
-
-
-def _marker_body(body: RotorItems) -> exudyn.ObjectIndex:
-    if "marker_body" not in body.objects:
-        raise ValueError(
-            f"rotor {body.name!r} was added with marker_body=False; this sensor needs one"
-        )
-    return body.objects["marker_body"]
 
 
 def add_function_sensor(
     body: RotorItems, function: Callable, options: Mapping[str, Any]
 ) -> exudyn.SensorIndex:
-    settings = _settings(body, options, shown=False)
+    """Add a sensor of what a user function returns."""
+    settings = _settings(body, options)
     return body.mbs.AddSensor(SensorUserFunction(sensorUserFunction=function, **settings))
 
 
@@ -245,12 +232,10 @@ def _check_output(
         raise ValueError(f"output: {output.name} is not available {where}; there are: {names}")
 
 
-def _settings(
-    body: RotorItems, options: Mapping[str, Any], *, shown: bool = True
-) -> dict[str, Any]:
-    """Return the settings of a sensor, stored internally by default; those `shown` are drawn."""
+def _settings(body: RotorItems, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the settings of a sensor, stored internally by default."""
     body.check_present()
-    known = ("name", "storeInternal", "writeToFile", "fileName", *(["visualization"] * shown))
+    known = ("name", "storeInternal", "writeToFile", "fileName")
     for option in options:
         if option not in known:
             raise TypeError(f"{option}: is no option of this sensor; it takes {', '.join(known)}")
@@ -263,19 +248,4 @@ def _settings(
         name = checks.label(settings["name"], "name")
         if int(body.mbs.GetSensorNumber(name)) != -1:
             raise ValueError(f"name: this system already has a sensor {name!r}; choose another")
-    if "visualization" in settings:
-        settings["visualization"] = _visualization(settings["visualization"])
     return settings
-
-
-def _visualization(value: Any) -> dict[str, bool]:
-    """Return Exudyn's visualization of a sensor: whether it is drawn, as dictionary or V object."""
-    needed = "visualization: needs {'show': True} or {'show': False}, got " + checks.shown(value)
-    try:
-        entries = dict(value)
-    # foreign objects
-    except Exception as error:
-        raise TypeError(needed) from error
-    if set(entries) - {"show"}:
-        raise ValueError(needed)
-    return {name: checks.flag(shown, f"visualization: {name}") for name, shown in entries.items()}

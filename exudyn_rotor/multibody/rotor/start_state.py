@@ -19,9 +19,6 @@ _SAME = 1e-9  # share of the speed, and rad, by which start and prescribed spin 
 class StartState:
     """Coordinates and velocities of a scene at one angle of a rotor.
 
-    Not what films that conserve mass remember: a run begins with the voids of a journal that rests
-    where it is, so that one which goes on from a moving journal departs from the run before.
-
     Attributes
     ----------
     q, q_t : ndarray, shape (n,)

@@ -8,13 +8,11 @@ The spring is relaxed where the interface stands at rest with its centre on the 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
 
 import exudyn
 import numpy as np
 
-from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing, bearing_of
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
 from exudyn_rotor.bearings.magnetic import MagneticBearing
@@ -22,50 +20,43 @@ from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.series import FloatingRingBearing, SeriesSupport
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
-from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.plan import generic_node
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.rotor_items import carrying_rotor
-from exudyn_rotor.multibody.rotor.sensors import add_function_sensor
 from exudyn_rotor.multibody.supports.connector import (
     CURRENT,
+    PYTHON,
     BearingConnector,
-    Connector,
+    Body,
     MagneticConnector,
+    SceneLaw,
     SupportConnector,
+    check_body,
     has_torque,
     watch_clearance,
 )
 from exudyn_rotor.multibody.supports.ends import Base, FoundationEnd, RotorEnd, Seat
-from exudyn_rotor.multibody.supports.native import PYTHON, native_parts
+from exudyn_rotor.multibody.supports.native import native_parts
 
 _PARALLEL = 1e-9  # of the cosine between axes of two rotors
 
 
 @dataclass(frozen=True, eq=False)
-class SceneSupport:
+class SceneSupport(SceneLaw):
     """A support in a scene.
+
+    Of a linear support its `objects` are those that Exudyn evaluates, for displacements and for
+    tilts, and one for the rest; of a bearing the one with its law.
 
     Attributes
     ----------
-    body : RotorBody or FullRotorBody
+    body, objects, evaluation, connector
+        See :class:`SceneLaw`.
     support : Support or bearing
-    objects : tuple of ObjectIndex
-        Its connectors: of a linear support those that Exudyn evaluates, for displacements and for
-        tilts, and one for the rest; of a bearing the one with its law.
-    evaluation : tuple of str
-        Who evaluates each of them in a time step.
-    connector : Connector
-        Its law by the coordinates of the rotor, of the base, and of its own.
     base : SceneFoundation, MarkerIndex, ObjectIndex or None
         What carries it; None for the ground.
     """
 
-    body: RotorBody | FullRotorBody
     support: Given
-    objects: tuple[exudyn.ObjectIndex, ...]
-    evaluation: tuple[str, ...]
-    connector: Connector
     base: Base | None = None
 
     def own_coordinates(self, mbs: exudyn.MainSystem) -> np.ndarray:
@@ -91,37 +82,13 @@ class SceneSupport:
         fx, fy, *rest = made.wrench(mbs.systemData.GetTime(configuration))
         return place, rate, np.array([fx, fy, rest[0] if rest else 0.0])
 
-    def add_sensor(self, **options: Any) -> exudyn.SensorIndex:
-        """Add a sensor of displacement [m], velocity [m/s] and force [N], as :meth:`values`.
-
-        Parameters
-        ----------
-        **options
-            Of ``SensorUserFunction``: name, storeInternal, writeToFile, fileName.
-
-        Raises
-        ------
-        TypeError, ValueError
-            For other options.
-        """
-
-        def output(mbs, t, sensors, factors, configuration):
-            return np.concatenate(self.values(configuration)).tolist()
-
-        return add_function_sensor(self.body, output, options)
-
-    @property
-    def uses_python(self) -> bool:
-        """True when a time step calls Python for it."""
-        return PYTHON in self.evaluation
-
     def __str__(self) -> str:
         """Return interface and who evaluates it."""
         return f"{self.support.interface} by {', '.join(self.evaluation) or 'nothing'}"
 
 
 def add_supports(
-    body: RotorBody | FullRotorBody,
+    body: Body,
     supports: Sequence[Given] | Given,
     base: Base | Mapping[str, Base] | None = None,
 ) -> tuple[SceneSupport, ...]:
@@ -189,14 +156,8 @@ def add_supports(
     >>> print(*add_supports(body, springs), sep=" and ")
     left by Exudyn and right by symbolic function
     """
-    checks.instance(body, "body", (RotorBody, FullRotorBody), "add_rotor returns one")
-    body.check_present()
+    check_body(body, "body")
     supports = given_supports(supports)
-    if "marker_body" not in body.objects:
-        raise ValueError(
-            f"body: rotor {body.name!r} was added with marker_body=False; supports need the marker "
-            "body"
-        )
     check_interfaces(supports, body.selection.source.interfaces)
     for support in supports:
         if isinstance(support, SeriesSupport | FloatingRingBearing):
@@ -210,7 +171,6 @@ def add_supports(
         elif isinstance(support, Support):
             _check_support(support)
             _check_about_the_axis(body, support)
-    _check_base(body, base)
     seats = [Seat.of(body, support.interface, base) for support in supports]
     for support, seat in zip(supports, seats, strict=True):
         _check_on_rotor(body, support, seat)
@@ -223,56 +183,10 @@ def add_supports(
     return added
 
 
-def add_to(
-    self: Given,
-    body: RotorBody | FullRotorBody,
-    interface: str | None = None,
-    base: Base | Mapping[str, Base] | None = None,
-) -> SceneSupport:
-    """Put this support or bearing into a scene, as :func:`exudyn_rotor.add_supports` does.
-
-    Parameters
-    ----------
-    body : RotorBody or FullRotorBody
-        From :func:`exudyn_rotor.add_rotor`, with its marker body.
-    interface : str, optional
-        Where it acts on the rotor; its own `interface` by default.
-    base : SceneFoundation, MarkerIndex, ObjectIndex, or mapping of interface to these, optional
-        What carries it; the ground by default.
-
-    Returns
-    -------
-    SceneSupport
-        With the numbers of its connectors.
-
-    Raises
-    ------
-    TypeError, ValueError
-        As :func:`exudyn_rotor.add_supports`; nothing has been added then.
-    """
-    one = self if interface is None else replace(self, interface=interface)
-    return add_supports(body, one, base)[0]
-
-
-# here, since the laws of supports know no scenes
-Support.add_to = Bearing.add_to = MagneticBearing.add_to = add_to
-
-
-def _check_base(body: RotorBody | FullRotorBody, base: Base | Mapping[str, Base] | None) -> None:
-    """Refuse a mapping with names that the rotor does not have."""
-    names = body.selection.source.interfaces
-    unknown = [name for name in base if name not in names] if isinstance(base, Mapping) else []
-    if unknown:
-        raise ValueError(
-            f"base: {', '.join(map(repr, unknown))} is no interface of rotor {body.name!r}; it has "
-            f"{', '.join(map(repr, names))}"
-        )
-
-
-def _check_law(body: RotorBody | FullRotorBody, bearing: Bearing) -> None:
+def _check_law(body: Body, bearing: Bearing) -> None:
     """Refuse a bearing without a law for scenes, and one that could not brake a free spin."""
-    if isinstance(bearing, TiltingPadBearing):
-        bearing.check_coordinates()
+    if isinstance(bearing, TiltingPadBearing) and bearing.pad_inertia is None:
+        bearing.law(*6 * (0.0,))  # which says what there is instead
     interface = body.selection.source.interfaces[bearing.interface]
     if has_torque(bearing) and body.formulation.has_spin and interface.radius == 0.0:
         raise ValueError(
@@ -298,7 +212,7 @@ def _check_support(support: Support) -> None:
         )
 
 
-def _check_about_the_axis(body: RotorBody | FullRotorBody, support: Support) -> None:
+def _check_about_the_axis(body: Body, support: Support) -> None:
     """Refuse what acts against the rotation of a frame whose spin is free."""
     if not body.formulation.has_spin:
         return
@@ -315,7 +229,7 @@ def _check_about_the_axis(body: RotorBody | FullRotorBody, support: Support) -> 
             )
 
 
-def _check_on_rotor(body: RotorBody | FullRotorBody, support: Given, seat: Seat) -> None:
+def _check_on_rotor(body: Body, support: Given, seat: Seat) -> None:
     """Refuse what another rotor cannot carry."""
     rotor = carrying_rotor(body.mbs, seat.base)
     if rotor is None:
@@ -323,7 +237,7 @@ def _check_on_rotor(body: RotorBody | FullRotorBody, support: Given, seat: Seat)
     where = f"base: the support at {support.interface!r} stands on another rotor"
     tilts = isinstance(support, Support) and support.tilts
     across = isinstance(support, Support) and not tilts
-    if not across and abs(rotor.axis @ seat.axes[:, 2]) < 1.0 - _PARALLEL:
+    if not across and abs(rotor.standing_axes[:, 2] @ seat.axes[:, 2]) < 1.0 - _PARALLEL:
         raise ValueError(
             f"{where}, whose axis is not parallel to that of rotor {body.name!r}; mount both on "
             "parallel axes"
@@ -346,73 +260,44 @@ def _check_on_rotor(body: RotorBody | FullRotorBody, support: Given, seat: Seat)
 
 
 def _seat_of_sensor(
-    body: RotorBody | FullRotorBody, support: Given, base: Base | Mapping[str, Base] | None
+    body: Body, support: Given, base: Base | Mapping[str, Base] | None
 ) -> Seat | None:
     """Return where the sensors of a magnetic bearing are; the bearing's base carries them."""
     if not isinstance(support, MagneticBearing):
         return None
     given = base.get(support.interface) if isinstance(base, Mapping) else base
-    apart = support.sensor_interface != support.interface
-    if apart and isinstance(given, exudyn.MarkerIndex):
-        raise ValueError(
-            f"base: the magnetic bearing at {support.interface!r} has its sensors at "
-            f"{support.sensor!r}, where a marker has no place; give the rigid body itself"
-        )
     return Seat.of(body, support.sensor_interface, given)
 
 
-def _added(
-    body: RotorBody | FullRotorBody, support: Given, seat: Seat, sensed: Seat | None
-) -> SceneSupport:
-    mbs, parts = body.mbs, []
+def _added(body: Body, support: Given, seat: Seat, sensed: Seat | None) -> SceneSupport:
+    mbs = body.mbs
     end, base = RotorEnd(body, support.interface), seat.end(mbs)
+    if isinstance(support, Support):
+        parts, left = native_parts(body, support, seat, base is None)
+        rotor = carrying_rotor(mbs, seat.base) is not None
+        made = SupportConnector(support, end, base, rotor)
+        if left is not None:
+            rest = made if left is support else SupportConnector(left, end, base, rotor)
+            parts.append((mbs.AddObject(rest.item(made)), PYTHON))
+        objects, evaluation = zip(*parts, strict=True) if parts else ((), ())
+        return SceneSupport(body, objects, evaluation, made, support, seat.base)
     if isinstance(support, MagneticBearing):
-        return _magnetic(body, support, (end, base), seat, sensed)
-    if isinstance(support, Bearing):
-        count, own = 0, None
-        if isinstance(support, TiltingPadBearing):
-            count = len(support.tangents)
-            own = mbs.AddNode(generic_node(*np.zeros((2, count))))
+        sensors = end, base
+        if support.sensor_interface != support.interface:
+            sensors = RotorEnd(body, support.sensor_interface), sensed.end(mbs)
+        own = _own_node(mbs, 2 * len(support.controller.realisation().inertia))
+        made = MagneticConnector(support, (end, base), sensors, own)
+    else:
+        pads = isinstance(support, TiltingPadBearing)
+        own = _own_node(mbs, len(support.tangents)) if pads else None
         spins = body.formulation.has_spin
         # a foundation hardly turns, which a prescribed spin leaves out as linear analyses do
         feels = base is not None and (spins or not isinstance(base, FoundationEnd))
         made = BearingConnector(support, end, base, spins, feels, own)
-        mass = np.zeros((made.size, made.size))
-        if own is not None:
-            mass[-count:, -count:] = support.pad_inertia * np.eye(count)
-        number = mbs.AddObject(made.item(massMatrix=mass))
-        watch_clearance(body, made)
-        return SceneSupport(body, support, (number,), (PYTHON,), made, seat.base)
-    parts, left = native_parts(body, support, seat, base is None)
-    rotor = carrying_rotor(mbs, seat.base) is not None
-    made = SupportConnector(support, end, base, rotor)
-    if left is not None:
-        rest = made if left is support else SupportConnector(left, end, base, rotor)
-        parts.append((mbs.AddObject(rest.item(made)), PYTHON))
-    objects, evaluation = zip(*parts, strict=True) if parts else ((), ())
-    return SceneSupport(body, support, objects, evaluation, made, seat.base)
-
-
-def _magnetic(
-    body: RotorBody | FullRotorBody,
-    support: MagneticBearing,
-    ends: tuple,
-    seat: Seat,
-    sensed: Seat,
-) -> SceneSupport:
-    mbs, own, both = body.mbs, support.controller.realisation(), np.eye(2)
-    apart = support.sensor_interface != support.interface
-    sensors = ends
-    if apart:
-        sensors = RotorEnd(body, support.sensor_interface), sensed.end(mbs)
-    count = 2 * len(own.inertia)
-    node = mbs.AddNode(generic_node(*np.zeros((2, count))))
-    made = MagneticConnector(support, ends, sensors, node)
-    matrices = np.zeros((3, made.size, made.size))
-    matrices[:, -count:, -count:] = support.scale * np.array(
-        [np.kron(X, both) for X in (np.diag(own.inertia), own.damping, own.stiffness)]
-    )
-    names = "massMatrix", "dampingMatrix", "stiffnessMatrix"
-    number = mbs.AddObject(made.item(**dict(zip(names, matrices, strict=True))))
     watch_clearance(body, made)
-    return SceneSupport(body, support, (number,), (PYTHON,), made, seat.base)
+    number = mbs.AddObject(made.item())
+    return SceneSupport(body, (number,), (PYTHON,), made, support, seat.base)
+
+
+def _own_node(mbs: exudyn.MainSystem, count: int) -> exudyn.NodeIndex:
+    return mbs.AddNode(generic_node(*np.zeros((2, count))))

@@ -119,8 +119,7 @@ def _has_own_weight(body: Moved) -> bool:
         return False
     form = body.formulation
     free_about_a_point = form.has_spin and form.translation_count == 0
-    bare = "marker_body" not in body.objects
-    return isinstance(body, FullRotorBody) or bare or free_about_a_point
+    return isinstance(body, FullRotorBody) or free_about_a_point
 
 
 def _add_load(
@@ -134,7 +133,7 @@ def _add_forces(body: RotorItems, load: Callable) -> exudyn.ObjectIndex:
     """Add an object of forces, without inertia or stiffness, on the nodes of a rotor."""
     motion, layout = body.plan.motion, body.plan.layout
     empty = container(sp.csr_array((layout.size, layout.size)))
-    held = [place for place in body.locks.fixed if place < 3 and "marker_body" in body.objects]
+    held = [place for place in body.locks.fixed if place < 3]
 
     def forces(mbs, t, item, q, q_t):
         total, acceleration = np.zeros(layout.size), load(mbs, t, None)

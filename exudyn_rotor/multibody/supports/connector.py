@@ -13,27 +13,33 @@ was outside, too. Where a :class:`ClearanceStop` acts at the same interface, con
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from math import cos, hypot, inf, sin
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import exudyn
 import numpy as np
 from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 
+from exudyn_rotor import checks
 from exudyn_rotor.bearings.annular_seal import AnnularSeal
-from exudyn_rotor.bearings.bearing import Bearing, Law, LawWithTorque
+from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.clearance_stop import ClearanceStop
-from exudyn_rotor.bearings.journal_bearing import FilmLaw, JournalBearing, RememberingLaw
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support, acts
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
+from exudyn_rotor.multibody.full.full_body import FullRotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, entry
+from exudyn_rotor.multibody.rotor.sensors import add_function_sensor
 from exudyn_rotor.multibody.supports.ends import BaseEnd, RotorEnd
 from exudyn_rotor.theory.rotating_axes import axial_rotation, axial_skew
 
 _KINDS = exudyn.OutputVariableType
 CURRENT, START = exudyn.ConfigurationType.Current, exudyn.ConfigurationType.StartOfStep
+NATIVE, SYMBOLIC, PYTHON = "Exudyn", "symbolic function", "Python function"
+Body = RotorBody | FullRotorBody
 
 
 class Force(NamedTuple):
@@ -68,11 +74,9 @@ class Connector(ABC):
         Number of these.
     muted : bool
         Whether its object has no force, as where linear equations take the law itself.
-    native : tuple of ndarray or None
-        Constant stiffness and damping (size, size) that Exudyn evaluates itself.
     """
 
-    whole = False  # whether it needs rotations
+    has_mass = False  # whether a mass goes with the rotor across the axis
     outside = False  # whether it was evaluated beyond a clearance
     guard: Callable[[exudyn.MainSystem], None] | None = None  # looks at the accepted state then
 
@@ -89,17 +93,17 @@ class Connector(ABC):
         self._first = end.size
         self._second = end.size + (0 if base is None else base.size)
         self.size = self._second + count
-        self.muted, self.native = False, (None, None)
+        self.muted = False
 
     # ------------------------------------------------------------------ motion
 
     def read(self, q: list[float], q_t: list[float]) -> None:
         """Take the motion of the ends from coordinates and their rates."""
         if self.size == self._first:
-            self.end.read(q, q_t, self.whole)
+            self.end.read(q, q_t)
             return
         first, second = self._first, self._second
-        self.end.read(q[:first], q_t[:first], self.whole)
+        self.end.read(q[:first], q_t[:first])
         if self.base is not None:
             self.base.read(q[first:second], q_t[first:second])
 
@@ -132,13 +136,13 @@ class Connector(ABC):
         fx: float,
         fy: float,
         fz: float = 0.0,
-        moment: tuple[float, float, float] | None = None,
+        moment: Sequence[float] = (0.0, 0.0, 0.0),
         own: np.ndarray | None = None,
     ) -> list[float]:
         """Return the forces on all coordinates by a force and a moment on the rotor."""
         found = self.end.pull(fx, fy, fz, moment).tolist()
         if self.base is not None:
-            load = [-fx, -fy, -fz, *(-m for m in moment or (0.0, 0.0, 0.0))]
+            load = [-fx, -fy, -fz, *(-m for m in moment)]
             found += (load @ self.base.rows()).tolist()
         return found if own is None else found + own.tolist()
 
@@ -155,10 +159,6 @@ class Connector(ABC):
 
     # ------------------------------------------------------------------ law
 
-    def begin(self, mbs: exudyn.MainSystem, t: float) -> None:
-        """Take the state at the beginning of a step; only laws with a memory need it."""
-        return
-
     @abstractmethod
     def wrench(self, t: float) -> tuple:
         """Return force and moment on the rotor, and forces on own coordinates, as :meth:`pull`."""
@@ -166,11 +166,6 @@ class Connector(ABC):
     @abstractmethod
     def tangent(self, t: float) -> Force:
         """Return the law's forces on its ports where the ends have been read, and its tangent."""
-
-    @property
-    def has_mass(self) -> bool:
-        """Whether a mass goes with the rotor across the axis."""
-        return False
 
     def added_mass(self) -> float:
         """Return the mass that goes with the rotor at its speed [kg]."""
@@ -191,18 +186,21 @@ class Connector(ABC):
         """Return the torque on the rotor that a prescribed spin does not feel [N m]."""
         return 0.0
 
+    def matrices(self) -> dict[str, np.ndarray]:
+        """Return the constant matrices of own coordinates, by the names of Exudyn."""
+        return {}
+
     # ------------------------------------------------------------------ object
 
-    def item(self, whole: Connector | None = None, **matrices: np.ndarray) -> ObjectGenericODE2:
-        """Return the object, with constant matrices of the law's own; mute where `whole` is."""
-        whole = whole or self
-
+    def item(self, whole: Connector | None = None) -> ObjectGenericODE2:
+        """Return the object; mute where `whole` is."""
+        whole, matrices = whole or self, self.matrices()
         none, massive = [0.0] * self.size, self.has_mass
+        resists_nothing = np.zeros((self.size, self.size))
 
         def force(mbs, t, item, q, q_t):
             if whole.muted:
                 return none
-            self.begin(mbs, t)
             self.read(q, q_t)
             found = self.pull(*self.wrench(t))
             found = (found + self.inertia()[1]).tolist() if massive else found
@@ -213,7 +211,8 @@ class Connector(ABC):
             return found
 
         def jacobian(mbs, t, item, q, q_t, factor_q, factor_v):
-            self.begin(mbs, t)
+            if whole.muted:
+                return resists_nothing
             self.read(q, q_t)
             found = self.tangent(t)
             K, D = found.slopes()
@@ -228,7 +227,6 @@ class Connector(ABC):
         if massive:
             matrices["massMatrixUserFunction"] = mass
         given = {"massMatrix": np.zeros((self.size, self.size))} | matrices
-        self.native = tuple(given.get(name) for name in ("stiffnessMatrix", "dampingMatrix"))
         return ObjectGenericODE2(
             nodeNumbers=list(self.nodes),
             forceUserFunction=force,
@@ -250,16 +248,14 @@ class SupportConnector(Connector):
     ) -> None:
         super().__init__(end, base)
         self.support, self._turns = support, support.frame == "rotor"
-        self.whole = support.tilts
+        self.has_mass = acts(support.mass)
         self._between = on_rotor  # tables are over the difference of both speeds
 
     @property
     def _motion(self) -> tuple[np.ndarray, np.ndarray]:
         """Motion (6,) and rate (6,) against the base, the spin in the last rate alone."""
         end, base = self.end, self.base
-        none = (0.0, 0.0, 0.0)
-        x = np.array([*end.place, *(end.tilt or none)])
-        x_t = np.array([*end.rate, *(end.tilt_rate or none)])
+        x, x_t = np.array([*end.place, *end.tilt]), np.array([*end.rate, *end.tilt_rate])
         if base is not None:
             x -= [*base.place, *base.tilt]
             x_t -= [*base.rate, *base.tilt_rate]
@@ -276,11 +272,6 @@ class SupportConnector(Connector):
             K, D = R @ K @ R.T, R @ D @ R.T
         return K, D
 
-    @property
-    def has_mass(self) -> bool:
-        """Whether a mass goes with the rotor."""
-        return acts(self.support.mass)
-
     def added_mass(self) -> float:
         """Return the mass that goes with the rotor at its speed [kg]."""
         between = self.base.speed if self._between else 0.0
@@ -293,9 +284,7 @@ class SupportConnector(Connector):
             x_t = x_t - speed * (axial_skew(6) @ x)
             x_t[5] -= speed
         fx, fy, fz, *moment = (-K @ x - D @ x_t).tolist()
-        if not self.whole:
-            return fx, fy, fz
-        if self._turns and self.end.tilt:
+        if self._turns:
             a, b, _ = self.end.tilt
             moment[2] += b * moment[0] - a * moment[1]
         return fx, fy, fz, moment
@@ -305,25 +294,15 @@ class SupportConnector(Connector):
         K, D = self._matrices()
         if self._turns:
             K = K - self.end.speed * D @ axial_skew(6)
-        force = np.zeros(6)
-        fx, fy, fz, *moment = self.wrench(t)
-        force[:3] = fx, fy, fz
-        force[3:] = moment[0] if moment else 0.0
-        return Force(force, self.rows(), self.rate_rows(), K, D)
+        *force, moment = self.wrench(t)
+        return Force(np.array([*force, *moment]), self.rows(), self.rate_rows(), K, D)
 
 
 class MagneticConnector(Connector):
     """Magnets that pull by the controller's coordinates, which follow what the sensors show.
 
     The coordinates are pairs along (n1, n2), with the equations of
-    :mod:`exudyn_rotor.bearings.pid_controller` times a stiffness, so that they are those of linear
-    analyses.
-
-    Attributes
-    ----------
-    bearing : MagneticBearing
-    outside : bool
-        Whether it was evaluated beyond the air gap.
+    :mod:`exudyn_rotor.bearings.pid_controller` times a stiffness, as in linear analyses.
     """
 
     def __init__(
@@ -333,15 +312,24 @@ class MagneticConnector(Connector):
         sensors: tuple[RotorEnd, BaseEnd | None],
         own: exudyn.NodeIndex,
     ) -> None:
-        realised = bearing.controller.realisation()
+        self._realised = realised = bearing.controller.realisation()
         super().__init__(*ends, own, 2 * len(realised.inertia))
-        self.bearing, self.parts, self.outside = bearing, [bearing], False
+        self.bearing, self.parts = bearing, [bearing]
         self._sensor, self.sensor_base = sensors
         self._turn, self._offset = bearing.control_axes, bearing.sensor_offset
         parts = realised.by_place, realised.by_rate
         self._by_place, self._by_rate = (np.kron(part, self._turn) for part in parts)
         self._shares = bearing.scale * realised.place
         self._least = bearing.clearance_along() ** 2
+
+    def matrices(self) -> dict[str, np.ndarray]:
+        """Return the controller's equations."""
+        one, found = self._realised, {}
+        parts = {"mass": np.diag(one.inertia), "damping": one.damping, "stiffness": one.stiffness}
+        for name, part in parts.items():
+            found[f"{name}Matrix"] = whole = np.zeros((self.size, self.size))
+            whole[self._second :, self._second :] = self.bearing.scale * np.kron(part, np.eye(2))
+        return found
 
     def read(self, q: list[float], q_t: list[float]) -> None:
         """Take the motion of magnets, sensors and controller."""
@@ -373,17 +361,13 @@ class MagneticConnector(Connector):
         if self.sensor_base is not None:
             seen = seen - self.sensor_base.place[:2]
         own = np.outer(self._shares, seen + self._offset).ravel()
-        return float(force[0]), float(force[1]), 0.0, None, own
+        return float(force[0]), float(force[1]), 0.0, (0.0, 0.0, 0.0), own
 
     def tangent(self, t: float) -> Force:
         """Return the force, its tangent, and rows: of magnets, sensors and own coordinates."""
         slopes = [self.bearing.actuator.slopes(*state) for state in self.axes_states]
-        return self.assembled(slopes)
-
-    def assembled(self, slopes: list[tuple[float, float]]) -> Force:
-        """Return force and tangent on the ports, from the slopes of the actuators."""
         D, K = self.bearing.coupling(np.array(slopes))
-        fx, fy, _, _, own = self.wrench(0.0)
+        fx, fy, _, _, own = self.wrench(t)
         J = np.zeros((4 + self.own, self.size))
         J[:2] = self.rows()[:2]
         J[2:4, : self._first] = self._sensor.rows()[:2]
@@ -407,15 +391,7 @@ class BearingConnector(Connector):
     another rotor the bore turns by its spin angle, too: grooves turn with it, and so does the outer
     ring whose elements an inner ring takes along. Forces act along the axes at rest, also where the
     base tilts, and pull at the middles of journal and bore: about the axis the base lacks the
-    moment ``u × F`` of their distance u.
-
-    Attributes
-    ----------
-    bearing : Bearing
-    parts : list of Bearing
-        The bearing, or the films of pads.
-    outside : bool
-        Whether it was evaluated beyond the least clearance.
+    moment ``u × F`` of their distance u. Its `parts` are the bearing, or the films of its pads.
     """
 
     def __init__(
@@ -430,13 +406,19 @@ class BearingConnector(Connector):
         pads = isinstance(bearing, TiltingPadBearing)
         self.parts = bearing.pad_bearings if pads else [bearing]
         super().__init__(end, base, own, len(self.parts) if pads else 0)
-        self.bearing, self.outside, self.feels = bearing, False, feels
+        self.bearing, self.feels = bearing, feels
+        self.has_mass = isinstance(bearing, AnnularSeal)  # that of the leakage
         self.levers = -bearing.film.radius * bearing.tangents if pads else None
-        self.brakes = self.whole = brakes and has_torque(bearing)
-        self.laws = [_law_of(one, self.brakes) for one in self.parts]
-        self._remembers = isinstance(bearing, JournalBearing) and bearing.remembers
+        self.brakes = brakes and has_torque(bearing)
+        self.laws = [one.law_with_torque if self.brakes else one.law for one in self.parts]
         self._least = self.parts[0].clearance_along() ** 2
-        self._begun: tuple[float, float] | None = None
+
+    def matrices(self) -> dict[str, np.ndarray]:
+        """Return the inertia of the pads."""
+        if not self.own:
+            return {}
+        inertia = np.r_[np.zeros(self._second), np.full(self.own, self.bearing.pad_inertia)]
+        return {"massMatrix": np.diag(inertia)}
 
     def read(self, q: list[float], q_t: list[float]) -> None:
         """Take the motion of the ends, and of the pads."""
@@ -486,12 +468,22 @@ class BearingConnector(Connector):
         self.outside |= any(m[0] ** 2 + m[1] ** 2 >= self._least for m in motions)
         forces = np.array([law(*m) for law, m in zip(self.laws, motions, strict=True)])
         total, own = forces.sum(axis=0).tolist(), -(forces[:, :2] * self.levers).sum(axis=1)
-        return *total[:2], 0.0, (0.0, 0.0, total[2]) if self.brakes else None, own
+        return *total[:2], 0.0, (0.0, 0.0, total[2] if self.brakes else 0.0), own
 
     def tangent(self, t: float) -> Force:
         """Return the force, its tangent, and rows: across the axis, of the spin, and of pads."""
-        parts = zip(self.parts, self.laws, self.motions(), strict=True)
-        return self.assembled([_tangent(*each) for each in parts])
+        parts = zip(self.parts, self.motions(), strict=True)
+        return self.assembled([self._point(*each) for each in parts])
+
+    def _point(self, part: Bearing, motion: tuple[float, ...]) -> FilmPoint:
+        """Return values of a law, K and D (2, 2); with a torque less the slopes by speed, too."""
+        if not self.brakes:
+            return part.law(*motion), *part.slopes(*motion), None
+        step = _SPEED_STEP * max(abs(motion[5]), 1.0)
+        ahead = part.law_with_torque(*motion[:5], motion[5] + step)
+        values = part.law_with_torque(*motion)
+        faster = (np.array(values) - ahead) / step
+        return values, *part.slopes(*motion), faster
 
     def assembled(self, parts: list[FilmPoint]) -> Force:
         """Return force and tangent on the ports, from the values and K, D (2, 2) of each film.
@@ -502,51 +494,23 @@ class BearingConnector(Connector):
         force, (K, D) = np.zeros(count), np.zeros((2, count, count))
         for number, (values, k, d, by_speed) in enumerate(parts):
             if self.feels:
-                w = self.base.speed
-                k = k + w * d @ np.array([[0.0, 1.0], [-1.0, 0.0]])
+                k = k + self.base.speed * d @ np.array([[0.0, 1.0], [-1.0, 0.0]])
                 if self._turn is not None:
                     c, s = self._turn
                     R = np.array([[c, -s], [s, c]])
                     k, d, values = R @ k @ R.T, R @ d @ R.T, [*(R @ values[:2]), *values[2:]]
-            force[:2] += values[:2]
-            K[:2, :2] += k
-            D[:2, :2] += d
-            if len(values) > 2:
-                force[2] += values[2]
-                D[:2, 2] += by_speed[:2]
-                D[2, 2] += by_speed[2]
+            S = np.eye(3, count)[: len(values)]  # of what this film sees, by the ports
             if self.levers is not None:
-                self._add_pad(number, values, k, d, by_speed, force, K, D)
+                S[:2, 3 + number] = -self.levers[number]
+            force += values @ S
+            K += S[:2].T @ k @ S[:2]
+            D += S[:2].T @ d @ S[:2]
+            if by_speed is not None:
+                D[:, 2] += by_speed @ S
         J, L = np.zeros((2, count, self.size))
         J[:3], L[:3] = self.rows()[[0, 1, 5]], self.rate_rows()[[0, 1, 5]]
         J[3:, self._second :] = np.eye(self.own)
         return Force(force, J, L, K, D)
-
-    def _add_pad(
-        self,
-        number: int,
-        values: np.ndarray,
-        k: np.ndarray,
-        d: np.ndarray,
-        by_speed: np.ndarray | None,
-        force: np.ndarray,
-        K: np.ndarray,
-        D: np.ndarray,
-    ) -> None:
-        """Add what the film of a pad does to its tilt, by the lever on its journal's motion."""
-        lever, own = -self.levers[number], 3 + number
-        force[own] += lever @ values[:2]
-        for total, part in ((K, k), (D, d)):
-            total[own, :2] += lever @ part
-            total[:2, own] += part @ lever
-            total[own, own] += lever @ part @ lever
-        if by_speed is not None:
-            D[own, 2] += lever @ by_speed[:2]
-
-    @property
-    def has_mass(self) -> bool:
-        """Whether a mass goes with the rotor: that of the leakage in a seal."""
-        return isinstance(self.bearing, AnnularSeal)
 
     def added_mass(self) -> float:
         """Return the mass that goes with the rotor at its speed [kg]."""
@@ -557,71 +521,31 @@ class BearingConnector(Connector):
         """Return the torque on the journal that a prescribed spin does not feel [N m]."""
         if self.brakes or not has_torque(self.bearing):
             return 0.0
-        pairs = zip(self.parts, self.laws, self.motions(), strict=True)
-        return sum(_torque(*each) for each in pairs)
-
-    def begin(self, mbs: exudyn.MainSystem, t: float) -> None:
-        """Give a film with a memory the state at the beginning of the step.
-
-        Exudyn repeats steps and evaluates forces at trial states; the configuration of the
-        beginning of the step alone holds what has been accepted.
-        """
-        if not self._remembers:
-            return
-        time = mbs.systemData.GetTime(START)
-        if self._begun != (time, t):
-            self._begun = time, t
-            self.read(*self.state(mbs, START))
-            *moved, _, speed = self.motions()[0]
-            self.laws[0].begin(time, *moved, speed, t)
+        pairs = zip(self.parts, self.motions(), strict=True)
+        return sum(part.law_with_torque(*motion)[2] for part, motion in pairs)
 
 
 def has_torque(bearing: Bearing) -> bool:
     """Return whether a bearing has a torque about the axis in scenes."""
-    if isinstance(bearing, JournalBearing | TiltingPadBearing):
-        return True
-    return bearing.law_with_torque is not None
-
-
-def _law_of(bearing: Bearing, torque: bool) -> Law | LawWithTorque:
-    """Return the law of a bearing, or of one pad's film, by x, y, ẋ, ẏ, θ and Ω."""
-    if isinstance(bearing, JournalBearing) and bearing.remembers:
-        return RememberingLaw(bearing.film, torque=torque)
-    return bearing.law_with_torque if torque else bearing.law
-
-
-def _tangent(bearing: Bearing, law: Law | LawWithTorque, motion: tuple[float, ...]) -> FilmPoint:
-    """Return values of a law, K and D (2, 2), and with a torque less the slopes by the speed."""
-    values, faster = law(*motion), None
-    if len(values) > 2:
-        step = _SPEED_STEP * max(abs(motion[5]), 1.0)
-        ahead = law(*motion[:5], motion[5] + step)
-        faster = (np.array(values) - ahead) / step
-        values = law(*motion)  # films know the tangent of their last call
-    slopes = law.slopes if isinstance(law, FilmLaw) else bearing.slopes
-    return values, *slopes(*motion), faster
-
-
-def _torque(bearing: Bearing, law: Law | LawWithTorque, motion: tuple[float, ...]) -> float:
-    """Return the torque of a law that is asked for its force alone [N m]."""
-    if isinstance(law, FilmLaw):
-        return law.torque(*motion)
-    return bearing.law_with_torque(*motion)[2]
-
-
-_STOPS = "clearance stops"
+    return isinstance(bearing, TiltingPadBearing) or bearing.law_with_torque is not None
 
 
 def watch_clearance(body: RotorItems, connector: BearingConnector | MagneticConnector) -> None:
     """Let runs of the scene stop where the journal of a connector leaves its bearing."""
     bearing, name = connector.bearing, body.name
-    stops = entry(body.mbs).setdefault(_STOPS, set())
-    place = body.mark, bearing.interface
+    stops = entry(body.mbs).setdefault("clearance stops", set())
+    place = body.token, bearing.interface
     if isinstance(bearing, ClearanceStop):
         stops.add(place)
         return
     if connector.parts[0].clearance_along() == inf:
         return
+    advice = "take smaller steps, begin from steady_state(body), reduce the load, or add a"
+    if isinstance(bearing, MagneticBearing):
+        advice = (
+            "is the loop of controller and magnets unstable? stability(reduced, speeds, "
+            "supports=…) tells; else reduce the load, or add a"
+        )
 
     def guard(mbs: exudyn.MainSystem) -> None:
         time = mbs.systemData.GetTime(START)
@@ -635,16 +559,62 @@ def watch_clearance(body: RotorItems, connector: BearingConnector | MagneticConn
                 raise ValueError(
                     f"rotor {name!r} left its bearing at {bearing.interface!r} at t = {time:g} s: "
                     f"its journal is {distance:.3g} m from the centre, {beyond:.2g} m beyond the "
-                    f"clearance that way; {_advice(part)} ClearanceStop at that interface for a rub"
+                    f"clearance that way; {advice} ClearanceStop at that interface for a rub"
                 )
 
     connector.guard = guard
 
 
-def _advice(part: object) -> str:
-    if isinstance(part, MagneticBearing):
-        return (
-            "is the loop of controller and magnets unstable? stability(reduced, speeds, "
-            "supports=…) tells; else reduce the load, or add a"
-        )
-    return "take smaller steps, begin from steady_state(body), reduce the load, or add a"
+@dataclass(frozen=True, eq=False)
+class SceneLaw(ABC):
+    """What a call has attached to a rotor of a scene.
+
+    Attributes
+    ----------
+    body : RotorBody or FullRotorBody
+    objects : tuple of ObjectIndex
+        Its connectors.
+    evaluation : tuple of str
+        Who evaluates each of them in a time step.
+    connector : Connector or None
+        Its law by the coordinates of the rotor, of the base, and of its own.
+    """
+
+    body: Body
+    objects: tuple[exudyn.ObjectIndex, ...]
+    evaluation: tuple[str, ...]
+    connector: Connector | None
+
+    @property
+    def uses_python(self) -> bool:
+        """True when a time step calls Python for it."""
+        return PYTHON in self.evaluation
+
+    @abstractmethod
+    def values(self, configuration: exudyn.ConfigurationType = CURRENT) -> tuple:
+        """Return what :meth:`add_sensor` records."""
+
+    def add_sensor(self, **options: Any) -> exudyn.SensorIndex:
+        """Add a sensor of what :meth:`values` returns, one after the other.
+
+        Parameters
+        ----------
+        **options
+            Of ``SensorUserFunction``: name, storeInternal, writeToFile, fileName.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For other options.
+        """
+
+        def output(mbs, t, sensors, factors, configuration):
+            return np.hstack(self.values(configuration)).tolist()
+
+        return add_function_sensor(self.body, output, options)
+
+
+def check_body(body: Body, argument: str) -> None:
+    """Refuse what is no rotor of a scene."""
+    checks.instance(body, argument, (RotorBody, FullRotorBody), "add_rotor returns one")
+    body.check_present()

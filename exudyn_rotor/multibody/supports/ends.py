@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, sin
 
 import exudyn
 import numpy as np
-from exudyn.itemInterface import (
-    MarkerBodyRigid,
-    MarkerSuperElementPosition,
-    MarkerSuperElementRigid,
-    ObjectGround,
-)
+from exudyn.itemInterface import MarkerBodyRigid, ObjectGround
 from exudyn.utilities import (
     EulerParameters2G,
     EulerParameters2RotationMatrix,
@@ -24,17 +19,14 @@ from exudyn.utilities import (
 )
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.full.full_body import FullRotorBody, interface_carrier
-from exudyn_rotor.multibody.rotor.marker_body import append_nodes, virtual_nodes
-from exudyn_rotor.multibody.rotor.more_markers import interface_motion
-from exudyn_rotor.multibody.rotor.rotor_items import KnownRotor, RotorItems, carrying_rotor
+from exudyn_rotor.multibody.rotor.markers import Carrier
+from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, carrying_rotor
 from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation, foundation_marker
 from exudyn_rotor.solid.places import SAME_PLACE, leeway, off_place
-from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_rotation, axial_skew
 
-_KINDS = exudyn.OutputVariableType
+_FRAME = exudyn.OutputVariableType.Position, exudyn.OutputVariableType.RotationMatrix
 _REFERENCE = exudyn.ConfigurationType.Reference
 _ROUNDING = 1e-12  # of the coordinates of a place
 # bodies for which Exudyn has a rotation matrix, but no rigid marker
@@ -47,15 +39,15 @@ Base = exudyn.MarkerIndex | exudyn.ObjectIndex | SceneFoundation
 class Seat:
     """Where a support is, checked, before anything is added.
 
-    `name` is that of the interface, `place` is inertial [m], `axes` (n1, n2, e) in inertial axes,
-    `radius` that of the interface [m]; `base` is what carries it, with its reference position and
-    orientation.
+    The place of the interface `name` is inertial [m], the axes (n1, n2, e) are in inertial axes,
+    `leeway` is by how much the mesh may put the interface elsewhere along e [m]; `base` is what
+    carries it, with its reference position and orientation.
     """
 
     name: str
     place: np.ndarray
     axes: np.ndarray
-    radius: float
+    leeway: np.ndarray
     base: Base | None
     origin: np.ndarray
     orientation: np.ndarray
@@ -68,7 +60,8 @@ class Seat:
         on_axis = body.axis.project(interface.reference)
         place = setup.position + setup.rotation @ on_axis
         axes = body.standing_axes
-        radius, at_rest = interface.radius, (np.zeros(3), np.eye(3))
+        where = name, place, axes, leeway(interface.radius, axes[:, 2])
+        at_rest = np.zeros(3), np.eye(3)
         if isinstance(base, Mapping):
             if name not in base:
                 raise ValueError(
@@ -77,28 +70,22 @@ class Seat:
                 )
             base = base[name]
         if base is None:
-            return cls(name, place, axes, radius, None, *at_rest)
+            return cls(*where, None, *at_rest)
         if isinstance(base, SceneFoundation):
             if base.mbs is not body.mbs:
                 raise ValueError("base: this foundation is in another mbs")
-            base.foundation.motion(name, place, leeway(radius, axes[:, 2]))
-            return cls(name, place, axes, radius, base, *at_rest)
+            base.foundation.motion(name, place, where[3])
+            return cls(*where, base, *at_rest)
         checks.instance(base, "base", (exudyn.MarkerIndex, exudyn.ObjectIndex, SceneFoundation))
-        _refuse_missing(body.mbs, base)
-        _refuse_own(body, name, base)
         origin, orientation = _reference(body.mbs, base)
-        apart = np.linalg.norm(off_place(origin - place, leeway(radius, axes[:, 2])))
+        _refuse_own(body, name, base)
+        apart = np.linalg.norm(off_place(origin - place, where[3]))
         if isinstance(base, exudyn.MarkerIndex) and apart > SAME_PLACE:
             raise ValueError(
                 f"base: the marker {int(base)} is {apart:.3g} m off the interface {name!r}, which "
                 f"is at {place.tolist()}; put it there, or give the rigid body itself"
             )
-        return cls(name, place, axes, radius, base, origin, orientation)
-
-    @property
-    def leeway(self) -> np.ndarray:
-        """By how much the mesh may put the interface elsewhere along e [m]."""
-        return leeway(self.radius, self.axes[:, 2])
+        return cls(*where, base, origin, orientation)
 
     def end(self, mbs: exudyn.MainSystem) -> BaseEnd | None:
         """Return the end of the base at the place; None of the ground.
@@ -146,30 +133,21 @@ def _frame(turn: np.ndarray, shift: np.ndarray = (0.0, 0.0, 0.0)) -> np.ndarray:
 def _reference(mbs: exudyn.MainSystem, base: Base) -> tuple[np.ndarray, np.ndarray]:
     """Return the reference position and orientation of a marker or a rigid body."""
     is_marker = isinstance(base, exudyn.MarkerIndex)
+    count = mbs.systemData.NumberOfMarkers() if is_marker else mbs.systemData.NumberOfObjects()
+    if not 0 <= int(base) < count:
+        raise ValueError(f"base: this system has no {base}")
     if not is_marker and mbs.GetObject(base)["objectType"] in _POINTS:
         raise ValueError(f"base: {base} is a point without orientation; give a rigid body")
+    if is_marker and "localHT" not in mbs.GetMarker(base):
+        raise ValueError(f"base: {base} is no rigid marker with a frame of its own (localHT)")
+    read, at = (mbs.GetMarkerOutput, ()) if is_marker else (mbs.GetObjectOutputBody, (np.zeros(3),))
     try:
-        kinds = _KINDS.Position, _KINDS.RotationMatrix
-        if is_marker:
-            values = [mbs.GetMarkerOutput(base, kind, _REFERENCE) for kind in kinds]
-        else:
-            values = [
-                mbs.GetObjectOutputBody(base, kind, np.zeros(3), _REFERENCE) for kind in kinds
-            ]
+        place, turn = (read(base, kind, *at, _REFERENCE) for kind in _FRAME)
     except Exception as error:  # Exudyn's own, of several kinds
         raise ValueError(
             f"base: {base} has no place and orientation; give a rigid marker or a rigid body"
         ) from error
-    if is_marker and "localHT" not in mbs.GetMarker(base):
-        raise ValueError(f"base: {base} is no rigid marker with a frame of its own (localHT)")
-    return np.asarray(values[0]), np.reshape(values[1], (3, 3))
-
-
-def _refuse_missing(mbs: exudyn.MainSystem, base: exudyn.MarkerIndex | exudyn.ObjectIndex) -> None:
-    is_marker = isinstance(base, exudyn.MarkerIndex)
-    count = mbs.systemData.NumberOfMarkers() if is_marker else mbs.systemData.NumberOfObjects()
-    if not 0 <= int(base) < count:
-        raise ValueError(f"base: this system has no {base}")
+    return np.asarray(place), np.reshape(turn, (3, 3))
 
 
 def _refuse_own(body: RotorItems, name: str, base: exudyn.MarkerIndex | exudyn.ObjectIndex) -> None:
@@ -185,40 +163,20 @@ def _refuse_own(body: RotorItems, name: str, base: exudyn.MarkerIndex | exudyn.O
         )
 
 
-def _carrier(
-    body: RotorItems, interface: str
-) -> tuple[exudyn.ObjectIndex, np.ndarray, np.ndarray, float]:
-    """Return a flexible body, and place on the axis, motion (6, m) and radius of an interface."""
-    if isinstance(body, FullRotorBody):
-        return interface_carrier(body, interface)
-    return body.objects["marker_body"], *interface_motion(body, interface)
-
-
 def point_marker(body: RotorItems, interface: str) -> exudyn.MarkerIndex:
     """Add a marker with the interface's mean displacement, its place on the axis."""
-    number, place, motion, _ = _carrier(body, interface)
-    nodes = append_nodes(body.mbs, number, place[None, :], motion[:3])
-    return body.mbs.AddMarker(
-        MarkerSuperElementPosition(
-            bodyNumber=number, meshNodeNumbers=nodes, weightingFactors=[1.0], visualization=_HIDDEN
-        )
-    )
+    return _on_axis(body, interface).add_marker(body.mbs, "position")
 
 
 def rigid_marker(body: RotorItems, interface: str) -> exudyn.MarkerIndex:
     """Add a marker with the mean displacement and rotation, on the axis, axes (n1, n2, e)."""
-    number, place, motion, radius = _carrier(body, interface)
-    axis = SpinAxis(body.frame.B @ body.axis.direction)
-    nodes = append_nodes(body.mbs, number, *virtual_nodes(place, radius, motion, axis))
-    return body.mbs.AddMarker(
-        MarkerSuperElementRigid(
-            bodyNumber=number,
-            meshNodeNumbers=nodes,
-            weightingFactors=[1.0 / 3.0] * 3,
-            localHT=_frame(body.frame.B @ axes_of(body.axis)),
-            visualization=_HIDDEN,
-        )
-    )
+    axes = body.frame.B @ axes_of(body.axis)
+    return _on_axis(body, interface).add_marker(body.mbs, "rigid", axes)
+
+
+def _on_axis(body: RotorItems, interface: str) -> Carrier:
+    place = body.axis.project(body.selection.source.interfaces[interface].reference)
+    return replace(body.interface_carrier(interface), point=body.frame.points(place))
 
 
 QUARTER = axial_skew(3)
@@ -241,7 +199,7 @@ class RotorEnd:
     place, rate : tuple of float
         Displacement [m] and velocity [m/s] where it has been read, along (n1, n2, e).
     tilt, tilt_rate : tuple of float
-        Rotation but for the spin angle [rad], and the rate of it, where it was read `whole`.
+        Rotation but for the spin angle [rad], and the rate of it.
     angle, speed : float
         Spin angle, from where the node has it at zero [rad], and its rate [rad/s].
     """
@@ -249,43 +207,30 @@ class RotorEnd:
     def __init__(self, body: RotorItems, name: str) -> None:
         own = axes_of(body.axis)
         interface = body.selection.source.interfaces[name]
-        if isinstance(body, FullRotorBody):
-            carrier = interface_carrier(body, name)[0]
-            self.nodes = tuple(map(exudyn.NodeIndex, body.mbs.GetObject(carrier)["nodeNumbers"]))
-            motion = np.eye(6)
-        else:
-            self.nodes = body.nodes["rigid"], body.nodes["modes"]
-            motion = interface.motion @ body.selection.T
-        modes = np.kron(np.eye(2), own.T) @ motion
+        carrier = body.interface_carrier(name)
+        self.nodes = carrier.nodes
+        modes = np.kron(np.eye(2), own.T @ body.frame.B.T) @ carrier.motion
         self.axes = body.standing_axes
         point = own.T @ (body.axis.project(interface.reference) - body.frame.origin)
         self.size, self._point = _RIGID + modes.shape[1], point.tolist()
-        rows = np.zeros((9, self.size))
+        self._rows = rows = np.zeros((9, self.size))
         rows[:3, :3] = self.axes.T
         rows[3:, _RIGID:] = modes
         self._spin = spin = body.locks.spin
-        self._rows = rows
-        turning = np.zeros((1, self.size))
-        turning[0, spin] = 1.0
-        # one product gives motion, rate, angle and speed, and one the forces: a call costs more
-        both = [np.vstack([turning, part]) for part in (rows[:6], rows)]
-        self._read_across, self._read_whole = (np.kron(np.eye(2), part) for part in both)
-        axes_of_tilts = body.frame.axes_of_angles().T[:, [tilt - 3 for tilt in body.locks.tilts]]
-        held = (self.axes.T @ axes_of_tilts).T.tolist()
+        held = body.frame.axes_of_angles() @ self.axes
         # the node's angles follow each other
-        pairs = zip(body.locks.tilts, held, strict=True)
-        self._held = [(tilt, axis, tilt > spin) for tilt, axis in pairs]
-        by_tilts = np.eye(self.size)[list(body.locks.tilts)]
-        self._pull_across = np.vstack([turning, by_tilts, rows[:6]])
-        self._pull_whole = np.vstack([turning, by_tilts, rows])
+        self._held = [(tilt, held[tilt - 3].tolist(), tilt > spin) for tilt in body.locks.tilts]
+        # one product gives motion, rate, angle and speed, and one the forces: a call costs more
+        unit = np.eye(self.size)
+        self._read = np.kron(np.eye(2), np.vstack([unit[spin], rows]))
+        self._pull = np.vstack([unit[[spin, *body.locks.tilts]], rows]).T
         self._start = body.plan.setup.placement.angle
 
-    def read(self, q: list[float], q_t: list[float], whole: bool = False) -> None:
+    def read(self, q: list[float], q_t: list[float]) -> None:
         """Take the motion from coordinates and their rates."""
-        found = (self._read_whole if whole else self._read_across).dot(q + q_t).tolist()
-        half = len(found) // 2
-        angle, tx, ty, tz, a, b, c = found[:7]
-        speed, vx, vy, vz, a_t, b_t, c_t = found[half : half + 7]
+        found = self._read.dot(q + q_t).tolist()
+        angle, tx, ty, tz, a, b, c, *tilt = found[:10]
+        speed, vx, vy, vz, a_t, b_t, c_t, *tilt_rate = found[10:]
         self.angle, self.speed = angle, speed
         self._c, self._s = C, S = cos(angle), sin(angle)
         x0, y0, z0 = self._point
@@ -295,13 +240,11 @@ class RotorEnd:
         self.place = tx + ax - x0, ty + ay - y0, tz + c
         self._within = wx, wy = C * a_t - S * b_t, S * a_t + C * b_t
         self.rate = vx + wx - speed * ay, vy + wy + speed * ax, vz + c_t
-        self.tilt = self.tilt_rate = None
-        if whole:
-            a, b, c = found[7:half]
-            a_t, b_t, c_t = found[half + 7 :]
-            a, b, a_t, b_t = C * a - S * b, S * a + C * b, C * a_t - S * b_t, S * a_t + C * b_t
-            self.tilt = a, b, c
-            self.tilt_rate = a_t - speed * b, b_t + speed * a, c_t
+        a, b, c = tilt
+        a_t, b_t, c_t = tilt_rate
+        a, b, a_t, b_t = C * a - S * b, S * a + C * b, C * a_t - S * b_t, S * a_t + C * b_t
+        self.tilt = a, b, c
+        self.tilt_rate = a_t - speed * b, b_t + speed * a, c_t
 
     @property
     def motion(self) -> tuple[np.ndarray, np.ndarray]:
@@ -313,38 +256,29 @@ class RotorEnd:
         return x, x_t
 
     def pull(
-        self, fx: float, fy: float, fz: float, moment: Sequence[float] | None = None
+        self, fx: float, fy: float, fz: float, moment: Sequence[float] = (0.0, 0.0, 0.0)
     ) -> np.ndarray:
-        """Return the forces on the coordinates by a force and a moment where it has been read.
-
-        A moment needs the whole motion to have been read where it acts on modes and tilts.
-        """
+        """Return the forces on the coordinates by a force and a moment where it has been read."""
         C, S, (ax, ay, az) = self._c, self._s, self._arm
-        mx, my, mz = moment or (0.0, 0.0, 0.0)
+        mx, my, mz = moment
         px, py, pz = mx + ay * fz - az * fy, my + az * fx - ax * fz, mz + ax * fy - ay * fx
-        about = pz
-        if self.tilt is not None:
-            about += self.tilt[0] * my - self.tilt[1] * mx
+        about = pz + self.tilt[0] * my - self.tilt[1] * mx
         (_, (p, r, e), turns), (_, (k, m, n), turning) = self._held
         if turns:
             p, r = C * p - S * r, S * p + C * r
         if turning:
             k, m = C * k - S * m, S * k + C * m
-        loads = [about, p * px + r * py + e * pz, k * px + m * py + n * pz]
-        loads += [fx, fy, fz, C * fx + S * fy, C * fy - S * fx, fz]
-        if moment is None:
-            return self._pull_across.T.dot(loads)
-        return self._pull_whole.T.dot([*loads, C * mx + S * my, C * my - S * mx, mz])
+        loads = [about, p * px + r * py + e * pz, k * px + m * py + n * pz, fx, fy, fz]
+        loads += [C * fx + S * fy, C * fy - S * fx, fz, C * mx + S * my, C * my - S * mx, mz]
+        return self._pull.dot(loads)
 
     def rows(self) -> np.ndarray:
         """Return the rows J (6, size) of displacement and rotation where it has been read."""
         J, R = np.zeros((6, self.size)), axial_rotation(self.angle)
-        arm, spin = self._arm, self._spin
+        (x, y, z), (a, b, _) = self._arm, self.tilt
         J[:3] = self._rows[:3] + R @ self._rows[3:6]
         J[3:] = R @ self._rows[6:]
-        tilt = self.tilt or (0.0, 0.0, 0.0)
-        J[:, spin] = -arm[1], arm[0], 0.0, -tilt[1], tilt[0], 1.0
-        x, y, z = arm
+        J[:, self._spin] = -y, x, 0.0, -b, a, 1.0
         for place, axis, turns in self._held:
             a, b, c = R @ axis if turns else axis
             J[:, place] = b * z - c * y, c * x - a * z, a * y - b * x, a, b, c
@@ -420,7 +354,7 @@ class MarkerEnd:
         item: dict,
         place: np.ndarray,
         axes: np.ndarray,
-        rotor: KnownRotor | None,
+        rotor: RotorItems | None,
     ) -> None:
         body = mbs.GetObject(item["bodyNumber"]) if "bodyNumber" in item else item
         nodes = body["nodeNumbers"] if "nodeNumbers" in body else [body["nodeNumber"]]
@@ -445,8 +379,8 @@ class MarkerEnd:
         self.nodes = tuple(map(exudyn.NodeIndex, nodes[: 1 + bool(modes.shape[1])]))
         self._spin, self.is_rotor = None, rotor is not None
         if rotor is not None:
-            sense = float(np.sign(np.dot(rotor.axis, axes[:, 2])))
-            self._spin = rotor.plan.locks.spin, sense
+            sense = float(np.sign(rotor.standing_axes[:, 2] @ axes[:, 2]))
+            self._spin = rotor.locks.spin, sense
 
     def read(self, q: list[float], q_t: list[float]) -> None:
         """Take the motion from coordinates and their rates."""

@@ -6,7 +6,7 @@ constraints hold at the ground: three virtual nodes for every point move as its 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import exudyn
@@ -14,7 +14,6 @@ import numpy as np
 from exudyn.itemInterface import (
     CoordinateConstraint,
     MarkerNodeCoordinate,
-    MarkerSuperElementRigid,
     NodePointGround,
     NodeRigidBodyRxyz,
     ObjectFFRFreducedOrder,
@@ -29,9 +28,8 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.multibody.rotor.marker_body import add_weight, append_nodes, virtual_nodes
+from exudyn_rotor.multibody.rotor.markers import Carrier, add_weight
 from exudyn_rotor.multibody.rotor.plan import generic_node, main_system
-from exudyn_rotor.theory.axis import SpinAxis
 
 _ARM = 0.1  # m, of the virtual nodes of a point; any does
 
@@ -120,29 +118,8 @@ def foundation_marker(
 ) -> exudyn.MarkerIndex:
     """Add a rigid marker of a point at its place [m], with these axes as columns."""
     motion = base.foundation.points[name]
-    return virtual_marker(base.mbs, base.objects["marker_body"], place, motion, axes)
-
-
-def virtual_marker(
-    mbs: exudyn.MainSystem,
-    number: exudyn.ObjectIndex,
-    place: np.ndarray,
-    motion: np.ndarray,
-    axes: np.ndarray,
-) -> exudyn.MarkerIndex:
-    """Add a rigid marker of a flexible body at a place [m] with the motion (6, k)."""
-    nodes = virtual_nodes(place, _ARM, motion, SpinAxis(axes[:, 2]))
-    frame = np.eye(4)
-    frame[:3, :3] = axes
-    return mbs.AddMarker(
-        MarkerSuperElementRigid(
-            bodyNumber=number,
-            meshNodeNumbers=append_nodes(mbs, number, *nodes),
-            weightingFactors=[1.0 / 3.0] * 3,
-            localHT=frame,
-            visualization={"show": False, "showMarkerNodes": False},
-        )
-    )
+    point = Carrier(base.objects["marker_body"], place, motion, _ARM)
+    return point.add_marker(base.mbs, "rigid", axes)
 
 
 def add_foundation(
@@ -207,42 +184,38 @@ def add_foundation(
             visualization=VObjectGenericODE2(show=False),
         )
     )
-    body = mbs.AddObject(massless_body([frame, coordinates], placed.size, placed.participation))
-    hold(mbs, frame)
+    empty = exudyn.MatrixContainer()
+    empty.SetWithDenseMatrix(np.zeros((placed.size, placed.size)), useDenseMatrix=False)
+    none = np.zeros((3, placed.size))
+    body = mbs.AddObject(
+        ObjectFFRFreducedOrder(
+            nodeNumbers=[frame, coordinates],
+            massMatrixReduced=empty,
+            stiffnessMatrixReduced=empty,
+            computeFFRFterms=False,
+            modeBasis=none,
+            referencePositions=np.zeros(3),
+            mPhitTPsi=none if placed.participation is None else placed.participation,  # of weight
+            visualization=VObjectFFRFreducedOrder(show=False),
+        )
+    )
+    _hold(mbs, frame)
     load = add_weight(mbs, body, g)
     objects = {"physics": physics, "marker_body": body}
     return SceneFoundation(mbs, placed, coordinates, objects, load)
 
 
-def massless_body(nodes: list, size: int, S: np.ndarray | None = None) -> ObjectFFRFreducedOrder:
-    """Return the massless body of the markers; the participation S (3, k) serves gravity alone."""
-    empty = exudyn.MatrixContainer()
-    empty.SetWithDenseMatrix(np.zeros((size, size)), useDenseMatrix=False)
-    return ObjectFFRFreducedOrder(
-        nodeNumbers=nodes,
-        massMatrixReduced=empty,
-        stiffnessMatrixReduced=empty,
-        computeFFRFterms=False,
-        modeBasis=np.zeros((3, size)),
-        referencePositions=np.zeros(3),
-        mPhitTPsi=np.zeros((3, size)) if S is None else S,
-        visualization=VObjectFFRFreducedOrder(show=False),
-    )
-
-
-def hold(
-    mbs: exudyn.MainSystem, frame: exudyn.NodeIndex, coordinates: Sequence[int] = range(6)
-) -> None:
-    """Hold coordinates of a frame's node: translations, then rotations.
+def _hold(mbs: exudyn.MainSystem, frame: exudyn.NodeIndex) -> None:
+    """Hold the coordinates of a frame's node.
 
     They get an inertia, which moves nothing: explicit solvers solve with the whole mass matrix.
     """
-    inertia = np.diag([float(coordinate in coordinates) for coordinate in range(6)])
     hidden = VObjectGenericODE2(show=False)
-    mbs.AddObject(ObjectGenericODE2(nodeNumbers=[frame], massMatrix=inertia, visualization=hidden))
+    mbs.AddObject(
+        ObjectGenericODE2(nodeNumbers=[frame], massMatrix=np.eye(6), visualization=hidden)
+    )
     origin = MarkerNodeCoordinate(nodeNumber=mbs.AddNode(NodePointGround()), coordinate=0)
-    ground = mbs.AddMarker(origin)
-    for coordinate in coordinates:
+    ground, hidden = mbs.AddMarker(origin), VCoordinateConstraint(show=False)
+    for coordinate in range(6):
         marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=frame, coordinate=coordinate))
-        hidden = VCoordinateConstraint(show=False)
         mbs.AddObject(CoordinateConstraint(markerNumbers=[ground, marker], visualization=hidden))

@@ -19,9 +19,9 @@ from exudyn.itemInterface import CartesianSpringDamper, RigidBodySpringDamper
 
 from exudyn_rotor.bearings.support import Support, acts, varies
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, entry
+from exudyn_rotor.multibody.supports.connector import NATIVE, SYMBOLIC
 from exudyn_rotor.multibody.supports.ends import Seat, point_marker, rigid_marker
 
-NATIVE, SYMBOLIC, PYTHON = "Exudyn", "symbolic function", "Python function"
 _ROUNDING = 1e-13  # of the largest entry of a turned matrix
 _FUNCTIONS = "symbolic functions of supports"
 Parts = list[tuple[exudyn.ObjectIndex, str]]

@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import exudyn
-import numpy as np
 from exudyn.misc.extensionRegistry import extends, install
 from numpy.typing import ArrayLike
 
@@ -46,7 +45,6 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     stiffening: str = "auto",
     locking: str = "auto",
     markers: str = "rigid",
-    condense_markers: bool = True,
     prestress: Prestress | None = None,
 ) -> dict:
     """Create a flexible rotor that spins about one fixed axis.
@@ -69,15 +67,14 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
         stiffnessProportionalDamping: Rayleigh factor of the component modes' stiffness matrix
         gravity: gravity (3D vector, global)
         color: RGBA color if no contour is drawn
-        superElementRigidMarkersOffsets: local offset per marker, N x 3, mesh axes; it turns with
-            the mean rotation of the body, as there. The whole lever of a rigid interface, by its
-            own rotation, has rotorBody.add_marker(interface, offset)
+        superElementRigidMarkersOffsets: local offset per rigid marker, N x 3, mesh axes; it turns
+            with the mean rotation of the body, as there. The whole lever of a rigid interface, by
+            its own rotation, has rotorBody.add_marker(interface, offset)
         showMarkers: if True, the markers are drawn
         verbose: if True, a report of the new body is printed
         axis: spin axis in mesh coordinates: 'x', 'y', 'z', a direction, or (one of these, point);
             None takes the direction of initialAngularVelocity, its largest component positive,
-            through the mesh origin, if a principal axis of inertia is within 10 degrees; or at rest
-            the line through the centres of the boundaries, if these and the body are round about it
+            through the mesh origin
         translation: 'free', 'in-plane', 'none', a PrescribedMotion, or 'auto': 'free', since
             supports and loads are not known yet, but 'none' for a rotor that its own stiffness
             matrix holds
@@ -90,8 +87,6 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
             exudyn_rotor.add_rotor
         markers: kind of the markers, 'rigid' or 'position'; the latter serves springs and forces
             at a fraction of the cost
-        condense_markers: whether mbs.Assemble() moves the script's own markers on many mesh nodes
-            to few added nodes with the same mean motion: the same to round-off, and much faster
         prestress: static stress for stiffening='full', since a FEMinterface holds no elements to
             compute it on: SolidRotor.prestress() of a rotor from NGSolve with the same mesh, or
             Prestress.from_matrix() with the geometric stiffness of another program
@@ -112,7 +107,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
 
         Craig-Bampton modes of FEMinterface hold the frame of Exudyn's own body at the first
         boundary, and what tilts the rotor against it softens falsely with the square of the speed;
-        a warning says how much. use_mean_axis_modes(fem) gives both bodies the same modes.
+        use_mean_axis_modes(fem) gives both bodies the same modes.
 
     Example:
         >>> import exudyn
@@ -139,11 +134,9 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     from exudyn_rotor import checks
     from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS, main_system, marker_name
     from exudyn_rotor.multibody.twins.swapped_body import (
-        State,
         add_swapped_body,
         checked_options,
         numbers,
-        solid_rotor,
     )
 
     given = locals()
@@ -152,31 +145,33 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     checks.flag(showMarkers, "showMarkers")
     checks.flag(verbose, "verbose")
     checks.choice(markers, "markers", MARKER_KINDS)
-    own = (translation, spin, spin_coupling, stiffening, locking)
-    options = checked_options(*own, markers, condense_markers, prestress)
-    start = State.checked("referencePosition", "referenceRotationMatrix", given)
-    rotor = solid_rotor(femInterface, axis, start)
-    offsets = _offsets(list(rotor.interfaces), superElementRigidMarkersOffsets)
-    body = add_swapped_body(mbs, name, femInterface, rotor, start, options, offsets, showMarkers)
+    options, offsets = checked_options(given), superElementRigidMarkersOffsets
+    if offsets is not None:
+        count = len(femInterface.nodeSets)
+        name_of = "superElementRigidMarkersOffsets"
+        offsets = checks.array(offsets, name_of, "m", shape=(count, 3))
+        if markers != "rigid":
+            raise ValueError(f"{name_of}: needs markers='rigid', got {markers!r}")
+    body = add_swapped_body(
+        mbs,
+        name,
+        femInterface,
+        axis,
+        options,
+        given,
+        position="referencePosition",
+        rotation="referenceRotationMatrix",
+    )
+    for number, marker in enumerate(body.markers.values()):
+        mbs.SetMarkerParameter(marker, "Vshow", showMarkers)
+        if offsets is not None:
+            # Exudyn's own, which turns with the mean rotation, not with that of the interface
+            mbs.SetMarkerParameter(marker, "offset", body.frame.B @ offsets[number])
     if verbose:
         exudyn.Print(body.report())
     return {"FFRFReducedOrderObjectDict": numbers(body)} | {
         marker_name(body.name, interface): marker for interface, marker in body.markers.items()
     }
-
-
-def _offsets(interfaces: list[str], offsets: ArrayLike | None) -> dict[str, np.ndarray]:
-    if offsets is None:
-        return {}
-    from exudyn_rotor import checks
-
-    table = checks.array(offsets, "superElementRigidMarkersOffsets", "m")
-    if table.shape != (len(interfaces), 3):
-        raise ValueError(
-            f"superElementRigidMarkersOffsets: needs {len(interfaces)} × 3 finite numbers for the "
-            f"interfaces {', '.join(interfaces) or 'none'}, got {checks.shown(offsets)}"
-        )
-    return dict(zip(interfaces, table, strict=True))
 
 
 install()

@@ -15,13 +15,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor.plan import main_system
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.multibody.twins.swapped_body import (
-    State,
-    add_swapped_body,
-    checked_options,
-    numbers,
-    solid_rotor,
-)
+from exudyn_rotor.multibody.twins.swapped_body import add_swapped_body, checked_options, numbers
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.formulation import ConstantSpeed, PrescribedMotion
@@ -47,9 +41,7 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
         Accepted, and without effect: the modes are made mass-orthonormal.
     axis : SpinAxis, {'x', 'y', 'z'} or array_like, optional
         Spin axis in mesh coordinates; None takes the direction of `initialAngularVelocity` when the
-        body is added, its largest component positive, if a principal axis of inertia is within 10°;
-        or at rest the line through the centres of the node sets, if these and the body are round
-        about it.
+        body is added, its largest component positive, through the mesh origin.
     translation, spin : optional
         The formulation; see :class:`exudyn_rotor.Formulation`. ``'auto'`` is ``'free'``, but
         ``'none'`` for a rotor that its own stiffness matrix holds.
@@ -63,9 +55,6 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
     markers : {'rigid', 'position'}, optional
         Kind of markers that are added at all node sets; None adds none, as Exudyn's class, and the
         script makes its own.
-    condense_markers : bool
-        Whether ``mbs.Assemble()`` moves the script's markers on many mesh nodes to few added nodes
-        with the same mean motion: the same to round-off, and faster.
     prestress : Prestress, optional
         Static stress for ``stiffening='full'``.
 
@@ -92,7 +81,7 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
     -----
     What is attached to rigid and position markers at the node ``nRigidBody`` acts as on Exudyn's
     body, in the mesh origin. The flexible object is the first object that is added.
-    It warns where Exudyn's own body would soften falsely with these modes; see
+    Exudyn's own body may soften falsely with Craig–Bampton modes; see
     :func:`exudyn_rotor.use_mean_axis_modes`.
 
     Examples
@@ -128,16 +117,15 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
         stiffening: str = "auto",
         locking: str = "auto",
         markers: str | None = None,
-        condense_markers: bool = True,
         prestress: Prestress | None = None,
     ) -> None:
+        given = locals()
         if not isinstance(rigidBodyNodeType, exudyn.NodeType):
             checks.choice(rigidBodyNodeType, "rigidBodyNodeType", _NODE_TYPES)
         checks.number(roundMassMatrix, "roundMassMatrix", least=0.0)
         checks.number(roundStiffnessMatrix, "roundStiffnessMatrix", least=0.0)
         self._fem = checks.instance(femInterface, "femInterface", FEMinterface)
-        own = (translation, spin, spin_coupling, stiffening, locking)
-        self._options = checked_options(*own, markers, condense_markers, prestress)
+        self._options = checked_options(given)
         self._axis = None if axis is None else SpinAxis.of(axis)
         self.rotorBody: RotorBody | None = None
         self.modeBasis = _modes(femInterface)
@@ -195,9 +183,16 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
         label = None if isinstance(name, str) and name == "" else checks.label(name, "name")
         if np.size(rotationMatrixRef) == 0:
             given["rotationMatrixRef"] = np.eye(3)
-        start = State.checked("positionRef", "rotationMatrixRef", given)
-        rotor = solid_rotor(self._fem, self._axis, start)
-        body = add_swapped_body(mbs, label, self._fem, rotor, start, self._options)
+        body = add_swapped_body(
+            mbs,
+            label,
+            self._fem,
+            self._axis,
+            self._options,
+            given,
+            position="positionRef",
+            rotation="rotationMatrixRef",
+        )
         self.rotorBody, made = body, numbers(body)
         self.nRigidBody, self.nGenericODE2 = made["nRigidBody"], made["nGenericODE2"]
         self.oFFRFreducedOrder, self.loadGravity = made["oFFRFreducedOrder"], made["loadGravity"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import Any
 
 import exudyn
@@ -12,162 +11,99 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.add_rotor import add_rotor
-from exudyn_rotor.multibody.rotor.frame import LOCKINGS, MESH_ORIGIN
+from exudyn_rotor.multibody.rotor.frame import LOCKINGS
 from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS, color_of
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.multibody.rotor.rotor_items import known_rotor
-from exudyn_rotor.multibody.twins.axis_of_body import axis_at_rest, axis_of_motion
-from exudyn_rotor.reduction.mean_axis import frame_shares, warn_of_held_frame
+from exudyn_rotor.reduction.mean_axis import frame_shares
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.formulation import (
-    ConstantSpeed,
-    Formulation,
-    PrescribedMotion,
-    start_values,
-    suited_translation,
-)
+from exudyn_rotor.theory.formulation import Formulation, start_values, suited_translation
 from exudyn_rotor.theory.stiffening import chosen_level
 
-
-@dataclass(frozen=True, eq=False)
-class State:
-    """Where a body stands, how it starts, and its damping, as Exudyn's calls say it.
-
-    Attributes
-    ----------
-    position, velocity : ndarray, shape (3,)
-        Of the mesh origin, inertial axes [m], [m/s].
-    rotation : ndarray, shape (3, 3)
-        Mesh axes → inertial axes.
-    omega : ndarray, shape (3,)
-        Angular velocity, inertial axes [rad/s].
-    mass_damping, stiffness_damping : float
-        Rayleigh factors [1/s], [s].
-    gravity : ndarray, shape (3,)
-        Inertial axes [m/s²].
-    color : tuple of float
-    """
-
-    position: np.ndarray
-    velocity: np.ndarray
-    rotation: np.ndarray
-    omega: np.ndarray
-    mass_damping: float
-    stiffness_damping: float
-    gravity: np.ndarray
-    color: tuple[float, ...]
-
-    @classmethod
-    def checked(cls, position: str, rotation: str, given: dict[str, ArrayLike]) -> State:
-        """Return the arguments, or refuse them; two have another name in each of the calls."""
-        by_mass, by_stiffness = (
-            checks.number(given[name], name, least=0.0)
-            for name in ("massProportionalDamping", "stiffnessProportionalDamping")
-        )
-        return cls(
-            position=checks.vector(given[position], position, "m"),
-            velocity=checks.vector(given["initialVelocity"], "initialVelocity", "m/s"),
-            rotation=checks.rotation(given[rotation], rotation),
-            omega=checks.vector(given["initialAngularVelocity"], "initialAngularVelocity", "rad/s"),
-            mass_damping=by_mass,
-            stiffness_damping=by_stiffness,
-            gravity=checks.vector(given["gravity"], "gravity", "m/s²"),
-            color=color_of(given["color"]),
-        )
+# what the twins take beyond the arguments of Exudyn's calls
+OWN = ("translation", "spin", "spin_coupling", "stiffening", "locking", "markers", "prestress")
 
 
-def checked_options(
-    translation: str | PrescribedMotion,
-    spin: str | float | ConstantSpeed | PrescribedMotion,
-    spin_coupling: str,
-    stiffening: str,
-    locking: str,
-    markers: str | None,
-    condense_markers: bool,
-    prestress: Prestress | None,
-) -> dict[str, Any]:
-    """Return what the twins take beyond the arguments of Exudyn's calls, or refuse it."""
-    _check_prestress(chosen_level(stiffening, prestress is not None), prestress)
+def checked_options(given: dict[str, Any]) -> dict[str, Any]:
+    """Return the twin's own arguments among those `given`, or refuse them."""
+    options = {name: given[name] for name in OWN}
+    prestress, markers = options["prestress"], options["markers"]
+    level = chosen_level(options["stiffening"], prestress is not None)
+    where = (
+        "SolidRotor.from_ngsolve(…).prestress() with the same mesh or Prestress.from_matrix(…) "
+        "makes one; a FEMinterface has no elements to compute it on"
+    )
+    if prestress is not None:
+        checks.instance(prestress, "prestress", Prestress, where)
+    elif level == "full":
+        raise ValueError(f"stiffening='full' needs the static stress: give prestress=; {where}")
     if markers is not None:
         checks.choice(markers, "markers", MARKER_KINDS)
-    suited = suited_translation(translation, grounded=False)
-    Formulation(suited, spin, spin_coupling=spin_coupling)  # or refuse it
-    return {
-        "translation": translation,
-        "spin": spin,
-        "spin_coupling": spin_coupling,
-        "stiffening": stiffening,
-        "locking": checks.choice(locking, "locking", LOCKINGS),
-        "markers": {} if markers is None else markers,
-        "condense_markers": checks.flag(condense_markers, "condense_markers"),
-        "prestress": prestress,
-    }
-
-
-def solid_rotor(
-    fem: FEMinterface, axis: SpinAxis | str | ArrayLike | None, start: State
-) -> SolidRotor:
-    """Return the model in `fem`; without an axis it spins about that of its angular velocity.
-
-    A body at rest spins about the line through its seats. Either must fit the body: see
-    :mod:`exudyn_rotor.multibody.twins.axis_of_body`.
-    """
-    if axis is not None:
-        return SolidRotor.from_fem_interface(fem, axis)
-    rotor = SolidRotor.from_fem_interface(fem, "z")
-    if np.any(start.omega):
-        return replace(rotor, axis=axis_of_motion(rotor, start.rotation.T @ start.omega))
-    return replace(rotor, axis=axis_at_rest(rotor))
+    suited = suited_translation(options["translation"], grounded=False)
+    Formulation(suited, options["spin"], spin_coupling=options["spin_coupling"])  # or refuse it
+    checks.choice(options["locking"], "locking", LOCKINGS)
+    return options | {"markers": {} if markers is None else markers}
 
 
 def add_swapped_body(
     mbs: exudyn.MainSystem,
     name: str | None,
     fem: FEMinterface,
-    rotor: SolidRotor,
-    start: State,
+    axis: SpinAxis | str | ArrayLike | None,
     options: dict[str, Any],
-    offsets: dict[str, np.ndarray] | None = None,
-    show_markers: bool = True,
+    given: dict[str, Any],
+    *,
+    position: str,
+    rotation: str,
 ) -> RotorBody:
     """Add the rotor; nothing has been added where this raises ValueError or TypeError.
 
-    The offsets of rigid markers turn with the rotor's mean rotation, as on Exudyn's body.
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    name : str or None
+    fem : FEMinterface
+    axis : optional
+        Spin axis; None takes the direction of the angular velocity.
+    options : dict
+        Of :func:`checked_options`.
+    given : dict
+        Arguments of the twin's call by their names, of which two, `position` and `rotation`, are
+        called otherwise in each of Exudyn's calls.
     """
-    more = dict(options)
-    reduced = rotor.reduce(fem, prestress=more.pop("prestress"))
+    placed = {
+        "position": checks.vector(given[position], position, "m"),
+        "rotation": checks.rotation(given[rotation], rotation),
+        "gravity": checks.vector(given["gravity"], "gravity", "m/s²"),
+        "color": color_of(given["color"]),
+    }
+    for key, argument in (
+        ("mass_damping", "massProportionalDamping"),
+        ("stiffness_damping", "stiffnessProportionalDamping"),
+    ):
+        placed[key] = checks.number(given[argument], argument, least=0.0)
+    velocity = checks.vector(given["initialVelocity"], "initialVelocity", "m/s")
+    omega = checks.vector(given["initialAngularVelocity"], "initialAngularVelocity", "rad/s")
+    turn, options = placed["rotation"], dict(options)
+    rotor = SolidRotor.from_fem_interface(fem, _axis_of(turn.T @ omega) if axis is None else axis)
+    reduced = rotor.reduce(fem, prestress=options.pop("prestress"))
     modes = np.asarray(fem.modeBasis["matrix"])
-    warn_of_held_frame(rotor, modes, stacklevel=3)
-    speed = _speed_along(start.rotation @ reduced.axis.direction, start.omega)
-    more["translation"] = suited_translation(more["translation"], reduced.grounded)
-    formulation = Formulation(more["translation"], more["spin"])
-    velocity = start.velocity
-    if formulation.translation_count:
-        velocity = velocity + np.cross(start.omega, start.rotation @ reduced.center_of_mass)
-    rigid = more["markers"] == "rigid"
+    options["translation"] = suited_translation(options["translation"], reduced.grounded)
+    formulation = Formulation(options["translation"], options["spin"])
+    if formulation.translation_count:  # Exudyn's is the velocity of the mesh origin
+        velocity = velocity + np.cross(omega, turn @ reduced.center_of_mass)
+    speed = _speed_along(turn @ reduced.axis.direction, omega)
     body = add_rotor(
         mbs,
         reduced,
         name=name,
-        position=start.position,
-        rotation=start.rotation,
         initial_velocity=velocity,
         initial_speed=_initial_speed(formulation, speed),
-        gravity=start.gravity,
-        mass_damping=start.mass_damping,
-        stiffness_damping=start.stiffness_damping,
-        marker_offsets=None if rigid else offsets,
-        show_markers=show_markers,
-        frame_node=MESH_ORIGIN,
-        color=start.color,
-        **more,
+        **placed,
+        **options,
     )
-    known_rotor(body).frame_shares = frame_shares(rotor, reduced, modes)
-    for interface, offset in (offsets or {}).items() if rigid else ():
-        # Exudyn's own, which turns with the mean rotation, not with that of the interface
-        mbs.SetMarkerParameter(body.marker(interface), "offset", body.frame.B @ offset)
+    body.script.frame_shares = frame_shares(rotor, reduced, modes)
     return body
 
 
@@ -182,20 +118,17 @@ def numbers(body: RotorBody) -> dict[str, Any]:
     }
 
 
-def _check_prestress(stiffening: str, prestress: Prestress | None) -> None:
-    if prestress is not None and not isinstance(prestress, Prestress):
-        raise TypeError(
-            f"prestress: needs a Prestress, got {checks.shown(prestress)}; a FEMinterface has no "
-            "elements "
-            "to compute one on: use SolidRotor.from_ngsolve(…).prestress() with the same mesh, or "
-            "Prestress.from_matrix(…)"
-        )
-    if stiffening == "full" and prestress is None:
+def _axis_of(omega: np.ndarray) -> SpinAxis:
+    """Return the axis of an angular velocity (3,), mesh axes, through the mesh origin.
+
+    Its largest component is positive, so that the spin counts like the angle of Exudyn's node.
+    """
+    if not np.any(omega):
         raise ValueError(
-            "stiffening='full' needs the static stress: give prestress=, made by "
-            "SolidRotor.from_ngsolve(…).prestress() with the same mesh or by "
-            "Prestress.from_matrix(…), or use stiffening='tilt'"
+            "axis: is not known, for the rotor starts at rest; give axis='x', 'y', 'z' or a "
+            "direction in mesh coordinates"
         )
+    return SpinAxis(omega * np.sign(omega[np.argmax(np.abs(omega))]))
 
 
 def _speed_along(direction: np.ndarray, omega: np.ndarray) -> float:

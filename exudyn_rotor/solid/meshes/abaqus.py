@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from exudyn_rotor.solid.meshes.mesh_data import ElementGroup, MeshData, Refusals
+from exudyn_rotor.solid.meshes.mesh_data import ElementGroup, MeshData, Refusals, reading
 from exudyn_rotor.solid.shapes import KINDS
 
 _TYPES = {
@@ -27,43 +27,25 @@ _REPLACED = {
     "C3D10I": ("tetra10", "taken as C3D10"),
     "C3D10T": ("tetra10", "taken as C3D10"),
 }
-_CONSTRAINTS = {
-    "EQUATION": "equations between nodes",
-    "MPC": "constraints between nodes",
-    "TIE": "surfaces tied together",
-    "RIGID BODY": "a rigid body",
-    "COUPLING": "a coupling",
-    "KINEMATIC COUPLING": "a coupling",
-    "DISTRIBUTING COUPLING": "a coupling",
-    "EMBEDDED ELEMENT": "embedded elements",
-    "CONTACT PAIR": "contact",
-    "CYCLIC SYMMETRY MODEL": "a sector for the whole",
-    "SHELL SECTION": "shells",
-    "BEAM SECTION": "beams",
-    "MEMBRANE SECTION": "membranes",
-    "MASS": "point masses",
-    "ROTARY INERTIA": "rigid inertia",
-    "SPRING": "springs",
-    "DASHPOT": "dampers",
-    "CONNECTOR SECTION": "connectors",
-    "SYSTEM": "positions in another system of coordinates",
-    "NGEN": "nodes by a rule",
-    "NFILL": "nodes by a rule",
-    "NCOPY": "nodes by a rule",
-    "ELGEN": "elements by a rule",
-    "ELCOPY": "elements by a rule",
+_CONSTRAINTS = """EQUATION, MPC, TIE, CONTACT PAIR, EMBEDDED ELEMENT, RIGID BODY, COUPLING,
+    KINEMATIC COUPLING, DISTRIBUTING COUPLING, CYCLIC SYMMETRY MODEL"""
+_OTHERS = """SHELL SECTION, BEAM SECTION, MEMBRANE SECTION, MASS, ROTARY INERTIA, SPRING, DASHPOT,
+    CONNECTOR SECTION"""
+_RULES = "SYSTEM, NGEN, NFILL, NCOPY, ELGEN, ELCOPY"
+_REFUSED = {
+    " ".join(name.split()): what
+    for names, what in (
+        (_CONSTRAINTS, "nodes or surfaces tied to others"),
+        (_OTHERS, "an element that is no solid"),
+        (_RULES, "nodes or elements by a rule"),
+    )
+    for name in names.split(",")
 }
 _DEEPEST = 10  # of files that include files
 
 
 def read(path: Path, refusals: Refusals) -> MeshData:
-    """Return what the deck holds before its first *STEP.
-
-    Raises
-    ------
-    ValueError
-        With file and line, for what cannot be read or is not held.
-    """
+    """Return what the deck holds before its first *STEP."""
     return _Deck(refusals).read(path)
 
 
@@ -80,20 +62,12 @@ class _Deck:
         for place, keyword, options, lines in _blocks(path):
             if keyword == "STEP":
                 break
-            action = getattr(self, "_" + keyword.lower().replace(" ", "_"), None)
-            try:
-                if keyword in _CONSTRAINTS:
-                    self.refusals.leaves_out("*" + keyword, _CONSTRAINTS[keyword])
+            with reading(f"{place}: *{keyword}"):
+                if keyword in _REFUSED:
+                    self.refusals.leaves_out("*" + keyword, _REFUSED[keyword])
                 elif keyword in _READ:
+                    action = getattr(self, "_" + keyword.lower().replace(" ", "_"))
                     action(options, [_fields(line) for line in lines])
-            except (ValueError, IndexError, KeyError) as error:
-                told = f"needs {error}" if isinstance(error, KeyError) else error
-                text = str(told)
-                if text.startswith(self.refusals.label):
-                    raise
-                raise ValueError(
-                    f"{self.refusals.label}: {place}: *{keyword} cannot be read: {text}"
-                ) from error
         self._give_materials()
         return self.data
 

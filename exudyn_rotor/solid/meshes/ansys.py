@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from exudyn_rotor.solid.meshes.mesh_data import ElementGroup, MeshData, Refusals
+from exudyn_rotor.solid.meshes.mesh_data import ElementGroup, MeshData, Refusals, reading
 
 _TETRAHEDRA = {285: "tetra", 187: "tetra10", 92: "tetra10"}
 _LINEAR, _QUADRATIC = (185, 45), (186, 95)
@@ -28,7 +28,7 @@ def read(path: Path, refusals: Refusals) -> MeshData:
     for number, line in lines:
         fields = [field.strip() for field in line.split(",")]
         command = fields[0].upper()
-        try:
+        with reading(f"{command} of line {number}"):
             if command == "ET":
                 types[int(fields[1])] = int(re.sub(r"\D", "", fields[2]))
             elif command == "NBLOCK":
@@ -47,12 +47,6 @@ def read(path: Path, refusals: Refusals) -> MeshData:
                 _give(data, fields[2], fields[1], fields[3])
             elif command in _REFUSED:
                 refusals.leaves_out(command, _REFUSED[command])
-        except (ValueError, IndexError, KeyError, StopIteration) as error:
-            if str(error).startswith(refusals.label):
-                raise
-            raise ValueError(
-                f"{refusals.label}: {command} of line {number} cannot be read: {error}"
-            ) from error
     for (kind, region), table in rows.items():
         numbers = np.array(table, dtype=np.int64)
         data.groups.append(ElementGroup(kind, numbers[:, 0], numbers[:, 1:], region))

@@ -18,15 +18,7 @@ _IGNORED = ("vertex", "line")
 
 
 def load(path: Path) -> meshio.Mesh:
-    """Return the mesh of a file.
-
-    Raises
-    ------
-    ImportError
-        Without meshio.
-    ValueError
-        If meshio cannot read the file.
-    """
+    """Return the mesh of a file."""
     try:
         import meshio
     except ImportError as error:
@@ -43,12 +35,7 @@ def convert(mesh: meshio.Mesh) -> MeshData:
     """Return nodes, solids and named sets; numbers count from zero.
 
     Physical groups of Gmsh, and sets of cells: those of solids are element sets and name regions,
-    those of surfaces are node sets.
-
-    Raises
-    ------
-    ValueError
-        For solids of kinds that are not held, such as pyramids and hexahedra of 27 nodes.
+    those of surfaces are node sets. Pyramids and hexahedra of 27 nodes are refused.
     """
     count = len(mesh.points)
     points = np.zeros((count, 3))
@@ -76,8 +63,8 @@ def convert(mesh: meshio.Mesh) -> MeshData:
                 data.node_sets.setdefault(name, []).extend(nodes)
         elif not cells.type.startswith(_IGNORED):
             raise ValueError(
-                f"mesh: holds {cells.type} cells; needs {', '.join(_kinds())} (in Gmsh: "
-                "Mesh.SecondOrderIncomplete = 1)"
+                f"mesh: holds {cells.type} cells; needs tetrahedra, wedges or hexahedra without "
+                "nodes inside faces (in Gmsh: Mesh.SecondOrderIncomplete = 1)"
             )
     return data
 
@@ -87,7 +74,8 @@ def _names(mesh: meshio.Mesh, block: int) -> list[tuple[str, np.ndarray]]:
     found = []
     if "gmsh:physical" in mesh.cell_data:
         tags = np.asarray(mesh.cell_data["gmsh:physical"][block])
-        names = {int(tag): name for name, (tag, _) in _physical(mesh, block).items()}
+        dim = mesh.cells[block].dim
+        names = {int(tag): name for name, (tag, of) in mesh.field_data.items() if of == dim}
         found += [(names.get(int(tag), str(tag)), tags == tag) for tag in np.unique(tags)]
     else:
         for name, sets in mesh.cell_sets.items():
@@ -96,13 +84,3 @@ def _names(mesh: meshio.Mesh, block: int) -> list[tuple[str, np.ndarray]]:
                 chosen[np.asarray(sets[block], dtype=np.int64)] = True
                 found.append((name, chosen))
     return found
-
-
-def _physical(mesh: meshio.Mesh, block: int) -> dict[str, np.ndarray]:
-    """Return the physical groups of the dimension of a block."""
-    dim = mesh.cells[block].dim
-    return {name: entry for name, entry in mesh.field_data.items() if entry[1] == dim}
-
-
-def _kinds() -> list[str]:
-    return [name for name in KINDS if " " not in name]

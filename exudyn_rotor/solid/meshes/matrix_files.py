@@ -21,11 +21,6 @@ def read(path: Path, numbers: list[int]) -> tuple[sp.csr_array, sp.csr_array]:
         with M and one with K.
     numbers : list of int
         Numbers of the nodes in the file of the mesh.
-
-    Raises
-    ------
-    ValueError
-        If a file is missing, or does not hold every displacement of these nodes.
     """
     if path.suffix == ".sti":
         order = _equations(path.with_suffix(".dof"), numbers)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -57,31 +58,28 @@ class MeshData:
     materials: dict[str, dict[str, float]] = field(default_factory=dict)
 
 
+class CannotBeReadError(ValueError):
+    """What is wrong with a file, and where."""
+
+
 class Refusals:
     """What a file holds that a solid rotor does not, unless it is to be left out.
 
-    Parameters
-    ----------
-    label : str
-        Of the file, in messages.
-    leave_out : iterable of str
-        Keywords and types of elements that the user does without.
+    `leave_out` are keywords and types of elements that the user does without.
     """
 
-    def __init__(self, label: str, leave_out: Iterable[str]) -> None:
-        self.label = label
+    def __init__(self, leave_out: Iterable[str]) -> None:
         self._left_out = {name.upper().lstrip("*") for name in leave_out}
         self._replaced: dict[str, str] = {}
 
-    def leaves_out(self, name: str, what: str) -> bool:
-        """Return True if `name` is to be left out; raise ValueError else."""
-        if name.upper().lstrip("*") in self._left_out:
-            return True
-        raise ValueError(
-            f"{self.label}: holds {name} ({what}), which a rotor of solid elements does not have; "
-            f"pass leave_out=[{name!r}] to do without, and join what it joined by interfaces, "
-            "supports, add_disc or add_point_mass"
-        )
+    def leaves_out(self, name: str, what: str) -> None:
+        """Refuse what a file holds by the name `name`, unless it is to be left out."""
+        if name.upper().lstrip("*") not in self._left_out:
+            raise CannotBeReadError(
+                f"mesh: holds {name} ({what}), which a rotor of solid elements does not have; pass "
+                f"leave_out=[{name!r}] to do without, and join what it joined by interfaces, "
+                "supports, add_disc or add_point_mass"
+            )
 
     def replaces(self, name: str, how: str) -> None:
         """Note that elements `name` are taken as others."""
@@ -91,4 +89,16 @@ class Refusals:
         """Warn once of what was replaced."""
         if self._replaced:
             told = "; ".join(f"{name}: {how}" for name, how in sorted(self._replaced.items()))
-            warnings.warn(f"{self.label}: {told}", UserWarning, stacklevel=user_level())
+            warnings.warn(f"mesh: {told}", UserWarning, stacklevel=user_level())
+
+
+@contextmanager
+def reading(place: str) -> Iterator[None]:
+    """Say of what is wrong within where in the file it stands."""
+    try:
+        yield
+    except CannotBeReadError:
+        raise
+    except (ValueError, IndexError, KeyError, StopIteration) as error:
+        told = f"{error} is missing" if isinstance(error, KeyError) else error
+        raise CannotBeReadError(f"mesh: {place} cannot be read: {told}") from error

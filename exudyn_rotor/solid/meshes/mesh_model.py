@@ -48,7 +48,7 @@ def import_model(
     if isinstance(leave_out, str):
         raise TypeError(f"leave_out: needs a list of names, got the text {leave_out!r}")
     names = checks.items(leave_out, "leave_out", "names")
-    refusals = Refusals("mesh", [checks.label(name, "leave_out") for name in names])
+    refusals = Refusals([checks.label(name, "leave_out") for name in names])
     data = _read(mesh, refusals)
     if not data.groups:
         raise ValueError("mesh: needs tetrahedra, wedges or hexahedra, got no solid element")
@@ -71,17 +71,8 @@ def import_model(
             }
             for name, values in data.materials.items()
         }
-    by_name = units.materials_by_region(names, materials)
-    if check_units:
-        for name, material in by_name.items():
-            units.check_material_units(name, material)
-    elements = SolidElements(
-        lengths * nodes,
-        blocks,
-        names,
-        np.array([units.lame_parameters(by_name[name]) for name in names]),
-        np.array([by_name[name]["density"] for name in names]),
-    )
+    by_name = units.materials_by_region(names, materials, check_units)
+    elements = SolidElements.of_materials(lengths * nodes, blocks, names, by_name)
     elements.check_shapes()
     refusals.warn()
     return FiniteElementModel.of_elements(elements, sets, triangles)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import scipy.sparse as sp
 
-from exudyn_rotor.solid.meshes.mesh_data import ElementGroup, MeshData, Refusals
+from exudyn_rotor.solid.meshes.mesh_data import ElementGroup, MeshData, Refusals, reading
 
 # Kinds by card and number of nodes, and the order of meshio: mid nodes on top before upright ones.
 _SOLIDS = {
@@ -19,16 +19,9 @@ _SOLIDS = {
     ("CHEXA", 8): ("hexahedron", range(8)),
     ("CHEXA", 20): ("hexahedron20", [*range(12), 16, 17, 18, 19, 12, 13, 14, 15]),
 }
-_CORNERS = {"CTETRA": 4, "CPENTA": 6, "CHEXA": 8}
 _REFUSED = {
-    "MPC": "equations between nodes",
-    "RBE1": "a rigid element",
-    "RBE2": "a rigid element",
-    "RBE3": "a weighted mean",
-    "RBAR": "a rigid bar",
-    "RROD": "a rigid bar",
-    "CONM1": "a point mass",
-    "CONM2": "a point mass",
+    **dict.fromkeys(("MPC", "RBE1", "RBE2", "RBE3", "RBAR", "RROD"), "a constraint between nodes"),
+    **dict.fromkeys(("CONM1", "CONM2"), "a point mass"),
 }
 # Cards with C that are no elements.
 _NO_ELEMENTS = ("CORD", "CMASS", "CTYPE")
@@ -41,17 +34,19 @@ def read(path: Path, refusals: Refusals) -> MeshData:
     properties, materials = {}, {}
     for place, fields in cards(path):
         card = fields[0]
-        try:
+        with reading(f"{place}: {card}"):
             if card == "GRID":
                 if fields[2] not in ("", "0"):
                     raise ValueError("positions must be in the basic system of coordinates")
                 data.numbers.append(int(fields[1]))
                 data.nodes.append([_real(value) for value in fields[3:6]])
-            elif card in _CORNERS:
+            elif card in ("CTETRA", "CPENTA", "CHEXA"):
                 entries = [int(value) for value in fields[3:] if value]
-                _, order = _SOLIDS[card, len(entries)]
+                if (card, len(entries)) not in _SOLIDS:
+                    raise ValueError("nodes of an element are missing")
+                kind, order = _SOLIDS[card, len(entries)]
                 row = [int(fields[1]), *(entries[i] for i in order)]
-                elements.setdefault((_SOLIDS[card, len(entries)][0], fields[2]), []).append(row)
+                elements.setdefault((kind, fields[2]), []).append(row)
             elif card == "PSOLID":
                 properties[fields[1]] = fields[2]
             elif card == "MAT1":
@@ -60,11 +55,6 @@ def read(path: Path, refusals: Refusals) -> MeshData:
                 refusals.leaves_out(card, _REFUSED[card])
             elif card.startswith("C") and not card.startswith(_NO_ELEMENTS):
                 refusals.leaves_out(card, "no tetrahedron, wedge or hexahedron")
-        except (ValueError, IndexError, KeyError) as error:
-            if str(error).startswith(refusals.label):
-                raise
-            told = f"nodes of an element are missing: {error}" if card in _CORNERS else error
-            raise ValueError(f"{refusals.label}: {place}: {card} cannot be read: {told}") from error
     for (kind, region), rows in elements.items():
         table = np.array(rows, dtype=np.int64)
         data.groups.append(ElementGroup(kind, table[:, 0], table[:, 1:], region))
@@ -74,13 +64,7 @@ def read(path: Path, refusals: Refusals) -> MeshData:
 
 
 def read_dmig(path: Path, nodes: list[int], name: str) -> sp.csr_array:
-    """Return the symmetric real matrix `name` of DMIG cards on the displacements of `nodes`.
-
-    Raises
-    ------
-    ValueError
-        If there is none, it is not symmetric and real, or it holds rotations or other nodes.
-    """
+    """Return the symmetric real matrix `name` of DMIG cards on the displacements of `nodes`."""
     places = {number: 3 * i for i, number in enumerate(nodes)}
     rows, columns, values = [], [], []
     known = set()

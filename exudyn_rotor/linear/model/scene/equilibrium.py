@@ -1,4 +1,4 @@
-"""Equilibria of a scene at rest, at all angles of the rotor, also in contact with stops.
+"""Equilibria of a scene, also in contact with stops.
 
 By Newton's method with a line search. What nothing holds yet is pressed by its load against a
 softness that lets it go farther in every step, until something holds it. Friction follows the
@@ -14,7 +14,7 @@ import scipy.linalg
 
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.journal_start import journal_start
-from exudyn_rotor.linear.model.scene.probe import Probe, linearised
+from exudyn_rotor.linear.model.scene.probe import Probe, linearised, unbalanced
 from exudyn_rotor.linear.model.scene.scene_coordinates import UNHELD, Motion, SceneCoordinates
 from exudyn_rotor.solvers.line_search import step_share
 
@@ -24,7 +24,6 @@ SMALLEST = 1e-5  # m: the tolerance of smaller motions, for Exudyn rounds positi
 _ROUNDING = 1e-13  # of the largest stiffness: what turning by a skew axis leaves of none
 BALANCED = 1e-8  # m/s² that may be left where a contact resists with the square of its depth,
 _FEW_ITERATIONS, _MOST_ITERATIONS = 10, 60  # after these
-_SAMPLES = 7  # angles of the rotor, an odd number: the harmonics are exact at all of them
 _FIRST_REACH, _FURTHER = 1e-6, 4.0  # m of what nothing holds, and its growth in every step
 
 
@@ -34,49 +33,35 @@ def motion_at_rest(
     tolerance: float,
     angle: float,
     begin: Motion | None = None,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return orders (h,) and harmonics (h, k) of the equilibria at all angles of the rotor.
+) -> Motion:
+    """Return orders (3,) and harmonics (3, k) of the equilibria at three angles of the rotor.
 
-    Exact at the start's angle [rad] and those of the same distance from it. A search begins with
-    the motion `begin` where one is given.
+    The first is the start's angle [rad]. A search begins with the motion `begin` where one is
+    given.
 
     Raises
     ------
     UnconvergedError
         Where there is no equilibrium.
     """
-    first, start = begin or (np.arange(-1, 2), journal_start(scene, 0.0, np.arange(-1, 2)))
-    count = _SAMPLES
-    while True:
-        angles = angle + 2.0 * np.pi * np.arange(count) / count
-        orders = np.arange(-(count // 2), count // 2 + 1)
-        values = []
-        for theta in angles:
-            near = values[-1] if values else (np.exp(1j * theta * first) @ start).real
-            values.append(_at_angle(scene, probe, theta, near, tolerance))
-        harmonics = np.exp(-1j * np.outer(orders, angles)) @ values / count
-        sizes = np.abs(harmonics).max(axis=1)
-        if sizes[[0, -1]].max() <= tolerance * sizes.max() or count > 2 * _SAMPLES:
-            return orders, harmonics
-        count = 2 * count + 1
-
-
-def _at_angle(
-    scene: SceneCoordinates, probe: Probe, theta: float, start: np.ndarray, tolerance: float
-) -> np.ndarray:
-    """Return the coordinates (k,) of an equilibrium at one angle of the rotor [rad]."""
-    still = np.zeros_like(start)
-
-    def at(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        point = linearised(probe, theta, y, still, still)
-        return point.K, point.residual
-
-    def unbalanced(y: np.ndarray) -> np.ndarray:
-        return probe.unbalanced(theta, y)
-
+    orders = np.arange(-1, 2)
+    first, start = begin or (orders, journal_start(scene, 0.0, orders))
     metres = 1.0 / scene.metre(probe.masses)
-    where = f"scene at rest, at the angle {theta:g} rad of the rotor"
-    return equilibrium(scene, at, unbalanced, metres, start, tolerance, where)
+    angles, found = angle + 2.0 * np.pi * np.arange(3) / 3.0, []
+    for theta in angles:
+        near = found[-1] if found else (np.exp(1j * theta * first) @ start).real
+        still = np.zeros_like(near)
+
+        def at(y: np.ndarray, theta: float = theta, none: np.ndarray = still) -> tuple:
+            point = linearised(probe, theta, y, none, none)
+            return point.K, point.residual
+
+        def left(y: np.ndarray, theta: float = theta, none: np.ndarray = still) -> np.ndarray:
+            return unbalanced(probe, theta, y, none, none)
+
+        where = f"scene at rest, at the angle {theta:g} rad of the rotor"
+        found.append(equilibrium(scene, at, left, metres, near, tolerance, where))
+    return orders, np.exp(-1j * np.outer(orders, angles)) @ found / 3.0
 
 
 def equilibrium(
@@ -88,22 +73,11 @@ def equilibrium(
     tolerance: float,
     where: str,
 ) -> np.ndarray:
-    """Return the coordinates (k,) of an equilibrium.
+    """Return the coordinates (k,) of an equilibrium, beside `start`.
 
-    Parameters
-    ----------
-    scene : SceneCoordinates
-    linearised : callable
-        Takes coordinates, gives stiffness (k, k) and what is unbalanced (k,).
-    unbalanced : callable
-        Gives the latter alone.
-    metres : ndarray, shape (k,)
-        Metres per unit of each coordinate.
-    start : ndarray, shape (k,)
-    tolerance : float
-        Largest last step, relative to the motion.
-    where : str
-        Of messages.
+    `linearised` gives stiffness (k, k) and what is unbalanced (k,), `unbalanced` the latter alone;
+    `metres` are those per unit of each coordinate, the last step is below `tolerance` of the
+    motion, and messages begin with `where`.
 
     Raises
     ------

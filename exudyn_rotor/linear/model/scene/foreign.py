@@ -1,158 +1,133 @@
-"""What of Exudyn is neither the rotor nor attached to it, linearised at the angles of a revolution.
+"""What acts on a rotor in a scene and is no support of this package, as one linear element.
 
-Differences of Exudyn's forces are taken by the unknowns. Springs and dampers have the same
-derivatives at every speed, which one direction tells: then they are not taken again.
+Exudyn's forces have derivatives by the unknowns y of a scene. They act on the rotor by its markers:
+with their motion and the unknowns beside the rotor, u = B y, is ``K_y = Bᵀ K B``, which tells the
+stiffness K. As an element with the motion u it acts on a round rotor as supports do.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.linalg as la
 
-from exudyn_rotor.linear.equations import Terms, UnconvergedError
+from exudyn_rotor.linear.equations import Terms, UnconvergedError, stacked
+from exudyn_rotor.linear.model.assembly import Element, Seen
+from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.linear.model.scene.probe import Probe
-from exudyn_rotor.linear.model.scene.seen import Seen
+from exudyn_rotor.theory.rotating_axes import axial_rotation, axial_skew
 
-_FEW, _MOST = 7, 112  # angles of a revolution
-_SAME = 1e-5  # share of a force by which its change may miss what derivatives tell
-_SKEW = 1e-9  # share of a matrix of differences whose skew part is rounding
-_LEAST = 1e-9  # share of Fourier terms that is
-_NOISE = 1e-9  # of what laws resist, which Exudyn's forces have and which is taken from these
-_BETWEEN = 1.2345  # rad, an angle between those of samples
+ALL = ""  # the point of a body beside the rotor that has all of its coordinates
+_ANGLES = (0.0, 1.0)  # rad, at which it has to be the same
+# rows of markers, and share of singular values of their motion that counts: the first that do
+_TRIED = tuple((rows, least) for rows in (3, 6) for least in (1e-3, 1e-5, 1e-7))
+_SAME = 1e-5  # share of a matrix that may change with the angle, or that markers may miss
+_ROUNDING = 1e-7  # share of a matrix of Exudyn's differences that is their rounding
+State = Callable[[float], tuple[np.ndarray, np.ndarray]]  # of an angle: coordinates and rates
 
 
 @dataclass(frozen=True, eq=False)
 class Foreign:
-    """Less the derivatives by y and its rate held along T(θ), as Fourier terms (n, k, k)."""
+    """Stiffness and damping between the markers of a rotor and what is beside it.
+
+    Attributes
+    ----------
+    K, D : ndarray, shape (p, p)
+        By `rows` of the motion of each marker, then by the unknowns beside the rotor.
+    rows : int
+        3 for displacements along (n1, n2, e), 6 for rotations, too.
+    places : tuple of str
+        Names of the markers.
+    """
 
     K: np.ndarray
     D: np.ndarray
-    steps: tuple[float, float] = (1.0, 1.0)  # of the differences [m], [m/s]
+    rows: int
+    places: tuple[str, ...]
 
     @classmethod
-    def of(cls, probe: Probe, seen: Seen, z: np.ndarray) -> Foreign:
-        """Return the derivatives about a motion that stands still, by coordinates z (l,).
+    def of(cls, scene: LinearScene, probe: Probe, state: State) -> Foreign:
+        """Return what is foreign, about a motion that stands still.
 
         Raises
         ------
         UnconvergedError
-            Where 112 angles of a revolution do not resolve them.
+            Where it acts on the rotor by other motions than those of markers, or changes as the
+            rotor turns.
         """
-        count = _FEW
-        while count <= _MOST:
-            angles = 2.0 * np.pi * np.arange(count) / count
-            points = [_slopes(probe, seen, theta, z) for theta in angles]
-            K, D = (np.fft.fft(X, axis=0) / count for X in zip(*points, strict=True))
-            found = cls(K, D, (probe.step or 1.0, probe.velocity_step or 1.0))
-            if found.holds(probe, seen, z):
+        at_angles = [_slopes(scene, probe, theta, state) for theta in _ANGLES]
+        _, K_y, D_y = at_angles[0]
+        for rows, least in _TRIED:
+            B, S, sizes = _motions(scene, rows, 0.0)
+            inverse = np.linalg.pinv(sizes[:, None] * B, rcond=least) * sizes
+            K, D = (inverse.T @ X @ inverse for X in (K_y, D_y))
+            K = K - probe.speed * D @ S
+            found = cls(_without_rounding(K), _without_rounding(D), rows, (*scene.foreign_places,))
+            if all(found._tells(scene, probe.speed, *each) for each in at_angles):
                 return found
-            count *= 2
         raise UnconvergedError(
-            f"linear scene at {probe.speed:g} rad/s: {_MOST} angles of a revolution do not resolve "
-            "the coefficients; is there a stop, contact or friction?"
+            f"linear scene at {probe.speed:g} rad/s: an object acts on the rotor other than by "
+            "markers of its body, or otherwise as the rotor turns; let it act at interfaces, "
+            "body.marker(name), or add a Support of frame='rotor' in its place"
         )
 
-    def at(self, theta: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return K and D (k, k) at an angle."""
-        orders = np.fft.fftfreq(len(self.K), 1.0 / len(self.K))
-        waves = np.exp(1j * orders * theta)
-        return tuple(np.tensordot(waves, X, 1).real for X in (self.K, self.D))
+    def _tells(
+        self, scene: LinearScene, speed: float, theta: float, K_y: np.ndarray, D_y: np.ndarray
+    ) -> bool:
+        """Return whether it has the slopes by the unknowns at an angle."""
+        B, S, _ = _motions(scene, self.rows, theta)
+        missed = [B.T @ (self.K + speed * self.D @ S) @ B - K_y, B.T @ self.D @ B - D_y]
+        stiff, damped, *left = (np.abs(X).max(initial=0.0) for X in (K_y, D_y, *missed))
+        return left[0] <= _SAME * (stiff + abs(speed) * damped) and left[1] <= _SAME * damped
 
-    def holds(self, probe: Probe, seen: Seen, z: np.ndarray) -> bool:
-        """Return whether the force at the speed of a probe changes as the derivatives tell.
+    def element(self, kind: str) -> Element:
+        """Return the element; an 'undamped' one has gyroscopic terms in place of damping."""
+        K, D, rows = self.K, self.D, self.rows
+        if kind == "undamped":
+            K, D = 0.5 * (K + K.T), 0.5 * (D - D.T)
+        ends = [("", name) for name in self.places]
+        has_others = len(K) > rows * len(ends)
 
-        At one angle along one direction, by motion and rate.
-        """
-        T, x, v = _state(probe, seen, _BETWEEN, z)
-        d = np.cos(1.0 + np.arange(len(probe.masses))) * probe.scene.metre(probe.masses)
-        for along, step, X in zip((0, 1), self.steps, self.at(_BETWEEN), strict=True):
-            moves = np.zeros((2, len(x)))
-            moves[along] = step * T @ d
-            ends = [_force(probe, _BETWEEN, x + s * moves[0], v + s * moves[1]) for s in (1, -1)]
-            told, found = 2.0 * step * X @ d, T.T @ (ends[1] - ends[0])
-            most = np.maximum(np.abs(told).max(), np.abs(found).max())
-            rounding = _NOISE * step * probe.resisting[along] * np.abs(d).max()
-            if np.abs(found - told).max() > _SAME * most + rounding:
-                return False
-        return True
+        def motion(seen: Seen) -> Terms:
+            parts = [{n: U[:rows] for n, U in seen(end).items()} for end in ends]
+            return stacked([*parts, seen(("scene", ALL))] if has_others else parts)
 
-    def terms(
-        self, probe: Probe, seen: Seen, speed: float, undamped: np.ndarray | None
-    ) -> tuple[Terms, Terms]:
-        """Return the Fourier terms of damping and stiffness by the coordinates z, (l, l).
-
-        Without damping `undamped` are their rates over Ω as seen from outside, (l, l).
-        """
-        count = len(self.K) if speed else 1
-        samples = [
-            self._acting(probe, seen, 2.0 * np.pi * i / count, undamped) for i in range(count)
-        ]
-        found = []
-        for X in zip(*samples, strict=True):
-            spectrum = np.fft.fft(np.array(X), axis=0) / count
-            most = np.abs(spectrum).max(initial=0.0)
-            terms = {0: spectrum[0].real}
-            for n in range(1, (count + 1) // 2):
-                if np.abs(spectrum[n]).max(initial=0.0) > _LEAST * most:
-                    terms[n], terms[-n] = spectrum[n], spectrum[n].conj()
-            found.append(terms)
-        return tuple(found)
-
-    def _acting(
-        self, probe: Probe, seen: Seen, theta: float, undamped: np.ndarray | None
-    ) -> tuple[np.ndarray, np.ndarray]:
-        D, K = acting(probe, seen, theta, *self.at(theta))
-        if undamped is not None:
-            K = K - seen.speed * D @ undamped  # by rates alone
-            D, K = 0.5 * (D - D.T), 0.5 * (K + K.T)
-        return D, K
+        return Element(tuple(ends), lambda *_: (K, D), motion, varies=True, stiffness_varies=True)
 
 
-def between(known: Sequence[tuple[float, Foreign]], speed: float) -> Foreign:
-    """Return derivatives on the straight line through those at up to two speeds [rad/s]."""
-    (first, one), (second, other) = known[0], known[-1]
-    if first == second or one.K.shape != other.K.shape:
-        return other
-    share = (speed - first) / (second - first)
-    K, D = (X + share * (Y - X) for X, Y in ((one.K, other.K), (one.D, other.D)))
-    return Foreign(K, D, other.steps)
-
-
-def acting(
-    probe: Probe, seen: Seen, theta: float, K: np.ndarray, D: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return damping and stiffness by z (l, l) of those by y at one angle."""
+def _slopes(
+    scene: LinearScene, probe: Probe, theta: float, state: State
+) -> tuple[float, np.ndarray, np.ndarray]:
+    """Return an angle, and stiffness and damping by rotor and others there, (k, k)."""
     T, T1, _ = probe.turn(theta)
-    W, W1, _ = seen.at(theta)
-    D = without_noise(D)
-    K = without_noise(K) @ W + D @ (T.T @ (seen.speed * T1 @ W + T @ W1))
-    return W.T @ D @ W, W.T @ K
+    _, K, D = probe.foreign(theta, *state(theta))
+    damping = T.T @ D
+    chosen = np.r_[np.flatnonzero(scene.touching), scene.others]
+    slopes = T.T @ K @ T + probe.speed * damping @ T1, damping @ T
+    return theta, *(X[np.ix_(chosen, chosen)] for X in slopes)
 
 
-def without_noise(X: np.ndarray) -> np.ndarray:
+def _motions(
+    scene: LinearScene, rows: int, theta: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return B of ``u = B y`` as seen from outside, S of ``u̇ = B ẏ + Ω S B y``, and sizes of u."""
+    turn = np.kron(np.eye(rows // 3), axial_rotation(theta))
+    count, beside = len(scene.foreign_places), len(scene.others)
+    U = [np.zeros((0, int(scene.touching.sum())))]
+    U += [turn @ motion[:rows] for motion in scene.foreign_places.values()]
+    none = np.zeros((beside, beside))
+    reach = np.repeat([1.0, scene.length], 3)[:rows]
+    return (
+        la.block_diag(np.vstack(U), np.eye(beside)),
+        la.block_diag(axial_skew(rows * count), none),
+        np.r_[np.tile(reach, count), np.ones(beside)],
+    )
+
+
+def _without_rounding(X: np.ndarray) -> np.ndarray:
     """Return a matrix of differences without a skew part that is their rounding."""
     symmetric = 0.5 * (X + X.T)
-    noise = np.abs(X - symmetric).max(initial=0.0) <= _SKEW * np.abs(X).max(initial=0.0)
+    noise = np.abs(X - symmetric).max(initial=0.0) <= _ROUNDING * np.abs(X).max(initial=0.0)
     return symmetric if noise else X
-
-
-def _state(
-    probe: Probe, seen: Seen, theta: float, z: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return T, and the free coordinates and rates of a motion by constant coordinates z."""
-    T, T1, _ = probe.turn(theta)
-    W, W1, _ = seen.at(theta)
-    return T, T @ W @ z, (probe.speed * T1 @ W + T @ W1) @ z
-
-
-def _force(probe: Probe, theta: float, x: np.ndarray, v: np.ndarray) -> np.ndarray:
-    return probe.foreign(theta, x, v) + probe.known(theta, x, v, probe.drives)[0]
-
-
-def _slopes(probe: Probe, seen: Seen, theta: float, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    T, x, v = _state(probe, seen, theta, z)
-    _, K, D = probe.known(theta, x, v, probe.drives)
-    more = probe.slopes_along(theta, x, v)
-    return T.T @ (K @ T + more[0]), T.T @ (D @ T + more[1])

@@ -14,7 +14,7 @@ from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
-from exudyn_rotor.multibody.rotor.more_markers import interface_motion
+from exudyn_rotor.linear.model.turning import interface_motion
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import spin_at_start
 from exudyn_rotor.theory.rotating_axes import into_rotor_frame, parts_across
@@ -25,13 +25,7 @@ _SOFT = 1e-8  # of the stiffest mode: resistance of free motions, which are pref
 def journal_start(scene: SceneCoordinates, speed: float, orders: np.ndarray) -> np.ndarray:
     """Return harmonics (h, k) of the motion with all journals at rest in their equilibria.
 
-    Parameters
-    ----------
-    scene : SceneCoordinates
-    speed : float
-        Spin speed [rad/s].
-    orders : ndarray of int, shape (h,)
-        With −1, 0 and 1 among them.
+    At a spin speed [rad/s]; the orders (h,) have −1, 0 and 1 among them.
 
     Raises
     ------
@@ -48,15 +42,15 @@ def journal_start(scene: SceneCoordinates, speed: float, orders: np.ndarray) -> 
     places = journal_places(scene.body, speed)
     if not places:
         return harmonics
-    U = np.vstack([across(scene, name) for name in places])
-    resistance = np.zeros(len(scene.free))
-    resistance[scene.modal] = np.diag(scene.body.motion.invariants.K)
-    W = 1.0 / (resistance + _SOFT * max(resistance.max(), 1.0))
-    motion = scene.N.T @ (W[:, None] * U.T @ np.linalg.pinv((U * W) @ U.T))
+    source, columns = scene.body.selection.source, scene.columns
+    U = np.vstack([interface_motion(source, name)[:2] @ columns for name in places])
+    resistance = np.einsum("ir,ij,jr->r", columns, source.invariants.K, columns)
+    W = 1.0 / (np.abs(resistance) + _SOFT * max(resistance.max(), 1.0))
+    motion = W[:, None] * U.T @ np.linalg.pinv((U * W) @ U.T)
     turned = [into_rotor_frame(np.array([*place, 0.0])) for place in places.values()]
     for n in (-1, 1):
         target = np.concatenate([harmonic[n][:2] for harmonic in turned])
-        harmonics[at[n]] += motion @ target
+        harmonics[at[n], scene.touching] += motion @ target
     return harmonics
 
 
@@ -69,15 +63,6 @@ def _tilts(scene: SceneCoordinates, speed: float) -> np.ndarray:
             tilts = one.support.tilts(speed, loads[one.support])
             found[one.own_coordinates(scene.body.mbs)] = np.nan_to_num(tilts)
     return found[scene.free]
-
-
-def across(scene: SceneCoordinates, name: str) -> np.ndarray:
-    """Return the motion of a journal across the axis by the free coordinates, turning axes."""
-    motion = np.zeros((3, len(scene.free)))
-    motion[: scene.count, : scene.count] = np.eye(scene.count)
-    modes = interface_motion(scene.body, name)[1][:3]
-    motion[:, scene.modal] = scene.axes.T @ scene.body.frame.B.T @ modes
-    return motion[:2]
 
 
 def journal_places(body: RotorBody, speed: float) -> dict[str, np.ndarray]:

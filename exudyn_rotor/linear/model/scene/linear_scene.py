@@ -9,7 +9,7 @@ Neglected: the change of mass matrices and constraint directions along small ste
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import exudyn
@@ -23,14 +23,15 @@ from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.calls import kept
+from exudyn_rotor.linear.equations import others
 from exudyn_rotor.linear.model.body import RotorAlone
-from exudyn_rotor.linear.model.linear_model import beside
 from exudyn_rotor.linear.model.scene.equilibrium import motion_at_rest
 from exudyn_rotor.linear.model.scene.journal_start import static_loads
 from exudyn_rotor.linear.model.scene.probe import probing
 from exudyn_rotor.linear.model.scene.scene_checks import check_period, check_scene
-from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates, nullspace
+from exudyn_rotor.linear.model.scene.scene_coordinates import Motion, SceneCoordinates, nullspace
 from exudyn_rotor.linear.model.scene.steady_motion import steady_motion
+from exudyn_rotor.linear.model.turning import interface_motion
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import spin_at_start
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
@@ -42,17 +43,7 @@ _HELD = 1e-8  # share of a motion of the rotor that is none of the scene
 
 @dataclass(frozen=True, eq=False)
 class LinearScene(SceneCoordinates):
-    """An assembled scene around one rotor, ready for any spin speed; made by :meth:`of`.
-
-    Attributes
-    ----------
-    body, free, N, rest
-        See :class:`SceneCoordinates`.
-    derivatives : list of (float, Foreign)
-        Of what is foreign, at the last speeds at which they were taken [rad/s].
-    """
-
-    derivatives: list = field(default_factory=list, init=False, repr=False)
+    """An assembled scene around one rotor, ready for any spin speed; made by :meth:`of`."""
 
     @classmethod
     def of(cls, mbs: exudyn.MainSystem, body: RotorBody) -> LinearScene:
@@ -83,28 +74,19 @@ class LinearScene(SceneCoordinates):
     # ------------------------------------------------------------------ the rotor
 
     @cached_property
-    def touching(self) -> np.ndarray:
-        """Which of the unknowns move the rotor, (k,)."""
-        return np.any(self.N[: self.modal.stop] != 0.0, axis=0)
-
-    @cached_property
-    def columns(self) -> np.ndarray:
-        """Columns of the reduced rotor by the unknowns that move it, (n, r)."""
-        selection = self.body.selection
-        moved = selection.source.invariants.S.T @ self.axes[:, : self.count]
-        return np.hstack([moved, selection.T]) @ self.N[: self.modal.stop, self.touching]
-
-    @cached_property
     def spin_column(self) -> np.ndarray:
-        """Columns of the reduced rotor by a free spin, (n, 1); (n, 0) where it is prescribed.
-
-        About the axis: supports, and all that is foreign, leave this motion free.
-        """
+        """Columns of the reduced rotor by a free spin, (n, 1); (n, 0) where it is prescribed."""
         source = self.body.selection.source
         if not self.body.formulation.has_spin:
             return np.zeros((source.size, 0))
         center = source.center_of_mass
         return source.invariants.moved(source.axis.project(center) - center).g[:, None]
+
+    @cached_property
+    def by_columns(self) -> np.ndarray:
+        """Unknowns that move the rotor by the coordinates of the reduced rotor, (r, n)."""
+        both = np.hstack([self.columns, self.spin_column])
+        return np.linalg.pinv(both)[: self.columns.shape[1]]
 
     @kept
     def held(self, alone: RotorAlone) -> np.ndarray:
@@ -117,40 +99,46 @@ class LinearScene(SceneCoordinates):
 
     @kept
     def rotor(self, alone: RotorAlone, whole: bool) -> RotorAlone:
-        """Return a rotor without motions that it does not have in the scene."""
+        """Return a rotor without motions that it does not have in the scene.
+
+        It has the places of foreign markers beside those of its interfaces.
+        """
         held = self.held(alone)
-        if not held.shape[1]:
-            return alone
-        if not whole:
-            held = la.orth(alone.turning.still @ held)
-        V = beside(held)
-        terms = alone.terms
-        terms = replace(
-            terms,
-            h=V.T @ terms.h,
-            g=V.T @ terms.g,
-            **{
-                name: None if X is None else V.T @ X @ V
-                for name, X in ((n, getattr(terms, n)) for n in ("G", "C_hat", "W", "B", "K4"))
-            },
-        )
-        spin = alone.spin
-        if spin is not None and np.linalg.norm(spin.momentum @ V) < 0.5:
-            spin = None
-        elif spin is not None:
-            spin = replace(
-                spin, momentum=spin.momentum @ V, turn=spin.turn @ V, rigid=V.T @ spin.rigid
-            )
-        return replace(
-            alone,
-            invariants=alone.invariants.in_basis(V),
-            terms=terms,
-            Q=alone.Q @ V,
-            turning=alone.turning.within(V),
-            spin=spin,
-        )
+        if held.shape[1]:
+            alone = alone.within(others(held if whole else la.orth(alone.turning.still @ held)))
+        source = self.body.selection.source
+        inner = source.in_attached.T if len(alone.Q) > source.size else np.eye(source.size)
+        places = {
+            name: motion @ self.by_columns @ inner
+            for name, motion in self.foreign_places.items()
+            if name not in source.interfaces
+        }
+        return replace(alone, places=places)
 
     # ------------------------------------------------------------------ what is beside it
+
+    @cached_property
+    def foreign_places(self) -> dict[str, np.ndarray]:
+        """Motion (6, r) of markers that anything foreign acts on, rotor frame, by their names.
+
+        Along (n1, n2, e), by the unknowns that move the rotor.
+        """
+        mbs, source = self.body.mbs, self.body.selection.source
+        named = {int(marker): name for name, marker in self.body.markers.items()}
+        numbers = set()
+        for item in self.foreign_items:
+            numbers |= {int(n) for n in item.get("markerNumbers", [item.get("markerNumber", -1)])}
+        found = {one.at: None for one in self.body.drives if one.at is not None}
+        own = int(self.body.objects["marker_body"])
+        for number in sorted(numbers - {-1}):
+            if int(mbs.GetMarker(number).get("bodyNumber", -2)) == own:
+                found[named.get(number, f"marker {number}")] = number
+        return {
+            name: interface_motion(source, name) @ self.columns
+            if name in source.interfaces
+            else self.marker_motion(number)[:, self.touching]
+            for name, number in found.items()
+        }
 
     @cached_property
     def given(self) -> list[Given]:
@@ -165,7 +153,7 @@ class LinearScene(SceneCoordinates):
 
     @cached_property
     def others(self) -> np.ndarray:
-        """Unknowns of what is neither the rotor nor attached to it, shape (o,)."""
+        """Unknowns of what is neither the rotor nor a support, shape (o,)."""
         own = [self.own_unknowns(one) for one in self.body.supports]
         return np.setdiff1d(np.flatnonzero(~self.touching), np.concatenate([[], *own]))
 
@@ -181,7 +169,7 @@ class LinearScene(SceneCoordinates):
         with probing(self, 0.0) as probe:
             return probe.mass_beside()[np.ix_(self.others, self.others)]
 
-    def base_motion(self, support: SceneSupport, base: BaseEnd) -> np.ndarray:
+    def base_motion(self, base: BaseEnd) -> np.ndarray:
         """Return the motion (6, o) along (n1, n2, e) of what carries a support, by the others."""
         motion = np.zeros((6, len(self.rest)))
         read = self.body.mbs.systemData.GetNodeLTGODE2
@@ -192,27 +180,13 @@ class LinearScene(SceneCoordinates):
 
     # ------------------------------------------------------------------ steady motion
 
-    def steady_motion(
-        self, speed: float, tolerance: float, start: tuple | None = None
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def steady_motion(self, speed: float, tolerance: float, start: Motion | None = None) -> Motion:
         """Return the steady motion at a spin speed [rad/s] by its harmonics of the revolution.
 
-        Cages of rolling bearings stand where they are when the rotor starts.
-
-        Parameters
-        ----------
-        speed : float
-        tolerance : float
-            Largest last change of Newton's method, and largest share of the highest harmonics,
-            relative to the motion.
-        start : (ndarray, ndarray), optional
-            Orders and harmonics of a motion to begin with.
-
-        Returns
-        -------
-        orders : ndarray of int, shape (h,)
-        harmonics : ndarray of complex, shape (h, k)
-            ``y(θ) = Re Σ y_n exp(inθ)``, as deviations from :attr:`rest`.
+        Orders (h,) and harmonics (h, k) of ``y(θ) = Re Σ y_n exp(inθ)``, as deviations from
+        :attr:`rest`. Newton's last change, and the highest harmonics, are below `tolerance` of the
+        motion; the search begins with the motion `start` where one is given. Cages of rolling
+        bearings stand where they are when the rotor starts.
 
         Raises
         ------

@@ -9,10 +9,9 @@ from exudyn_rotor import checks
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.probe import Probe
 from exudyn_rotor.linear.model.scene.scene_coordinates import UNHELD, SceneCoordinates
-from exudyn_rotor.multibody.drives.connect_rotors import SceneConnection
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.multibody.rotor.rotor_items import mark_of
+from exudyn_rotor.multibody.rotor.rotor_items import known_rotors
 
 _PERIODIC = 1e-6  # share of the forces that may change from one revolution to the next: round-off
 _ROUNDING = 1e-13  # rad, of an angle after some revolutions
@@ -54,26 +53,11 @@ def check_scene(mbs: exudyn.MainSystem, body: RotorBody) -> None:
             "RotorTrain of the reduced rotors and their supports, with gears and couplings as "
             "Link(…)"
         )
-    for drive in body.drives:
-        if isinstance(drive, SceneConnection):
-            raise ValueError(
-                f"linear scene: {drive} connects rotor {body.name!r} with a shaft, which turns at "
-                "a speed of its own; give linear analyses the rotor with "
-                f"supports=[…, coupling.support({drive.at!r})]"
-            )
 
 
 def rotors_in(mbs: exudyn.MainSystem) -> dict[int, str | None]:
     """Return the rotors of a scene: names by the numbers of the objects with their equations."""
-    names, found = {}, {}
-    for number in range(mbs.systemData.NumberOfObjects()):
-        item = mbs.GetObject(number)
-        nodes = [int(node) for node in item.get("nodeNumbers", ())]
-        if item["objectType"] == "FFRFreducedOrder":
-            names[nodes[0]] = item["name"]
-        if item["objectType"] == "GenericODE2" and mark_of(mbs, exudyn.ObjectIndex(number)):
-            found[number] = names.get(nodes[0], item["name"])
-    return found
+    return {int(body.objects["physics"]): body.name for body in known_rotors(mbs)}
 
 
 def check_period(scene: SceneCoordinates, probe: Probe) -> None:

@@ -10,17 +10,13 @@ import numpy as np
 import scipy.linalg
 
 from exudyn_rotor.bearings.magnetic import MagneticBearing
-from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
-from exudyn_rotor.multibody.rotor.marker_body import around
 from exudyn_rotor.multibody.rotor.plan import turned_origin
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import StartState
-from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_rotation, axial_skew
-from exudyn_rotor.theory.stiffening import Stiffening, stiffening
 
 # objects without forces: grounds and constraints
 _FORCELESS = ("Ground", "ConnectorCoordinate", "ConnectorCoordinateVector", "ConnectorDistance")
@@ -59,26 +55,16 @@ class SceneCoordinates:
         free = rotor[without_spin(body)]
         made = cls(body, free, np.eye(len(free)), rest)
         rest[free[made.count :]] = 0.0
-        if made.spin_coordinate is not None:  # where the rotor is when it has turned back
-            angle = rest[made.spin_coordinate]
-            turned = turned_origin(body.selection, body.plan.setup.placement.rotation, angle)
-            rest[free[: made.count]] -= body.motion.free_directions.T @ turned
+        # where the rotor is when it has turned back
+        angle = rest[made.spin_coordinate]
+        turned = turned_origin(body.selection, body.plan.setup.placement.rotation, angle)
+        rest[free[: made.count]] -= body.motion.free_directions.T @ turned
         return made
 
     @property
     def size(self) -> int:
         """Number of coordinates k."""
         return self.N.shape[1]
-
-    @property
-    def stiffening(self) -> str:
-        """Level of centrifugal stiffening."""
-        return self.body.stiffening
-
-    @cached_property
-    def second_order(self) -> Stiffening:
-        """Second-order terms of the rotor at this level."""
-        return stiffening(self.body.motion.invariants, self.body.stiffening)
 
     @property
     def mass(self) -> float:
@@ -102,13 +88,23 @@ class SceneCoordinates:
         return self.body.motion.formulation.translation_count
 
     @property
-    def spin_coordinate(self) -> int | None:
-        """The scene's coordinate θ; None for a prescribed spin without the marker body."""
+    def spin_coordinate(self) -> int:
+        """The scene's coordinate θ."""
         body = self.body
         places = body.mbs.systemData.GetObjectLTGODE2(body.objects["physics"])
-        if "marker_body" in body.objects:
-            return int(places[body.locks.spin])
-        return int(places[self.count]) if body.formulation.has_spin else None
+        return int(places[body.locks.spin])
+
+    @cached_property
+    def touching(self) -> np.ndarray:
+        """Which of the unknowns move the rotor, (k,)."""
+        return np.any(self.N[: self.modal.stop] != 0.0, axis=0)
+
+    @cached_property
+    def columns(self) -> np.ndarray:
+        """Columns of the reduced rotor by the unknowns that move it, (n, r)."""
+        selection = self.body.selection
+        moved = selection.source.invariants.S.T @ self.axes[:, : self.count]
+        return np.hstack([moved, selection.T]) @ self.N[: self.modal.stop, self.touching]
 
     @cached_property
     def axes(self) -> np.ndarray:
@@ -122,37 +118,16 @@ class SceneCoordinates:
         return [n for n in numbers if "activeConnector" in mbs.GetObject(n)]
 
     @cached_property
-    def foundations(self) -> list[SceneFoundation]:
-        """Foundations that carry supports of the rotor."""
-        bases = [one.base for one in self.body.supports]
-        return list(dict.fromkeys(one for one in bases if isinstance(one, SceneFoundation)))
-
-    @cached_property
-    def foundation_matrices(self) -> tuple[np.ndarray, np.ndarray]:
-        """Stiffness and damping of the :attr:`foundations` by all coordinates."""
-        K, D = np.zeros((2, len(self.rest), len(self.rest)))
-        for one in self.foundations:
-            places = self.body.mbs.systemData.GetObjectLTGODE2(one.objects["physics"])
-            K[np.ix_(places, places)] = one.foundation.stiffness
-            D[np.ix_(places, places)] = one.foundation.damping
-        return K, D
-
-    @cached_property
-    def foreign_objects(self) -> list[int]:
-        """Objects that are neither the rotor's own nor attached to it."""
+    def foreign_items(self) -> list[dict]:
+        """Objects and loads that are neither the rotor's own nor its supports, as dictionaries."""
         mbs, body = self.body.mbs, self.body
         own = {*map(int, body.objects.values()), *map(int, body.constraints.values())}
         own |= {int(n) for one in body.supports for n in one.objects}
-        own |= {int(one.object) for one in body.drives}
-        own |= {int(n) for one in self.foundations for n in one.objects.values()}
-        items = [mbs.GetObject(n) for n in range(mbs.systemData.NumberOfObjects())]
-        return [n for n, item in enumerate(items) if n not in own and _has_force(item)]
-
-    @property
-    def foreign(self) -> bool:
-        """Whether there are objects or loads that are neither the rotor's nor attached to it."""
-        own = self.body.gravity_load is not None
-        return bool(self.foreign_objects or self.body.mbs.systemData.NumberOfLoads() > own)
+        objects = set(range(mbs.systemData.NumberOfObjects())) - own
+        weight = set() if body.gravity_load is None else {int(body.gravity_load)}
+        loads = set(range(mbs.systemData.NumberOfLoads())) - weight
+        items = filter(_has_force, map(mbs.GetObject, sorted(objects)))
+        return [*items, *map(mbs.GetLoad, sorted(loads))]
 
     @cached_property
     def pairs(self) -> np.ndarray:
@@ -176,12 +151,6 @@ class SceneCoordinates:
                 most[one.own_coordinates(self.body.mbs)] = 1.0 / one.support.film.radius
         return np.array([most[self.free[column != 0.0]].min() for column in self.N.T])
 
-    @property
-    def table_speeds(self) -> np.ndarray:
-        """Speeds of the tables of its supports [rad/s]."""
-        supports = [one.support for one in self.body.supports if isinstance(one.support, Support)]
-        return np.concatenate([np.zeros(0), *(support.table_speeds for support in supports)])
-
     def metre(self, mass: np.ndarray) -> np.ndarray:
         """Return how much of each coordinate counts as a metre, from the mass matrix's diagonal.
 
@@ -195,19 +164,27 @@ class SceneCoordinates:
         return tuple(self.body.markers)
 
     def interface_motion(self, name: str) -> np.ndarray:
-        """Return an interface's motion (6, k): displacement and rotation along (n1, n2, e).
-
-        In the rotor frame, as its marker moves, the marker's offset included.
+        """Return an interface's motion (6, k), as :meth:`marker_motion` does.
 
         Raises
         ------
-        KeyError
-            For an interface without a marker.
+        TypeError, ValueError
+            For an interface that is not there.
         """
+        return self._motion(self.body.interface_carrier(name).motion)
+
+    def marker_motion(self, number: int) -> np.ndarray:
+        """Return a marker's motion (6, k): displacement and rotation along (n1, n2, e).
+
+        In the rotor frame.
+        """
+        return self._motion(_marker_motion(self.body, number))
+
+    def _motion(self, columns: np.ndarray) -> np.ndarray:
+        """Return a motion (6, k) by its columns (6, m) of modes, axes of the marker body."""
         motion = np.zeros((6, len(self.free)))
         motion[: self.count, : self.count] = np.eye(self.count)
-        turn = np.kron(np.eye(2), self.axes.T @ self.body.frame.B.T)
-        motion[:, self.modal] = turn @ _marker_motion(self.body, name)
+        motion[:, self.modal] = np.kron(np.eye(2), self.axes.T @ self.body.frame.B.T) @ columns
         return motion @ self.N
 
     def turn(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -243,8 +220,7 @@ class SceneCoordinates:
         q[self.free] += T @ y
         q_t[self.free] = T @ y_t + speed * T1 @ y
         spin = self.spin_coordinate
-        if spin is not None:
-            q[spin], q_t[spin] = angle, speed
+        q[spin], q_t[spin] = angle, speed
         return StartState(q, q_t, angle, speed)
 
 
@@ -278,14 +254,15 @@ def nullspace(C: np.ndarray) -> np.ndarray:
     return N
 
 
-def _marker_motion(body: RotorBody, name: str) -> np.ndarray:
-    """Return displacement and rotation (6, m) of an interface, axes of the marker body."""
-    nodes = around(list(body.mbs.GetMarker(body.marker(name))["meshNodeNumbers"]))
+def _marker_motion(body: RotorBody, number: int) -> np.ndarray:
+    """Return displacement and rotation (6, m) of a marker, axes of the marker body."""
+    item = body.mbs.GetMarker(number)
+    nodes, shares = list(item["meshNodeNumbers"]), np.array(item["weightingFactors"])
     marker_body = body.mbs.GetObject(body.objects["marker_body"])
     columns = np.asarray(marker_body["modeBasis"])
-    points = np.reshape(marker_body["referencePositions"], (-1, 3))[nodes]
     columns = columns.reshape(len(columns) // 3, 3, -1)[nodes]
-    mean = columns.mean(axis=0)
-    turning = np.vstack([-skew(arm) for arm in points - points.mean(axis=0)])  # φ × a = −ã φ
-    rotation = np.linalg.lstsq(turning, (columns - mean).reshape(9, -1), rcond=None)[0]
-    return np.vstack([mean, rotation])
+    arms = np.reshape(marker_body["referencePositions"], (-1, 3))[nodes]
+    mean, arms = np.tensordot(shares, columns, 1), arms - shares @ arms
+    turning = np.vstack([-skew(arm) for arm in arms])  # φ × a = −ã φ
+    apart = (columns - mean).reshape(len(turning), -1)
+    return np.vstack([mean, np.linalg.lstsq(turning, apart, rcond=None)[0]])

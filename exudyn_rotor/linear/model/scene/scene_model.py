@@ -1,13 +1,13 @@
 """The linear model of a scene: its rotor and laws as in a list of supports, and what is foreign.
 
 Laws of this package enter as they do from a list, bearings under the static force that they have
-in the equilibrium of the scene. What else Exudyn has there acts by its derivatives
-(:mod:`.foreign`), and its coordinates are one more body.
+in the equilibrium of the scene. What else Exudyn has there is one more element (:mod:`.foreign`),
+and its coordinates are one more body.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -18,24 +18,30 @@ from exudyn_rotor.bearings.clearance_stop import ClearanceStop
 from exudyn_rotor.bearings.given import Given, linear_supports
 from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.equations import PeriodicSystem, add, joined
-from exudyn_rotor.linear.model.assembly import NO_EQUATIONS, Assembly, Element, End, elements_of
+from exudyn_rotor.linear.equations import PeriodicSystem, Terms, joined
+from exudyn_rotor.linear.model.assembly import (
+    NO_EQUATIONS,
+    Assembly,
+    Element,
+    End,
+    OwnBody,
+    PadBody,
+    elements_of,
+)
 from exudyn_rotor.linear.model.body import RotorAlone, RotorBody, StandingBody
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.model.scene.attached import Attached
 from exudyn_rotor.linear.model.scene.equilibrium import equilibrium
-from exudyn_rotor.linear.model.scene.foreign import Foreign, acting, between
+from exudyn_rotor.linear.model.scene.foreign import ALL, Foreign
 from exudyn_rotor.linear.model.scene.journal_start import journal_start
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene, follows_load
-from exudyn_rotor.linear.model.scene.probe import Probe, probing
-from exudyn_rotor.linear.model.scene.seen import Seen
+from exudyn_rotor.linear.model.scene.probe import Attached, Probe, probing
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 from exudyn_rotor.multibody.supports.ends import BaseEnd
+from exudyn_rotor.theory.rotating_axes import axial_skew
 
 ABOUT = ("equilibrium", "given")
 _WAVE_FREE = 0.99  # share of a held motion that must be no lateral wave
 _TOLERANCE = 1e-8  # of an equilibrium
-_ANGLES = 7  # of a revolution, for the mean of the weight
 _SAME_LOAD, _NO_LOAD = 1e-6, 1e-9  # of a load, and of the rotor's weight
 
 
@@ -64,7 +70,7 @@ class SceneModel(LinearModel):
             supports = [replace(one, load=share) if yes else one for one, yes in pairs]
         return cls(
             {"": scene.body.selection.source}, {"": 1.0}, {"": supports}, (), None,
-            scene.stiffening, axes, scene=scene, about=about,
+            scene.body.stiffening, axes, scene=scene, about=about,
         )  # fmt: skip
 
     # ------------------------------------------------------------------ what it consists of
@@ -77,24 +83,16 @@ class SceneModel(LinearModel):
         alone = super()._alone("", False)
         held = self.scene.held(alone)  # a motion held across the axis turns with the rotor
         still = np.linalg.norm(alone.turning.still @ held, axis=0)
-        return {"": alone.unevenness(self.places("")) if np.all(still > _WAVE_FREE) else np.inf}
-
-    def places(self, name: str) -> tuple[str, ...]:
-        """Return the interfaces at which anything acts."""
-        mbs, used = self.scene.body.mbs, set()
-        for number in self.scene.foreign_objects:
-            used |= {int(marker) for marker in mbs.GetObject(number).get("markerNumbers", ())}
-        known = self.rotors[""].interfaces
-        foreign = (n for n, marker in self.scene.body.markers.items() if int(marker) in used)
-        both = (*super().places(name), *(n for n in foreign if n in known))
-        return tuple(dict.fromkeys(both))
-
-    @property
-    def _is_alike(self) -> bool:
-        return not self.scene.foreign and super()._is_alike
+        if np.any(still <= _WAVE_FREE):
+            return {"": np.inf}
+        return {"": self._alone("", False).unevenness(self.places(""))}
 
     def _elements_for(
-        self, turns: int, kind: str = "", supports: Sequence[Given] | None = None
+        self,
+        turns: int,
+        kind: str = "",
+        supports: Sequence[Given] | None = None,
+        foreign: Foreign | None = None,
     ) -> tuple[list[Element], list]:
         kind = kind or ("undamped" if self.is_undamped else "full")
         elements, own = [], []
@@ -103,7 +101,15 @@ class SceneModel(LinearModel):
             one = {"": [given]}
             more, added = elements_of(one, self.ratios, (), bases, turns, kind, len(own))
             elements, own = elements + more, own + added
+        if self.scene.foreign_places or len(self.scene.others):
+            elements.append((foreign or self._foreign_at_rest).element(kind))
         return elements, own
+
+    @cached_property
+    def _foreign_at_rest(self) -> Foreign:
+        with probing(self.scene, 0.0) as probe:
+            none = np.zeros((2, len(self.scene.free)))
+            return Foreign.of(self.scene, probe, lambda _: tuple(none))
 
     def _bases(self, number: int) -> dict[str, tuple[End, BaseEnd]]:
         """Return what carries a support and its sensors, by their interfaces."""
@@ -120,22 +126,19 @@ class SceneModel(LinearModel):
 
     @cached_property
     def _standing_bodies(self) -> list[StandingBody]:
-        """What is beside the rotor, with stiffness and damping of foundations."""
+        """What is beside the rotor, whose forces are foreign."""
         scene = self.scene
         if not len(scene.others):
             return []
         M = scene.mass_beside
         labels = tuple(f"scene, {number}" for number in range(1, len(M) + 1))
-        points = {
-            end[1]: scene.base_motion(scene.body.supports[number], base)
+        points = {ALL: np.eye(len(M))} | {
+            end[1]: scene.base_motion(base)
             for number in range(len(scene.body.supports))
             for end, base in self._bases(number).values()
         }
-        moves = scene.N[:, scene.others]
-        K, D = (
-            moves.T @ X[np.ix_(scene.free, scene.free)] @ moves for X in scene.foundation_matrices
-        )
-        return [StandingBody("scene", 0, M, (D,), (K,), labels, points=points)]
+        none = (np.zeros_like(M),)
+        return [StandingBody("scene", 0, M, none, none, labels, points=points)]
 
     @cached_property
     def _with_own(self) -> list[SceneSupport]:
@@ -149,7 +152,7 @@ class SceneModel(LinearModel):
     def _is_list(self) -> bool:
         """Whether all is known without a look at Exudyn."""
         alike = self.about == "given" or not self.scene.follows_loads
-        return alike and not self.scene.foreign and not self.scene.body.drives
+        return alike and not self.scene.foreign_items and not self.scene.body.drives
 
     def at(self, speed: float, frequency: float | None = None) -> PeriodicSystem:
         """Return the equations at a spin speed, and a frequency of motions [rad/s].
@@ -165,12 +168,10 @@ class SceneModel(LinearModel):
             return super().at(speed, frequency)
         assembly = self.assembly(speed)
         with probing(self.scene, speed) as probe:
-            z, seen = self._equilibrium(probe)
-            foreign = self._foreign(probe, seen, z)
-            elements, _ = self._elements_for(self.turns, supports=self._under_loads(probe, seen, z))
-            system = replace(assembly, elements=tuple(elements)).system(speed, frequency)
-            self._add_foreign(system, probe, foreign, assembly)
-        return system
+            state = self._equilibrium(probe)
+            foreign = Foreign.of(self.scene, probe, state)
+            elements, _ = self._elements_for(self.turns, "", self._loaded(probe, state), foreign)
+        return replace(assembly, elements=tuple(elements)).system(speed, frequency)
 
     def _systems(
         self, speeds: np.ndarray, within: str = "", frequencies: np.ndarray | None = None
@@ -202,91 +203,74 @@ class SceneModel(LinearModel):
         """Return equations at speeds as one stack."""
         return super().at_points(speeds, coefficients) if self._is_list else joined(coefficients)
 
-    def _seen(self, assembly: Assembly, speed: float) -> Seen:
-        return Seen.of(self.scene, assembly, self._with_own, speed)
+    # ------------------------------------------------------------------ the unknowns of the scene
 
-    def _foreign(self, probe: Probe, seen: Seen, z: np.ndarray) -> Foreign:
-        """Return derivatives about an equilibrium: those known, where they hold there."""
-        if not self.scene.foreign and not probe.drives:
-            none = np.zeros((1, self.scene.size, self.scene.size))
-            return Foreign(none, none)
-        known = self.scene.derivatives  # at two speeds: by dampers the places' go with the speed
-        if known:
-            found = between(known, probe.speed)
-            if found.holds(probe, seen, z):
-                return found
-        found = Foreign.of(probe, seen, z)
-        known.append((probe.speed, found))
-        del known[:-2]
+    def _in_scene(self, assembly: Assembly) -> Iterator[tuple[np.ndarray, slice, Terms]]:
+        """Yield rows of the unknowns y, places of the coordinates, and y(θ) by these, terms."""
+        scene, own = self.scene, iter(self._with_own)
+        for body, place in zip(assembly.bodies, assembly.slices, strict=True):
+            if isinstance(body, RotorBody):
+                yield np.flatnonzero(scene.touching), place, _of_rotor(scene, body)
+            elif isinstance(body, StandingBody):
+                yield scene.others, place, {0: np.eye(body.size)}
+            else:
+                one = next(own)
+                rows = scene.own_unknowns(one)
+                yield rows, place, _of_own(body, one, assembly.turns)
+
+    def unknowns(self, motion: Mapping[int, np.ndarray], speed: float) -> dict[int, np.ndarray]:
+        """Return harmonics of the unknowns y of the scene, given those (…, k) of coordinates."""
+        found = {}
+        for rows, place, terms in self._in_scene(self.assembly(speed)):
+            for m, X in terms.items():
+                for n, x in motion.items():
+                    none = np.zeros((*x.shape[:-1], self.scene.size), dtype=complex)
+                    found.setdefault(m + n, none)[..., rows] += x[..., place] @ X.T
         return found
-
-    def _add_foreign(
-        self, system: PeriodicSystem, probe: Probe, foreign: Foreign, assembly: Assembly
-    ) -> None:
-        seen, undamped = self._seen(assembly, probe.speed), None
-        if self.is_undamped:
-            rotor, place = assembly.bodies[0], assembly.slices[0]
-            undamped = np.zeros((assembly.size, assembly.size))
-            undamped[place, place] = rotor.turns * rotor.alone.turning.generator
-        D, K = foreign.terms(probe, seen, probe.speed, undamped)
-        for terms, more in ((system.D, D), (system.K, K)):
-            add(terms, {0: more[0]} if assembly.turns == 0 else more)
 
     # ------------------------------------------------------------------ equilibrium
 
-    @cached_property
-    def _weights(self) -> dict[bool, np.ndarray]:
-        """Loads of the rotor's weight running and at rest, once known."""
-        return {}
-
-    def _equilibrium(self, probe: Probe) -> tuple[np.ndarray, Seen]:
-        """Return an equilibrium under loads that stand still, by coordinates in inertial axes.
+    def _equilibrium(self, probe: Probe) -> _Standing:
+        """Return the equilibrium under loads that stand still.
 
         The unevenness of the rotor is averaged, and its own unbalance is left out.
         """
         speed, scene = probe.speed, self.scene
         _, controllers = self._elements_for(0, "full")
         assembly = Assembly((*self._bodies(0, speed == 0.0), *controllers), (), 0)
-        seen = self._seen(assembly, speed)
-        T, T1, _ = probe.turn(0.0)
-        W, W1, _ = seen.at(0.0)
-        z = np.zeros(assembly.size)
+        state = _Standing(probe, list(self._in_scene(assembly)), np.zeros(assembly.size))
         if self.about == "given":
-            return z, seen
-        orders = np.arange(-1, 2)
-        start = journal_start(scene, speed, orders).sum(axis=0).real
+            return state
+        start = journal_start(scene, speed, np.arange(-1, 2)).sum(axis=0).real
+        W = state.of_unknowns(0.0)[0]
         z = np.linalg.lstsq(W, start, rcond=1e-9)[0]
         own = la.block_diag(*(body.K[0] + speed * sum(body.K[1:2]) for body in assembly.bodies))
-        if bool(speed) not in self._weights:
-            self._weights[bool(speed)] = _mean_weight(probe.at_rest(), seen)
-        weight = self._weights[bool(speed)]
-        moving = speed * T1 @ W + T @ W1
+        still = Probe(scene, 0.0, probe.solver, probe.laws)
+        angles = 2.0 * np.pi * np.arange(3) / 3.0 if speed else [0.0]
+        weights = [state.by_coordinates(a)[0].T @ still.rotor_terms(a)[3] for a in angles]
+        weight = np.mean(weights, axis=0)
 
         def at(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            x, v = T @ W @ z, moving @ z
-            force, K, D = probe.all_known(0.0, x, v)
-            force = force + probe.foreign(0.0, x, v)
-            more = probe.slopes_along(0.0, x, v)
-            K, D = T.T @ (K @ T + more[0]), T.T @ (D @ T + more[1])
-            return own + acting(probe, seen, 0.0, K, D)[1], own @ z - weight - W.T @ T.T @ force
+            force, K, D = probe.forces(0.0, *replace(state, z=z)(0.0))
+            by_z, by_rate = state.by_coordinates(0.0)
+            return own + by_z.T @ (K @ by_z + D @ by_rate), own @ z - weight - by_z.T @ force
 
         def unbalanced(z: np.ndarray) -> np.ndarray:
-            return own @ z - weight - W.T @ T.T @ probe.force(0.0, T @ W @ z, moving @ z)
+            force = probe.force(0.0, *replace(state, z=z)(0.0))
+            return own @ z - weight - state.by_coordinates(0.0)[0].T @ force
 
         metres = np.sqrt(np.maximum(np.diag(assembly.M), 1e-300) / scene.mass)
         for body, place in zip(assembly.bodies, assembly.slices, strict=True):
-            if not isinstance(body, RotorBody | StandingBody):
-                metres[place] = np.maximum(metres[place], 1.0)  # of light pads and voids
+            if isinstance(body, OwnBody):
+                metres[place] = np.maximum(metres[place], 1.0)  # of light pads
         where = f"linear scene at {speed:g} rad/s"
-        return equilibrium(scene, at, unbalanced, metres, z, _TOLERANCE, where), seen
+        return replace(state, z=equilibrium(scene, at, unbalanced, metres, z, _TOLERANCE, where))
 
-    def _under_loads(self, probe: Probe, seen: Seen, z: np.ndarray) -> list[Given]:
-        """Return the supports, bearings under the loads that they have by coordinates z."""
+    def _loaded(self, probe: Probe, state: _Standing) -> Sequence[Given]:
+        """Return the supports, bearings under the loads that they have in an equilibrium."""
         if self.about == "given":
             return self.supports[""]
-        T, T1, _ = probe.turn(0.0)
-        W, W1, _ = seen.at(0.0)
-        probe.read(0.0, T @ W @ z, (probe.speed * T1 @ W + T @ W1) @ z)
+        probe.read(0.0, *state(0.0))
         least = _NO_LOAD * 9.81 * self.scene.mass
         return [
             _under_load(given, law, probe.speed, least) if follows_load(given) else given
@@ -295,32 +279,9 @@ class SceneModel(LinearModel):
 
     # ------------------------------------------------------------------ what a scene tells
 
-    @cached_property
-    def _held_at_rest(self) -> tuple[Assembly, np.ndarray]:
-        assembly, K = super()._held_at_rest
-        if self.scene.foreign:
-            with probing(self.scene, 0.0) as probe:
-                seen = self._seen(assembly, 0.0)
-                foreign = self._foreign(probe, seen, np.zeros(assembly.size))
-                K = K + foreign.terms(probe, seen, 0.0, None)[1][0]
-        return assembly, K
-
-    @property
-    def stiffness_varies(self) -> bool:
-        """Whether a stiffness depends on the speed; a scene may have any forces."""
-        return bool(self.scene.foreign) or super().stiffness_varies
-
     def base_loads(self, speed: float = 1.0) -> None:
         """Return None: what the ground moves in a scene is not known."""
         return None
-
-    def unknowns(self, motion: Mapping[int, np.ndarray], speed: float) -> dict[int, np.ndarray]:
-        """Return harmonics of the unknowns y of the scene, given those (…, k) of coordinates."""
-        found = {}
-        for m, rows in self._seen(self.assembly(speed), speed).W.items():
-            for n, x in motion.items():
-                found[m + n] = found.get(m + n, 0.0) + x @ rows.T
-        return found
 
     def __repr__(self) -> str:
         lines = super().__repr__().splitlines()
@@ -328,11 +289,60 @@ class SceneModel(LinearModel):
         return "\n".join(lines)
 
 
-def _mean_weight(still: Probe, seen: Seen) -> np.ndarray:
-    """Return the load of the rotor's weight by coordinates in inertial axes (k,)."""
-    angles = 2.0 * np.pi * np.arange(_ANGLES) / _ANGLES if seen.speed else [0.0]
-    loads = [seen.at(a)[0].T @ still.turn(a)[0].T @ still.rotor_terms(a)[3] for a in angles]
-    return np.mean(loads, axis=0)
+@dataclass(frozen=True, eq=False)
+class _Standing:
+    """A motion of constant coordinates z in axes that stand still, as a state of a scene.
+
+    `parts` are those of :meth:`SceneModel._in_scene`.
+    """
+
+    probe: Probe
+    parts: list[tuple[np.ndarray, slice, Terms]]
+    z: np.ndarray
+
+    def of_unknowns(self, theta: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return the unknowns y and their rates by z, each (k, l)."""
+        W = np.zeros((2, self.probe.scene.size, len(self.z)), dtype=complex)
+        for rows, place, terms in self.parts:
+            for n, X in terms.items():
+                for power in range(2):
+                    rate = (1j * n * self.probe.speed) ** power * np.exp(1j * n * theta)
+                    W[power, rows, place] += rate * X
+        return tuple(W.real)
+
+    def by_coordinates(self, theta: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return free coordinates of the scene and their rates by z, each (f, l)."""
+        W, W_t = self.of_unknowns(theta)
+        T, T1, _ = self.probe.turn(theta)
+        return T @ W, self.probe.speed * T1 @ W + T @ W_t
+
+    def __call__(self, theta: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return free coordinates and their rates at an angle."""
+        return tuple(X @ self.z for X in self.by_coordinates(theta))
+
+
+def _of_rotor(scene: LinearScene, body: RotorBody) -> Terms:
+    """Return the unknowns that move the rotor by its coordinates, (r, l)."""
+    source, alone = scene.body.selection.source, body.alone
+    Q = alone.Q if len(alone.Q) == source.size else source.in_attached.T @ alone.Q
+    L = scene.by_columns @ Q
+    if body.is_apart:
+        L = body.spin.about_axis(L)
+    if not body.mean:
+        return {0: L}
+    return {-n: L @ part for n, part in alone.turning.parts(np.eye(L.shape[1])).items()}
+
+
+def _of_own(body: OwnBody, one: SceneSupport, turns: int) -> Terms:
+    """Return the unknowns that a support brings with it."""
+    if isinstance(body, PadBody):
+        return {0: -np.eye(body.size) / one.support.film.radius}
+    if turns:
+        return {0: np.eye(body.size)}
+    half, quarter = np.eye(body.size // 2), axial_skew(3)[:2, :2]
+    return {  # R(−θ) = cos θ − sin θ ẽ: pairs of a scene turn
+        n: np.kron(half, 0.5 * (np.eye(2) + 1j * n * quarter)) for n in (1, -1)
+    }
 
 
 def _under_load(given: Given, law: Attached, speed: float, least: float) -> Given:

@@ -1,20 +1,17 @@
 """Several rotors of a scene as a train: what add_rotor, add_supports and connect_rotors put there.
 
-One revolution is a period of a scene for one spin speed only, so that differences of its forces
-over a revolution do not do here. Supports, gears and couplings are known by what made them.
+One revolution is a period of a scene for one spin speed only, so that a linear scene does not do
+here. Supports, gears and couplings are known by what made them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import exudyn
 import numpy as np
 
-from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.drives.coupling import FlexibleCoupling
 from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.linear.model.rotor_train import Link, RotorTrain
 from exudyn_rotor.linear.model.scene.scene_checks import check_body, rotors_in
@@ -22,11 +19,9 @@ from exudyn_rotor.multibody.drives.connect_rotors import SceneConnection
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import spin_at_start
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
-from exudyn_rotor.theory.formulation import ConstantSpeed
 
-# entries of axes, and shares of a speed, by which rounding may set rotors apart
-_PARALLEL, _SAME_SPEED = 1e-9, 1e-9
-_BY_HAND = "give linear analyses a RotorTrain of the reduced rotors"
+_PARALLEL = 1e-9  # entries of axes by which rounding may set rotors apart
+_BY_HAND = "give linear analyses a RotorTrain of the reduced rotors, with supports=… and Link(…)"
 
 
 def scene_train(mbs: exudyn.MainSystem, bodies: Sequence[RotorBody]) -> tuple[RotorTrain, str]:
@@ -50,15 +45,15 @@ def scene_train(mbs: exudyn.MainSystem, bodies: Sequence[RotorBody]) -> tuple[Ro
     links = _links(named)
     _check_nothing_else(mbs, bodies)
     speed = spin_at_start(bodies[0])[1]
+    on_ground = {
+        name: [one.support for one in body.supports if one.base is None]
+        for name, body in named.items()
+    }
     train = RotorTrain(
         {name: body.selection.source for name, body in named.items()},
         {name: spin_at_start(body)[1] / speed for name, body in named.items()},
-        {name: [*_on_ground(body), *_on_shafts(body)] for name, body in named.items()},
+        on_ground,
         links,
-        positions={
-            name: body.standing_axes.T @ body.plan.setup.placement.position
-            for name, body in named.items()
-        },
         driven=[name for name, body in named.items() if _is_driven(body)],
     )
     return train, bodies[0].stiffening
@@ -84,61 +79,19 @@ def _check_all_rotors(mbs: exudyn.MainSystem, bodies: Sequence[RotorBody]) -> No
 
 def _check_alike(first: RotorBody, body: RotorBody) -> None:
     """Refuse rotors whose equations have no common axes, speed or level, and what trains lack."""
-    if spin_at_start(body)[1] == 0.0:
-        raise ValueError(
-            f"body: rotor {body.name!r} starts without a spin speed, and the ratios of speeds are "
-            f"not known; give spin= or initial_speed= to add_rotor, or {_BY_HAND} and ratios"
-        )
-    if np.abs(body.standing_axes - first.standing_axes).max() > _PARALLEL:
-        raise ValueError(
-            f"body: the axes (n1, n2, e) of rotor {body.name!r} are not parallel to those of "
-            f"{first.name!r}; mount both alike"
-        )
-    if body.stiffening != first.stiffening:
-        raise ValueError(
-            f"body: rotor {body.name!r} has the stiffening {body.stiffening!r}, {first.name!r} "
-            f"{first.stiffening!r}; give both the same stiffening="
-        )
-    setup = body.plan.setup
-    if setup.mass_damping or setup.stiffness_damping:
-        raise ValueError(
-            f"body: rotor {body.name!r} has damping from add_rotor; give it to the reduced rotor, "
-            "with_damping(…)"
-        )
-    for drive in body.drives:
-        if not isinstance(drive, SceneConnection):
-            raise ValueError(
-                f"body: rotor {body.name!r} has a drive, {drive}, whose torque trains do not have; "
-                f"{_BY_HAND}"
-            )
-
-
-def _on_ground(body: RotorBody) -> list[Given]:
-    return [one.support for one in body.supports if one.base is None]
-
-
-def _on_shafts(body: RotorBody) -> list[Support]:
-    """Return couplings to shafts of the rotor's speed as supports; torsion on one of its own.
-
-    That does not turn, which for a torsion is the same, so that it is no arm on the rotor.
-    """
-    found, speed = [], spin_at_start(body)[1]
-    for one in filter(_is_on_shaft, body.drives):
-        if abs(one.shaft.speed - speed) > _SAME_SPEED * abs(speed):
-            raise ValueError(
-                f"body: rotor {body.name!r} starts with {speed:g} rad/s, the shaft of its {one} "
-                f"turns with {one.shaft.speed:g} rad/s; start the rotor with that"
-            )
-        whole = one.connection.support(one.at)
-        torsion = np.diag([0.0, 0.0, 1.0])
-        tilts = {"tilt_stiffness": whole.tilt_stiffness, "tilt_damping": whole.tilt_damping}
-        found.append(replace(whole, **{n: X - X @ torsion for n, X in tilts.items()}))
-        found.append(Support(one.at, **{n: X @ torsion for n, X in tilts.items()}))
-    return found
-
-
-def _is_on_shaft(one: SceneConnection) -> bool:
-    return isinstance(one.shaft, ConstantSpeed) and isinstance(one.connection, FlexibleCoupling)
+    setup, connections = body.plan.setup, [isinstance(d, SceneConnection) for d in body.drives]
+    for fault, is_there in (
+        ("starts without a spin speed, on which ratios depend", spin_at_start(body)[1] == 0.0),
+        (
+            f"has axes (n1, n2, e) that are not parallel to those of {first.name!r}",
+            np.abs(body.standing_axes - first.standing_axes).max() > _PARALLEL,
+        ),
+        (f"has another stiffening than {first.name!r}", body.stiffening != first.stiffening),
+        ("has damping from add_rotor", setup.mass_damping or setup.stiffness_damping),
+        ("has a drive, whose torque trains do not have", not all(connections)),
+    ):
+        if is_there:
+            raise ValueError(f"body: rotor {body.name!r} {fault}; {_BY_HAND}")
 
 
 def _links(named: dict[str, RotorBody]) -> list[Link]:
@@ -154,65 +107,42 @@ def _links(named: dict[str, RotorBody]) -> list[Link]:
             if one.base is not None:
                 other = _other_end(body, one, markers)
                 links.append(Link(f"{name}:{one.support.interface}", other, one.support))
-        for one in body.drives:
-            if one.body is body and not _is_on_shaft(one):
-                links.append(_link_of(one))
+        links += [_link_of(one) for one in body.drives if one.body is body]
     return links
 
 
 def _other_end(body: RotorBody, one: SceneSupport, markers: dict[int, str]) -> str:
     """Return the interface of another rotor on which a support stands."""
-    where = f"body: the support at {body.name}:{one.support.interface}"
     known = isinstance(one.base, exudyn.MarkerIndex) and int(one.base) in markers
-    if not known:
+    if not known or not isinstance(one.support, Support):
         raise ValueError(
-            f"{where} stands on a body or a foundation, which a train does not have; linearise a "
-            "scene of one rotor on it"
-        )
-    if not isinstance(one.support, Support):
-        raise ValueError(
-            f"{where} stands on another rotor and depends on the speed; between rotors a train has "
-            "supports alone, with tables over the difference of both speeds; give a Support with "
-            f"the bearing's coefficients, or {_BY_HAND}"
+            f"body: the support at {body.name}:{one.support.interface} stands on a body or a "
+            "foundation, or is a bearing between two rotors; a train has supports on the ground, "
+            f"and Support(…) between rotors; {_BY_HAND}"
         )
     return markers[int(one.base)]
 
 
 def _link_of(one: SceneConnection) -> Link:
     law = one.connection
-    if one.other is None or not isinstance(law, GearMesh | FlexibleCoupling):
-        raise ValueError(
-            f"body: {one} of rotor {one.body.name!r} is not linear, or is to a shaft and no "
-            f"flexible coupling at a constant speed; {_BY_HAND}, with gears and couplings as "
-            "Link(…)"
-        )
     if isinstance(law, GearMesh) and (law.backlash is not None or law.variation.size):
-        raise ValueError(
-            f"body: {one} of rotor {one.body.name!r} has backlash or a stiffness that follows the "
-            f"teeth; {_BY_HAND}, with a linear GearMesh"
-        )
+        raise ValueError(f"body: {one} of rotor {one.body.name!r} is not linear; {_BY_HAND}")
     given = law if isinstance(law, GearMesh) else law.support(one.at)
     return Link(f"{one.body.name}:{one.at}", f"{one.other.name}:{one.other_at}", given)
 
 
 def _check_nothing_else(mbs: exudyn.MainSystem, bodies: Sequence[RotorBody]) -> None:
     """Refuse objects that are not of the rotors, their supports and connections."""
-    known = {
-        int(number)
-        for body in bodies
-        for numbers in (
-            body.objects.values(),
-            body.constraints.values(),
-            *(one.objects for one in body.supports),
-            [one.object for one in body.drives],
-        )
-        for number in numbers
-    }
-    for number in range(mbs.systemData.NumberOfObjects()):
+    known = set()
+    for body in bodies:
+        known |= {*map(int, body.objects.values()), *map(int, body.constraints.values())}
+        known |= {int(number) for one in body.supports for number in one.objects}
+        known |= {int(number) for one in body.drives for number in one.objects}
+    for number in set(range(mbs.systemData.NumberOfObjects())) - known:
         item = mbs.GetObject(number)
-        if number not in known and item["objectType"] != "Ground":
+        if item["objectType"] != "Ground":
             raise ValueError(
                 f"linear scene: object {number} ({item['objectType']} {item['name']!r}) is neither "
                 "of the rotors nor added by add_supports or connect_rotors, so that a train does "
-                f"not have it; {_BY_HAND}, supports=… and Link(…)"
+                f"not have it; {_BY_HAND}"
             )

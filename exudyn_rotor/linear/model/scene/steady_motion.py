@@ -14,22 +14,22 @@ from functools import cached_property
 import numpy as np
 
 from exudyn_rotor.linear.equations import UnconvergedError
-from exudyn_rotor.linear.model.scene.equilibrium import BALANCED, FAR, NOISE, SMALLEST, solved
+from exudyn_rotor.linear.model.scene.equilibrium import BALANCED, FAR, SMALLEST, solved
 from exudyn_rotor.linear.model.scene.journal_start import journal_start
-from exudyn_rotor.linear.model.scene.own_spin import OwnSpin
 from exudyn_rotor.linear.model.scene.probe import LinearPoint, Probe, linearised, unbalanced
 from exudyn_rotor.linear.model.scene.scene_coordinates import UNHELD, Motion, SceneCoordinates
+from exudyn_rotor.linear.model.spin import ARM
+from exudyn_rotor.reduction.fields import RIGID_KINDS, ModeKind
 
 _FIRST_SAMPLES, _MOST_SAMPLES = 12, 192
 _LEFT_OUT = 3  # harmonics fewer than samples
-_MOST_UNRESOLVED = 48  # samples for motions whose equations stay unresolved
-_ROUGH = 1e-3  # share of such a motion that its highest harmonics may have
-_RESOLVED = 1e-8  # share of the largest entry that the highest harmonics of coefficients may have
+_ROUGH_SAMPLES = 48  # from which on the harmonics of a contact count as enough:
+_ROUGH = 1e-3  # share of the motion that the highest may have,
+_SLOWLY = 0.01  # where twice the samples leave more of them than this share
 _SOLVED = 0.01  # of what the harmonics leave out, beyond which more iterations are of no use
 _MOST_ITERATIONS = 30
 _FEW_ITERATIONS = 4  # after which what is balanced to rounding is found, with free motions by it
 _MOST_HALVINGS = 9  # of a step
-_RISES = (2.0, 1.0)  # of what is unbalanced, in a step
 
 
 def steady_motion(
@@ -44,40 +44,27 @@ def steady_motion(
     UnconvergedError
         Where no steady motion is found, or 192 angles do not resolve it.
     """
-    samples, start = _FIRST_SAMPLES, None
+    samples, start, before = _FIRST_SAMPLES, None, np.inf
     if begin is not None:
         start = _same_harmonics(*begin)
         samples = max(samples, len(start) + _LEFT_OUT)
     while samples <= _MOST_SAMPLES:
         search = _Search(scene, probe, samples, tolerance)
-        is_found, start = _by_rises(search, start, samples < _MOST_UNRESOLVED and begin is None)
-        if is_found:
+        try:
+            start, tail = search.found(start)
+        except UnconvergedError as error:  # a film that is all but closed is unlike itself at few
+            if isinstance(error, _UnheldError) or samples >= _ROUGH_SAMPLES or begin is not None:
+                raise
+            start, tail = None, np.inf
+        is_rough = samples >= _ROUGH_SAMPLES and _SLOWLY * before < tail <= _ROUGH
+        if tail <= tolerance or is_rough:
             return search.orders, start
-        samples *= 2
+        samples, before = 2 * samples, tail
     raise UnconvergedError(
         f"linear scene at {probe.speed:g} rad/s: {_MOST_SAMPLES} angles of a revolution do not "
         "resolve the motion; is there a stop, contact or friction, or an oil film whose edge moves "
         "from node to node? A damped run from rest shows the motion"
     )
-
-
-def _by_rises(
-    search: _Search, start: np.ndarray | None, tries_finer: bool
-) -> tuple[bool, np.ndarray | None]:
-    """Return as :meth:`_Search.found`, of steps that may leave more unbalanced, or may not.
-
-    Where contacts open and close the former converge, far from the motion the latter.
-    """
-    for rise in _RISES:
-        try:
-            return search.found(start, rise)
-        except _UnheldError:
-            raise
-        except UnconvergedError as error:
-            lost = error
-    if not tries_finer:  # a film that is all but closed is unlike itself at few angles
-        raise lost
-    return False, None
 
 
 def _same_harmonics(orders: np.ndarray, harmonics: np.ndarray) -> np.ndarray:
@@ -114,16 +101,10 @@ class _Search:
     def waves(self) -> np.ndarray:
         return np.exp(1j * np.outer(self.angles, self.orders))
 
-    @cached_property
-    def spin(self) -> OwnSpin | None:
-        names = self.scene.interfaces
-        return OwnSpin.of(self.scene, [self.scene.interface_motion(name) for name in names])
+    def found(self, start: np.ndarray | None) -> tuple[np.ndarray, float]:
+        """Return the harmonics of the motion, and the share of it that the highest have.
 
-    def found(self, start: np.ndarray | None, rise: float) -> tuple[bool, np.ndarray]:
-        """Return whether the samples resolve the motion, and its harmonics.
-
-        By Newton's method from the harmonics of fewer samples; no step leaves more than `rise`
-        times as much unbalanced.
+        By Newton's method from the harmonics of fewer samples; no step leaves more unbalanced.
         """
         Y = journal_start(self.scene, self.probe.speed, self.orders)
         if start is not None:
@@ -131,20 +112,15 @@ class _Search:
             Y = np.pad(start, ((more, more), (0, 0)))
         metres = 1.0 / self.scene.metre(self.probe.masses)
         for iteration in range(_MOST_ITERATIONS):
-            self.probe.step = self.probe.velocity_step = None  # steps that are for this motion
             points = [linearised(self.probe, *at) for at in self._motion(Y)]
-            resolved = is_resolved(points)
-            if not resolved and self.samples > _MOST_UNRESOLVED:
-                return False, Y
+            if iteration == 0:
+                self._check_own_spin(np.mean([point.K for point in points], axis=0))
             residual = self._residual([point.residual for point in points])
             K = hill_stiffness(points, self.orders, self.probe.speed)
             change, left = (X.reshape(Y.shape) for X in solved(K, -residual.ravel()))
             if np.abs(left / metres).max() > UNHELD * self.scene.mass:
                 raise self._lost(UnconvergedError if iteration else _UnheldError)
-            # there are no forces before the first step
-            torque, twist = self._own_spin(points if iteration else None, K, Y + change)
-            change = change - torque * twist
-            Y = self._ahead(Y, change, rise * np.linalg.norm(residual / metres), metres)
+            Y = self._ahead(Y, change, np.linalg.norm(residual / metres), metres)
             sizes = np.abs(Y * metres).max(axis=1)
             if sizes.max() > FAR * self.scene.length:
                 break
@@ -155,10 +131,7 @@ class _Search:
             balanced = np.abs(residual / metres).max() <= BALANCED * self.scene.mass
             is_last = np.abs(change * metres).max() < goal
             if is_last or (balanced and iteration > _FEW_ITERATIONS):
-                self._check_spin(torque)
-                if not resolved and self.samples == _MOST_UNRESOLVED:
-                    limit = max(limit, _ROUGH * sizes.max())
-                return bool(tail <= limit), Y
+                return Y, float(tail / counts)
         raise self._lost(UnconvergedError)
 
     def _ahead(
@@ -193,43 +166,20 @@ class _Search:
         motion = ((self.waves @ (Y * rates**n)).real for n in range(3))
         return zip(self.angles, *motion, strict=True)
 
-    def _own_spin(
-        self, points: list[LinearPoint] | None, K: np.ndarray, Y: np.ndarray
-    ) -> tuple[float, np.ndarray]:
-        """Return the drive's torque, and the change of harmonics that a unit of it takes back."""
-        if self.spin is None:
-            return 0.0, np.zeros_like(Y)
-        least = np.inf
-        if points is not None:
-            forces = np.mean([point.forces for point in points], axis=0)
-            mean = np.mean([point.K for point in points], axis=0)
-            least = self.spin.least_stiffness(mean, forces, self.probe.rounding)
-        middle = np.flatnonzero(self.orders == 0)[0]
-        twist = solved(K, self.spin.torque(self.orders))[0].reshape(Y.shape)
-        return self.spin.drive_torque(twist[middle], Y[middle], least), twist
-
-    def _check_spin(self, torque: float) -> None:
-        if self.spin is not None:
-            most = UNHELD * np.sqrt(self.scene.mass)
-            self.spin.check_held(torque, most, self.probe.speed)
-
-
-def _scaled_samples(points: Sequence[LinearPoint]) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Yield the Fourier terms n of M, D, K, (n, k, k), and their largest entries as shares."""
-    M, D, K = (np.array([point[i] for point in points]) for i in range(3))
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(M[0]), 1e-300))
-    scale = np.outer(scale, scale)
-    largest = [np.abs(X * scale).max() for X in (M, D, K)]
-    largest[1] = max(largest[1], np.sqrt(largest[2]))
-    for X, size in zip((M, D, K), largest, strict=True):
-        spectrum = np.fft.fft(X, axis=0) / len(points)
-        yield spectrum, np.abs(spectrum * scale).max(axis=(1, 2)) / size
-
-
-def is_resolved(points: Sequence[LinearPoint]) -> bool:
-    """Return whether the angles resolve the coefficients."""
-    top = len(points) // 2
-    return all(s[top - 1 : top + 2].max() <= _RESOLVED for _, s in _scaled_samples(points))
+    def _check_own_spin(self, K: np.ndarray) -> None:
+        """Refuse an own spin, of an elastic drive, that bearings alone hold by their small arms."""
+        kinds, scene = self.scene.body.selection.kinds, self.scene
+        if ModeKind.SPIN not in kinds:
+            return
+        rigid = [scene.count + i for i, kind in enumerate(kinds) if kind in RIGID_KINDS]
+        spin = scene.N[scene.count + kinds.index(ModeKind.SPIN)]
+        held = np.abs(np.einsum("ri,ij,rj->r", scene.N[rigid], K, scene.N[rigid])).max()
+        if abs(spin @ K @ spin) <= ARM * held:
+            raise _UnheldError(
+                f"linear scene at {self.probe.speed:g} rad/s: drive='elastic' leaves the rotor's "
+                "own spin to the scene, where nothing holds it; add a torsional spring, or take "
+                "drive='rigid'"
+            )
 
 
 def hill_stiffness(points: Sequence[LinearPoint], orders: np.ndarray, speed: float) -> np.ndarray:
@@ -241,7 +191,7 @@ def hill_stiffness(points: Sequence[LinearPoint], orders: np.ndarray, speed: flo
     apart = np.subtract.outer(orders, orders) % count
     rates = 1j * speed * orders
     total = np.zeros((h, k, h, k), dtype=complex)
-    for power, (spectrum, shares) in zip((2, 1, 0), _scaled_samples(points), strict=True):
-        spectrum[1:][shares[1:] <= NOISE] = 0.0
+    for power, samples in zip((2, 1, 0), zip(*points, strict=True), strict=False):
+        spectrum = np.fft.fft(np.array(samples), axis=0) / count
         total += np.einsum("abij,b->aibj", spectrum[apart], rates**power)
     return total.reshape(h * k, h * k)

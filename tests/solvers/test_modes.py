@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from exudyn_rotor.solvers.lanczos import lanczos_modes
+from exudyn_rotor.solvers.modes import lanczos_modes
 
 SIZE = 400
 

@@ -1,0 +1,133 @@
+"""The public names, and the module of each: the one list, which ``__init__.py`` reads."""
+
+from exudyn_rotor.advice.proposal import Proposal as Proposal
+from exudyn_rotor.advice.proposal import propose as propose
+from exudyn_rotor.advice.run_check import RunCheck as RunCheck
+from exudyn_rotor.advice.run_check import check_run as check_run
+from exudyn_rotor.advice.warning import AssumptionWarning as AssumptionWarning
+from exudyn_rotor.bearings.actuator import LinearActuator as LinearActuator
+from exudyn_rotor.bearings.actuator import SaturatingActuator as SaturatingActuator
+from exudyn_rotor.bearings.annular_seal import AnnularSeal as AnnularSeal
+from exudyn_rotor.bearings.clearance_stop import ClearanceStop as ClearanceStop
+from exudyn_rotor.bearings.film.film import OilFilm as OilFilm
+from exudyn_rotor.bearings.film.pads import Pad as Pad
+from exudyn_rotor.bearings.film.pads import grooved_pads as grooved_pads
+from exudyn_rotor.bearings.film.picture import plot_pressure as plot_pressure
+from exudyn_rotor.bearings.journal_bearing import JournalBearing as JournalBearing
+from exudyn_rotor.bearings.magnetic import MagneticBearing as MagneticBearing
+from exudyn_rotor.bearings.pid_controller import PIDController as PIDController
+from exudyn_rotor.bearings.rolling import RollingBearing as RollingBearing
+from exudyn_rotor.bearings.series import FloatingRingBearing as FloatingRingBearing
+from exudyn_rotor.bearings.series import SeriesSupport as SeriesSupport
+from exudyn_rotor.bearings.short_journal import ShortJournalBearing as ShortJournalBearing
+from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper as SqueezeFilmDamper
+from exudyn_rotor.bearings.support import Support as Support
+from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing as TiltingPadBearing
+from exudyn_rotor.drives.coupling import FlexibleCoupling as FlexibleCoupling
+from exudyn_rotor.drives.drive import Drag as Drag
+from exudyn_rotor.drives.drive import TorqueCurve as TorqueCurve
+from exudyn_rotor.drives.gear_mesh import GearMesh as GearMesh
+from exudyn_rotor.drives.motors import DirectCurrentMotor as DirectCurrentMotor
+from exudyn_rotor.drives.motors import InductionMotor as InductionMotor
+from exudyn_rotor.drives.motors import LimitedPower as LimitedPower
+from exudyn_rotor.evaluation.level_one import StabilityLevelOne as StabilityLevelOne
+from exudyn_rotor.evaluation.level_one import (
+    anticipated_cross_coupling as anticipated_cross_coupling,
+)
+from exudyn_rotor.evaluation.level_one import stability_level_one as stability_level_one
+from exudyn_rotor.evaluation.placement import bearing_masses as bearing_masses
+from exudyn_rotor.evaluation.placement import standard_unbalances as standard_unbalances
+from exudyn_rotor.evaluation.separation import SeparationMargins as SeparationMargins
+from exudyn_rotor.evaluation.separation import separation_margins as separation_margins
+from exudyn_rotor.foundations.foundation import Foundation as Foundation
+from exudyn_rotor.foundations.mount import Mount as Mount
+from exudyn_rotor.foundations.record import BaseRecord as BaseRecord
+from exudyn_rotor.html_report import report as report
+from exudyn_rotor.linear.modal.campbell import Campbell as Campbell
+from exudyn_rotor.linear.modal.campbell import campbell as campbell
+from exudyn_rotor.linear.modal.critical_speed_map import CriticalSpeedMap as CriticalSpeedMap
+from exudyn_rotor.linear.modal.critical_speed_map import critical_speed_map as critical_speed_map
+from exudyn_rotor.linear.modal.critical_speeds import CriticalSpeeds as CriticalSpeeds
+from exudyn_rotor.linear.modal.critical_speeds import critical_speeds as critical_speeds
+from exudyn_rotor.linear.model.build import linear_model as linear_model
+from exudyn_rotor.linear.model.linear_model import LinearModel as LinearModel
+from exudyn_rotor.linear.model.rotor_train import Link as Link
+from exudyn_rotor.linear.model.rotor_train import RotorTrain as RotorTrain
+from exudyn_rotor.linear.response.base_response import BaseResponse as BaseResponse
+from exudyn_rotor.linear.response.base_response import base_response as base_response
+from exudyn_rotor.linear.response.loads import BaseAcceleration as BaseAcceleration
+from exudyn_rotor.linear.response.loads import HarmonicForce as HarmonicForce
+from exudyn_rotor.linear.response.loads import Unbalance as Unbalance
+from exudyn_rotor.linear.response.loads import permissible_unbalance as permissible_unbalance
+from exudyn_rotor.linear.response.response import HarmonicResponse as HarmonicResponse
+from exudyn_rotor.linear.response.response import UnbalanceResponse as UnbalanceResponse
+from exudyn_rotor.linear.response.steady_response import harmonic_response as harmonic_response
+from exudyn_rotor.linear.response.steady_response import unbalance_response as unbalance_response
+from exudyn_rotor.linear.response.steady_state import SteadyState as SteadyState
+from exudyn_rotor.linear.response.steady_state import steady_state as steady_state
+from exudyn_rotor.linear.stability.sensitivity import Sensitivity as Sensitivity
+from exudyn_rotor.linear.stability.sensitivity import sensitivity as sensitivity
+from exudyn_rotor.linear.stability.stability import Stability as Stability
+from exudyn_rotor.linear.stability.stability import stability as stability
+from exudyn_rotor.linear.stability.stability_map import StabilityMap as StabilityMap
+from exudyn_rotor.linear.stability.stability_map import stability_map as stability_map
+from exudyn_rotor.linear.stability.thresholds import StabilityThresholds as StabilityThresholds
+from exudyn_rotor.linear.stability.thresholds import stability_threshold as stability_threshold
+from exudyn_rotor.linear.stability.thresholds import unstable_ranges as unstable_ranges
+from exudyn_rotor.linear.static.static_response import bearing_loads as bearing_loads
+from exudyn_rotor.linear.static.static_response import static_response as static_response
+from exudyn_rotor.linear.static.static_result import StaticResponse as StaticResponse
+from exudyn_rotor.multibody.add_rotor import add_rotor as add_rotor
+from exudyn_rotor.multibody.drives.add_drive import add_drive as add_drive
+from exudyn_rotor.multibody.drives.connect_rotors import connect_rotors as connect_rotors
+from exudyn_rotor.multibody.full.full_body import FullRotorBody as FullRotorBody
+from exudyn_rotor.multibody.rotor.connections import ConnectionWarning as ConnectionWarning
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody as RotorBody
+from exudyn_rotor.multibody.rotor.start_state import StartState as StartState
+from exudyn_rotor.multibody.solver_settings import recommended_settings as recommended_settings
+from exudyn_rotor.multibody.supports.add_supports import add_supports as add_supports
+from exudyn_rotor.multibody.supports.base_motion import add_base_motion as add_base_motion
+from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation as SceneFoundation
+from exudyn_rotor.multibody.supports.foundation_body import add_foundation as add_foundation
+from exudyn_rotor.multibody.twins.exudyn_call import (
+    MainSystemCreateFixedAxisFFRFReducedOrderObject as MainSystemCreateFixedAxisFFRFReducedOrderObject,  # noqa: E501
+)
+from exudyn_rotor.multibody.twins.exudyn_interface import (
+    ObjectFixedAxisFFRFreducedOrderInterface as ObjectFixedAxisFFRFreducedOrderInterface,
+)
+from exudyn_rotor.nonlinear.limit_cycles import limit_cycles as limit_cycles
+from exudyn_rotor.nonlinear.periodic_response import periodic_response as periodic_response
+from exudyn_rotor.nonlinear.periodic_result import PeriodicResponse as PeriodicResponse
+from exudyn_rotor.pictures.motion_shapes import MotionShapes as MotionShapes
+from exudyn_rotor.pictures.shapes import mode_shapes as mode_shapes
+from exudyn_rotor.pictures.shapes import response_shapes as response_shapes
+from exudyn_rotor.pictures.spectra import Spectra as Spectra
+from exudyn_rotor.pictures.spectra import plot_orbit as plot_orbit
+from exudyn_rotor.pictures.spectra import spectra as spectra
+from exudyn_rotor.reduction.component import ModeBasis as ModeBasis
+from exudyn_rotor.reduction.component import free_modes as free_modes
+from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes as craig_bampton_modes
+from exudyn_rotor.reduction.mean_axis import use_mean_axis_modes as use_mean_axis_modes
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor as ReducedRotor
+from exudyn_rotor.reduction.selection import keep_modes as keep_modes
+from exudyn_rotor.reduction.selection import select_modes as select_modes
+from exudyn_rotor.results import Result as Result
+from exudyn_rotor.results import load_result as load_result
+from exudyn_rotor.ross import from_ross as from_ross
+from exudyn_rotor.solid.carried_prestress import Prestress as Prestress
+from exudyn_rotor.solid.interface import Interface as Interface
+from exudyn_rotor.solid.point_mass import PointMass as PointMass
+from exudyn_rotor.solid.rigid_disc import RigidDisc as RigidDisc
+from exudyn_rotor.solid_rotor import SolidRotor as SolidRotor
+from exudyn_rotor.strength.field import StressField as StressField
+from exudyn_rotor.strength.history import StressHistory as StressHistory
+from exudyn_rotor.strength.history import stress_history as stress_history
+from exudyn_rotor.theory.axis import SpinAxis as SpinAxis
+from exudyn_rotor.theory.formulation import ConstantSpeed as ConstantSpeed
+from exudyn_rotor.theory.formulation import Formulation as Formulation
+from exudyn_rotor.theory.formulation import PrescribedMotion as PrescribedMotion
+from exudyn_rotor.theory.invariants import Invariants as Invariants
+from exudyn_rotor.theory.motion import Motion as Motion
+from exudyn_rotor.theory.stiffening import Stiffening as Stiffening
+
+__version__: str
