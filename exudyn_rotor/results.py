@@ -252,22 +252,14 @@ def _check_shape(shape: tuple[int, ...], item: Field, sizes: dict[str, int]) -> 
         raise ValueError(f"{item.name}: needs the shape {wanted}, got {shape}")
 
 
-def _words(value: object, name: str) -> tuple[str, ...]:
-    return checks.labels(value, name)
-
-
-def _whole(value: object, name: str) -> int:
-    return checks.whole_number(value, name)
-
-
 _DTYPES = {"b": bool, "i": int, "u": int, "c": complex}
 _CHECKS: dict[Any, Any] = {
     np.ndarray: _array,
     float: checks.number,
-    int: _whole,
+    int: checks.whole_number,
     bool: checks.flag,
     str: checks.label,
-    tuple[str, ...]: _words,
+    tuple[str, ...]: checks.labels,
 }
 
 

@@ -25,7 +25,6 @@ SCRIPTS = {
     "against_3d": Script("exudyn_3d.against_3d", "agreement with the 3D body"),
     "full_3d": Script("exudyn_3d.full_3d", "agreement of full bodies with the full 3D body"),
     "peer": Script("peer.table", "the swapped call in scripts of Exudyn's manner"),
-    "conical": Script("exudyn_3d.conical", "conical frequencies"),
     "timoshenko": Script("references.timoshenko", "Timoshenko beam"),
     "benchmarks": Script("references.benchmarks", "published and independently computed rotors"),
     "calculix": Script("references.calculix", "rotating discs of CalculiX's test suite"),

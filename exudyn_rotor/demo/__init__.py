@@ -26,26 +26,13 @@ FINE_MESH, QUICK_MESH = (0.0145, 2.0), (0.05, 1.0)
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """One simulated variant.
-
-    Attributes
-    ----------
-    label : str
-    seconds : float
-        Wall-clock time of the time integration.
-    time : ndarray, shape (s,)
-        [s].
-    orbit : ndarray, shape (s, 2)
-        Horizontal and vertical displacement of the right journal, inertial axes [m].
-    speed : ndarray, shape (s,)
-        Spin speed [rad/s].
-    """
+    """One simulated variant."""
 
     label: str
-    seconds: float
-    time: np.ndarray
-    orbit: np.ndarray
-    speed: np.ndarray
+    seconds: float  # wall-clock time of the time integration
+    time: np.ndarray  # (s,) [s]
+    orbit: np.ndarray  # (s, 2) of the right journal, horizontal and vertical, inertial axes [m]
+    speed: np.ndarray  # (s,) of the spin [rad/s]
 
     def deviation(self, reference: Run) -> np.ndarray:
         """Return the distance of the orbits at equal times, shape (s,) [m]."""

@@ -40,26 +40,15 @@ _STILL = 1e-12  # of the size of a motion: none
 
 @dataclass(frozen=True, eq=False)
 class Laws:
-    """The nonlinear laws, and the springs k₀ (d,) and dampers d₀ (d,) of the rest in their place.
-
-    Attributes
-    ----------
-    bearings : sequence of Bearing
-    names : sequence of str
-        Their interfaces, of trains with the rotor's name.
-    ratios : sequence of float
-        Spin speeds of their rotors over Ω.
-    springs, dampers : ndarray, shape (d,)
-    passes : float
-        Elements that pass the load in a revolution: angles of the cage per second phase; 0 where
-        laws do not depend on it.
-    """
+    """The nonlinear laws, and springs k₀ and dampers d₀ of the rest in their place."""
 
     bearings: Sequence[Bearing]
-    names: Sequence[str]
-    ratios: Sequence[float]
-    springs: np.ndarray
+    names: Sequence[str]  # their interfaces, of trains with the rotor's name
+    ratios: Sequence[float]  # spin speeds of their rotors over Ω
+    springs: np.ndarray  # (d,)
     dampers: np.ndarray
+    # elements that pass the load in a revolution: angles of the cage per second phase; 0 where laws
+    # do not depend on it
     passes: float = 0.0
 
     def along(
@@ -80,22 +69,12 @@ class Laws:
 
 @dataclass(frozen=True, eq=False)
 class Balance:
-    """The equations (1) for the harmonics up to K and N, at one speed.
-
-    Attributes
-    ----------
-    laws : Laws
-    rest : Rest
-    reach : tuple of int
-        K and N.
-    damper : float
-        Added to every law [N s/m].
-    """
+    """The equations (1) for the harmonics up to K and N, at one speed."""
 
     laws: Laws
     rest: Rest
-    reach: tuple[int, int]
-    damper: float = 0.0
+    reach: tuple[int, int]  # K and N
+    damper: float = 0.0  # added to every law [N s/m]
 
     # ------------------------------------------------------------ harmonics and values
 

@@ -49,34 +49,18 @@ _IN_PARAMETER = 1e-7  # of a step, to which a change on a branch is found
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A solution.
+    """A solution."""
 
-    Attributes
-    ----------
-    c : ndarray, shape (h, d)
-    p : ndarray, shape (e,)
-    balance : Balance
-    tangent : tuple of ndarray, or None
-        Components along c and p, scaled length 1.
-    bend : tuple of ndarray, or None
-        Its change per step.
-    kind : str
-        'computed', 'value' (a wanted one), 'fold', 'doubling', 'torus' or 'branching'.
-    growth, multiplier : float, complex
-        Of the motions beside it, see :mod:`.beside`.
-    error : float
-        Share of the motion in harmonics that are left out.
-    """
-
-    c: np.ndarray
-    p: np.ndarray
+    c: np.ndarray  # (h, d)
+    p: np.ndarray  # (e,)
     balance: Balance
-    tangent: Row | None = None
-    bend: Row | None = None
+    tangent: Row | None = None  # components along c and p, scaled length 1
+    bend: Row | None = None  # its change per step
+    # 'computed', 'value' (a wanted one), 'fold', 'doubling', 'torus' or 'branching'
     kind: str = "computed"
-    growth: float = np.nan
+    growth: float = np.nan  # of the motions beside it, see :mod:`.beside`
     multiplier: complex = np.nan
-    error: float = np.nan
+    error: float = np.nan  # share of the motion in harmonics that are left out
 
     @property
     def value(self) -> float:
@@ -86,33 +70,16 @@ class Point:
 
 @dataclass(eq=False)
 class Family:
-    """Solutions over a range of a parameter.
+    """Solutions over a range of a parameter."""
 
-    Attributes
-    ----------
-    balance : callable
-        Takes parameters (e,) and K and N, gives the equations.
-    spans : ndarray, shape (e,)
-        p₀: what counts as one of each parameter.
-    size : float
-        Of a motion that matters [m].
-    measure : callable
-        Takes a point, gives one with growth and multiplier.
-    tolerance : float
-        Largest share of the motion in harmonics that are left out.
-    phase : ndarray, shape (h, d), optional
-        φ of (1), with its reach.
-    most : tuple of int
-        Harmonics up to which more are added.
-    """
-
+    # takes parameters (e,) and K and N, gives the equations
     balance: Callable[[np.ndarray, tuple[int, int]], Balance]
-    spans: np.ndarray
-    size: float
-    measure: Callable[[Point], Point]
-    tolerance: float
-    most: tuple[int, int]
-    phase: tuple[np.ndarray, tuple[int, int]] | None = None
+    spans: np.ndarray  # (e,) p₀: what counts as one of each parameter
+    size: float  # of a motion that matters [m]
+    measure: Callable[[Point], Point]  # takes a point, gives one with growth and multiplier
+    tolerance: float  # largest share of the motion in harmonics that are left out
+    most: tuple[int, int]  # harmonics up to which more are added
+    phase: tuple[np.ndarray, tuple[int, int]] | None = None  # (h, d) φ of (1), with its reach
     lost: list[str] = field(default_factory=list)
 
     # ------------------------------------------------------------ Newton's method

@@ -95,27 +95,13 @@ def springs_of(laws: Sequence[Bearing], speeds: Sequence[float]) -> tuple[np.nda
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A rotor on linear supports and laws, under loads.
+    """A rotor on linear supports and laws, under loads."""
 
-    Attributes
-    ----------
-    model : LinearModel
-        With springs and dampers in place of the laws.
-    standing : LinearModel or None
-        The same in axes that stand still.
-    laws : Laws
-    static : mapping of int to ndarray (k,)
-        Harmonics of θ, both signs, of gravity and constant forces.
-    unbalance : mapping of int to ndarray (k,)
-        Per Ω².
-    revolutions : int
-    """
-
-    model: LinearModel
-    standing: LinearModel | None
+    model: LinearModel  # with springs and dampers in place of the laws
+    standing: LinearModel | None  # the same in axes that stand still
     laws: Laws
-    static: Mapping[int, np.ndarray]
-    unbalance: Mapping[int, np.ndarray]
+    static: Mapping[int, np.ndarray]  # harmonics of θ, both signs, of gravity and constant forces
+    unbalance: Mapping[int, np.ndarray]  # per Ω²
     revolutions: int = 1
     _rests: dict = field(default_factory=dict, repr=False)
 

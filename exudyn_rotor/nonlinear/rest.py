@@ -61,28 +61,15 @@ def _journals(model: LinearModel, names: tuple[str, ...], moves: bool) -> Terms:
 
 @dataclass(frozen=True, eq=False)
 class Unloaded:
-    """The rest at one spin speed, without loads.
+    """The rest at one spin speed, without loads."""
 
-    Attributes
-    ----------
-    model : LinearModel
-        With a spring and a damper in place of each law.
-    names : sequence of str
-        Interfaces of the laws.
-    speed : float
-        Ω [rad/s].
-    standing : LinearModel, optional
-        The same in axes that stand still, of a round rotor: there what laws do to motions beside a
-        steady one changes little, and not at all on a circle.
-    within : ndarray, shape (r', r), optional
-        Columns of fewer motions, see :meth:`up_to`.
-    """
-
-    model: LinearModel
-    names: Sequence[str]
-    speed: float
+    model: LinearModel  # with a spring and a damper in place of each law
+    names: Sequence[str]  # interfaces of the laws
+    speed: float  # Ω [rad/s]
+    # the same in axes that stand still, of a round rotor: there what laws do to motions beside a
+    # steady one changes little, and not at all on a circle
     standing: LinearModel | None = None
-    within: np.ndarray | None = None
+    within: np.ndarray | None = None  # (r', r) Columns of fewer motions, see :meth:`up_to`
     known: dict = field(default_factory=dict, repr=False)  # receptances
 
     @cached_property
@@ -126,43 +113,17 @@ class Unloaded:
 
 @dataclass(frozen=True, eq=False)
 class Rest:
-    """The rest at one spin speed, under loads.
-
-    Attributes
-    ----------
-    unloaded : Unloaded
-    rates : tuple of float
-        Of the second phase, and Ω/r [rad/s].
-    revolutions : int
-        r.
-    loads : mapping of int to ndarray (k,)
-        Harmonics of θ, of both signs.
-    """
+    """The rest at one spin speed, under loads."""
 
     unloaded: Unloaded
-    rates: tuple[float, float]
-    revolutions: int
-    loads: Terms
+    rates: tuple[float, float]  # of the second phase, and Ω/r [rad/s]
+    revolutions: int  # r
+    loads: Terms  # harmonics of θ, of both signs
 
     @property
     def speed(self) -> float:
         """Ω [rad/s]."""
         return self.unloaded.speed
-
-    @property
-    def basis(self) -> np.ndarray:
-        """As :attr:`Unloaded.basis`."""
-        return self.unloaded.basis
-
-    @property
-    def system(self) -> PeriodicSystem:
-        """As :attr:`Unloaded.system`."""
-        return self.unloaded.system
-
-    @property
-    def journals(self) -> Terms:
-        """As :attr:`Unloaded.journals`."""
-        return self.unloaded.journals
 
     def frequencies(self, orders: np.ndarray) -> np.ndarray:
         """Return ν (h,) of harmonics (k, n) (h, 2) [rad/s]."""
@@ -170,10 +131,10 @@ class Rest:
 
     def _stiffness(self, nu: np.ndarray) -> np.ndarray:
         """Return Z (h, r, r) at frequencies (h,)."""
-        M, D, K = self.system.matrices()
+        M, D, K = self.unloaded.system.matrices()
         nu = nu[:, None, None]
         Z = K + 1j * nu * D - nu**2 * M
-        for n, H in self.system.H:
+        for n, H in self.unloaded.system.H:
             Z = Z + 1j * np.sign(nu - n * self.speed) * H
         return Z
 
@@ -181,7 +142,7 @@ class Rest:
         """Return q⁰ (d,) by its harmonics (0, n)."""
         found: dict[tuple[int, int], np.ndarray] = {}
         for n, x in self._loaded.items():
-            for m, C in self.journals.items():
+            for m, C in self.unloaded.journals.items():
                 order = 0, self.revolutions * (n + m)
                 found[order] = found.get(order, 0.0) + C @ x
         return found
@@ -192,7 +153,7 @@ class Rest:
         orders = [n for n, F in self.loads.items() if np.any(F)]
         if not orders:
             return {}
-        F = np.array([self.basis.T @ self.loads[n] for n in orders])
+        F = np.array([self.unloaded.basis.T @ self.loads[n] for n in orders])
         Z = self._stiffness(self.speed * np.array(orders))
         return dict(zip(orders, np.linalg.solve(Z, F[..., None])[..., 0], strict=True))
 
@@ -205,8 +166,8 @@ class Rest:
 
     def _receptances(self, reach: tuple[int, int]) -> dict[int, Coupling]:
         K, N = reach
-        waves = sorted(self.journals)
-        C = np.concatenate([self.journals[m] for m in waves])
+        waves = sorted(self.unloaded.journals)
+        C = np.concatenate([self.unloaded.journals[m] for m in waves])
         wide = N + self.revolutions * max(map(abs, waves))
         n = np.arange(-wide, wide + 1)
         orders = np.array([(k, each) for k in range(K + 1) for each in n if k or each >= 0])
@@ -243,16 +204,16 @@ class Rest:
         """Return the motion (k,) under loads and forces g (h, d), by all harmonics."""
         loads: dict[tuple[int, int], np.ndarray] = {}
         for (k, n), g in zip(orders.tolist(), forces, strict=True):
-            for m, C in self.journals.items():
+            for m, C in self.unloaded.journals.items():
                 order = k, n + self.revolutions * m
                 loads[order] = loads.get(order, 0.0) + C.T @ g
         for n, F in self.loads.items():
             order = 0, self.revolutions * n
-            loads[order] = loads.get(order, 0.0) + self.basis.T @ F
+            loads[order] = loads.get(order, 0.0) + self.unloaded.basis.T @ F
         keys = [order for order in loads if order >= (0, 0)]
         Z = self._stiffness(self.frequencies(np.array(keys)))
         F = np.array([loads[order] for order in keys], dtype=complex)
-        x = np.linalg.solve(Z, F[..., None])[..., 0] @ self.basis.T
+        x = np.linalg.solve(Z, F[..., None])[..., 0] @ self.unloaded.basis.T
         found = dict(zip(keys, x, strict=True))
         return found | {(-k, -n): each.conj() for (k, n), each in found.items()}
 

@@ -257,8 +257,7 @@ class MotionShapes(Result):
 
         Every harmonic of a shape gives two vectors, its real and its imaginary part, in mesh axes
         of the rotor frame: the displacement at the time zero, and with the opposite sign that of
-        a quarter of its period later. Names begin with the index of the shape, and have its speed
-        where speeds differ.
+        a quarter of its period later. Names begin with the index of the shape.
 
         Parameters
         ----------
@@ -272,13 +271,11 @@ class MotionShapes(Result):
         ValueError
             For another ending, or without a surface.
         """
-        values, at = {}, [""] * len(self.labels)
-        if np.ptp(self.speeds) > 0.0:
-            at = [f", {speed:.6g} rad per s" for speed in self.speeds]
+        values = {}
         for index, label in enumerate(self.labels):
             sizes = np.abs(self.motion[index]).max(axis=1)
             for row in np.flatnonzero(sizes > _WRITTEN * sizes.max()):
-                name = f"{index} {label}{at[index]}, order {self.orders[row]}"
+                name = f"{index} {label}, order {self.orders[row]}"
                 shape = self.motion[index, row].reshape(-1, 3)
                 values[f"{name}, real"] = shape.real
                 values[f"{name}, imaginary"] = shape.imag

@@ -59,19 +59,18 @@ class Spectra(Result):
         self,
         ax: Axes | None = None,
         *,
-        highest: float | None = None,
         orders: ArrayLike = (1.0,),
         units: str = "Hz",
     ) -> Axes:
         """Draw the cascade: one spectrum above the other, by spin speed.
 
+        Up to a fifth above the last frequency with a hundredth of the largest amplitude (in a
+        spectrogram a thousandth), and all `orders`.
+
         Parameters
         ----------
         ax : matplotlib.axes.Axes, optional
             A new figure without a window by default.
-        highest : float, optional
-            Highest frequency in the picture [rad/s]; by default a fifth above the last one with a
-            hundredth of the largest amplitude (in a spectrogram a thousandth), and all `orders`.
         orders : array_like, optional
             Multiples of the spin speed to draw as lines.
         units : {'Hz', 'rpm', 'SI'}, optional
@@ -81,7 +80,7 @@ class Spectra(Result):
 
         shown = Units.of(units)
         orders = checks.array(orders, "orders", shape=(None,))
-        inside, most = self._inside(highest, _LEAST, np.abs(orders).max(initial=0.0))
+        inside, most = self._inside(_LEAST, np.abs(orders).max(initial=0.0))
         ax = plotting.axes_or_new(ax)
         base = shown.speeds(self.speeds)
         step = np.ptp(base) / max(len(base) - 1, 1) or 1.0
@@ -108,15 +107,13 @@ class Spectra(Result):
             plotting.legend_above(ax, 4)
         return ax
 
-    def plot_spectrogram(
-        self, ax: Axes | None = None, *, highest: float | None = None, units: str = "Hz"
-    ) -> Axes:
+    def plot_spectrogram(self, ax: Axes | None = None, *, units: str = "Hz") -> Axes:
         """Draw the amplitudes over time and frequency in decibels below the largest one.
 
         Parameters as of :meth:`plot`.
         """
         shown, floor = Units.of(units), 10.0 ** (-_RANGE / 20.0)
-        inside, most = self._inside(highest, floor, 1.0)
+        inside, most = self._inside(floor, 1.0)
         ax = plotting.axes_or_new(ax)
         sizes = np.maximum(self.amplitudes[:, inside] / (most or 1.0), floor)
         abscissa = shown.frequencies(self.frequencies[inside])
@@ -148,23 +145,15 @@ class Spectra(Result):
         """Return the strongest frequency of every window as text; `units` as of :meth:`plot`."""
         return "\n".join(text_table(self.columns(units)))
 
-    def _inside(self, highest: float | None, least: float, order: float) -> tuple:
+    def _inside(self, least: float, order: float) -> tuple[np.ndarray, float]:
         """Return which frequencies are shown, and the largest of their amplitudes.
 
-        Without `highest`, up to the last with the share `least` and to `order` times the speed.
+        Up to the last with the share `least` of the largest, and to `order` times the speed.
         """
         sizes, apart = self.amplitudes.max(axis=0), np.diff(self.frequencies).max()
-        if highest is None:
-            last = np.abs(self.frequencies[sizes >= least * sizes.max()]).max()
-            last = _BEYOND * max(last, order * np.abs(self.speeds).max(), apart)
-        else:
-            last = checks.number(highest, "highest", "rad/s", above=0.0)
+        last = np.abs(self.frequencies[sizes >= least * sizes.max()]).max()
+        last = _BEYOND * max(last, order * np.abs(self.speeds).max(), apart)
         inside = np.abs(self.frequencies) <= last
-        if np.count_nonzero(inside) < 2:
-            raise ValueError(
-                f"highest: needs two frequencies or more below it, got {highest}; their spacing is "
-                f"{np.diff(self.frequencies).max():.4g} rad/s"
-            )
         return inside, float(self.amplitudes[:, inside].max())
 
 

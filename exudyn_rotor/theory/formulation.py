@@ -18,7 +18,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -138,19 +137,18 @@ def start_values(
     TypeError, ValueError
         If they are no finite numbers, for a translation not three, or raise an error.
     """
-    check = checks.number if name == "spin" else checks.vector
-    return [check(_at_start(motion, rate, name), f"{name}: its {rate} at t = 0") for rate in _RATES]
-
-
-def _at_start(motion: PrescribedMotion | ConstantSpeed, rate: str, name: str) -> Any:
-    try:
-        return getattr(motion, rate)(0.0)
-    # whatever a user's function does with a time
-    except Exception as error:
-        raise ValueError(
-            f"{name}: its {rate} needs to be a function of time alone [s]; at t = 0 it raised "
-            f"{type(error).__name__}: {error}"
-        ) from error
+    check, found = checks.number if name == "spin" else checks.vector, []
+    for rate in _RATES:
+        try:
+            value = getattr(motion, rate)(0.0)
+        # whatever a user's function does with a time
+        except Exception as error:
+            raise ValueError(
+                f"{name}: its {rate} needs to be a function of time alone [s]; at t = 0 it raised "
+                f"{type(error).__name__}: {error}"
+            ) from error
+        found.append(check(value, f"{name}: its {rate} at t = 0"))
+    return found
 
 
 def suited_translation(

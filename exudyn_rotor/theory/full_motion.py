@@ -71,23 +71,13 @@ class SumMatrix:
 
 @dataclass(frozen=True, eq=False)
 class FullStiffening:
-    """Centrifugal stiffening of a full model.
+    """Centrifugal stiffening of a full model."""
 
-    Attributes
-    ----------
-    K2, B : scipy.sparse.csr_array, shape (3n, 3n)
-        Sparse parts per ω² and per ω̇.
-    tilt, euler : tuple of V and W
-        Low-rank parts ``VᵀWV`` of the same; W is zero where there is none.
-    K4 : scipy.sparse.csr_array or None
-        Stiffness per ω⁴.
-    """
-
-    K2: sp.csr_array
+    K2: sp.csr_array  # (3n, 3n) Sparse parts per ω² and per ω̇
     B: sp.csr_array
-    tilt: Factors
+    tilt: Factors  # low-rank parts ``VᵀWV`` of the same; W is zero where there is none
     euler: Factors
-    K4: sp.csr_array | None = None
+    K4: sp.csr_array | None = None  # stiffness per ω⁴
 
 
 def full_stiffening(
@@ -120,21 +110,11 @@ def full_stiffening(
 
 @dataclass(frozen=True, eq=False)
 class Conditions:
-    """What keeps the frame's own motions out of the nodal displacements.
+    """What keeps the frame's own motions out of the nodal displacements."""
 
-    Attributes
-    ----------
-    rows : ndarray, shape (c, 3n)
-        R in ``R c_f = 0``: mean translations, then the mean rotation.
-    held : ndarray, shape (3, 0…3)
-        Directions of the mean translations that are held, rotor axes.
-    invariants : Invariants
-        S and g without what the forces of the conditions take up.
-    """
-
-    rows: np.ndarray
-    held: np.ndarray
-    invariants: Invariants
+    rows: np.ndarray  # (c, 3n) R in ``R c_f = 0``: mean translations, then the mean rotation
+    held: np.ndarray  # (3, 0…3) Directions of the mean translations that are held, rotor axes
+    invariants: Invariants  # S and g without what the forces of the conditions take up
 
 
 def conditions(

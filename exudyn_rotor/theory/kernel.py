@@ -32,19 +32,11 @@ from exudyn_rotor.theory.terms import Equations
 
 @dataclass(frozen=True, eq=False)
 class ConstantPart:
-    """What needs no evaluation in a time step, on the unknowns of a motion.
+    """What needs no evaluation in a time step, on the unknowns of a motion."""
 
-    Attributes
-    ----------
-    stiffness, damping : ndarray, shape (size, size)
-        With the spin terms (109) where the speed is constant.
-    force : ndarray, shape (size,)
-        Gravity on unknown translations and, at constant speed, ``ω²h``.
-    """
-
-    stiffness: np.ndarray
+    stiffness: np.ndarray  # (size, size) With the spin terms (109) where the speed is constant
     damping: np.ndarray
-    force: np.ndarray
+    force: np.ndarray  # (size,) Gravity on unknown translations and, at constant speed, ``ω²h``
 
 
 def constant_part(motion: Equations) -> ConstantPart:

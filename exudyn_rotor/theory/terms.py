@@ -25,23 +25,13 @@ from exudyn_rotor.theory.spin_terms import SpinTerms
 
 
 class Instant(NamedTuple):
-    """One instant of a motion, split into its parts.
+    """One instant of a motion, split into its parts."""
 
-    Attributes
-    ----------
-    omega, omega_t : float
-        Spin speed, and its prescribed rate; zero for a free spin, whose rate is unknown.
-    zeta, zeta_t : ndarray, shape (m,)
-        Modal coordinates and their rates.
-    A : ndarray, shape (3, 3)
-        Rotor axes → inertial axes (55).
-    """
-
-    omega: float
+    omega: float  # spin speed, and its prescribed rate; zero for a free spin, whose rate is unknown
     omega_t: float
-    zeta: np.ndarray
+    zeta: np.ndarray  # (m,) Modal coordinates and their rates
     zeta_t: np.ndarray
-    A: np.ndarray
+    A: np.ndarray  # (3, 3) Rotor axes → inertial axes (55)
 
 
 class Equations(Protocol):

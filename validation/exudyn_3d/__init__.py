@@ -1,1 +1,1 @@
-"""The fixed-axis body beside Exudyn's own 3D body, and conical frequencies in a transient."""
+"""The fixed-axis body beside Exudyn's own 3D body."""

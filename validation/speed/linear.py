@@ -36,7 +36,6 @@ from exudyn_rotor import (
     unbalance_response,
 )
 from exudyn_rotor.demo.scene import disc_on_shaft
-from exudyn_rotor.linear.solve.forced import coupled_stiffness
 from validation.rows import verdict
 
 STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
@@ -68,6 +67,21 @@ def eigenvalues(model: LinearModel, count: int) -> Callable[[], object]:
     return lambda: [np.linalg.eig(A) for A in matrices]
 
 
+def dynamic_stiffness(system, rate: float, orders: Sequence[int]) -> np.ndarray:
+    """Return the dynamic stiffness between harmonics, (h k, h k)."""
+    M, none = system.M, np.zeros_like(system.M)
+    rates = {n: rate + n * system.speed for n in orders}
+    D, K = (
+        {n - m: X.get(n - m, none) for m in orders for n in orders} for X in (system.D, system.K)
+    )
+    return np.block(
+        [
+            [K[m - n] + 1j * w * D[m - n] - (m == n) * w**2 * M for n, w in rates.items()]
+            for m in orders
+        ]
+    )
+
+
 def solutions(
     model: LinearModel, speeds: np.ndarray, rates: np.ndarray, orders: Sequence[int]
 ) -> Callable[[], object]:
@@ -77,7 +91,7 @@ def solutions(
         system = model.at(speed)
         groups = [[0]] if orders[0] == -2 else [[n] for n in orders]
         for group in groups if system.is_constant else [orders]:
-            matrices.append(coupled_stiffness(system, rate, group)[0] + 0j)
+            matrices.append(dynamic_stiffness(system, rate, group))
     return lambda: [np.linalg.solve(A, np.ones(len(A))) for A in matrices]
 
 
