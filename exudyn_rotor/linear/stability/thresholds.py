@@ -54,8 +54,8 @@ _SMALL = 0.1  # share of the range that a limit counts as at least
 _SPEED = "speed [rad/s]"  # how the names of parameters end that are shown in other units
 Supports = Sequence[Given] | Given
 _ROOT = 1e-8  # of the largest parameter: error of a limit
-_INNER = 3  # parts of the interval between two samples, where equations are constant
-_PEAKS, _STEPS = 4, 5  # peaks that are looked at, each with so many values
+_INNER, _TURNING = 3, 2  # parts of the interval between two samples; in axes of the rotor
+_PEAKS, _STEPS = 6, 6  # peaks that are looked at, each with so many values
 _ASIDE = 1e-4  # of the range, or half of an unstable one: where the growing motion is named
 _NONE = NoCoefficientsError, UnconvergedError
 
@@ -286,10 +286,10 @@ def stability_threshold(
     """Find the limits of stability over the spin speed or another parameter.
 
     Each is found to 1e-8 of the largest parameter, with the motion that grows there. The range is
-    looked at in `samples` intervals, with three steps each of a round rotor (the equations of an
-    uneven one may be periodic, which takes a hundred times longer), and closer where the growth
-    has a peak near zero. A range that is narrower than a step can be missed, as one of a
-    parametric resonance with little damping: take more `samples` where that matters.
+    looked at in `samples` intervals with three steps each (two of an uneven rotor, whose equations
+    may be periodic, which takes a hundred times longer), and closer where the growth has a peak
+    near zero. A range that is narrower than a step can be missed, as one of a parametric resonance
+    with little damping: take more `samples` where that matters.
 
     Parameters
     ----------
@@ -370,7 +370,7 @@ def stability_threshold(
 
         margin, kinks = _Margin(model_at, tolerance), np.zeros(0)
         model = model_at(0.5 * (low + high))[0]
-    parts = _INNER if model.axes == "inertial" else 1
+    parts = _INNER if model.axes == "inertial" else _TURNING
     points = np.linspace(low, high, parts * samples + 1)
     points = np.union1d(points, kinks[(kinks > low) & (kinks < high)])
     return _found(margin, points.tolist(), label, accuracy)
