@@ -470,7 +470,6 @@ class SolidRotor(FiniteElementRotor):
         *,
         stress: bool = False,
         keep_shapes: bool = True,
-        rank_tolerance: float = 1e-7,
         prestress: Prestress | bool | None = None,
     ) -> ReducedRotor:
         """Reduce the rotor to component modes and its rigid motions.
@@ -485,8 +484,6 @@ class SolidRotor(FiniteElementRotor):
             Also recover stress modes, for stress sensors and contour pictures.
         keep_shapes : bool, optional
             Keep the mode shapes at all nodes: needed for sensors at mesh nodes and for drawing.
-        rank_tolerance : float, optional
-            A column of which less than this share is new is dropped, and named in the result.
         prestress : Prestress or bool, optional
             Static stress for ``stiffening='full'``; True for :meth:`prestress` with its defaults,
             False for none. By default that which the rotor carries or, where it has elements and
@@ -502,7 +499,6 @@ class SolidRotor(FiniteElementRotor):
             modes,
             stress=stress,
             keep_shapes=keep_shapes,
-            rank_tolerance=rank_tolerance,
             prestress=prestress,
         )
 

@@ -215,17 +215,16 @@ class StabilityLevelOne(Result):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the log decrement over the cross-coupling, with Q_A, Q₀ and the limit 0.1."""
         ax = plotting.axes_or_new(ax)
-        mega = 1e-6
+        mega, colors = 1e-6, plotting.COLORS
         line = [*zip(self.applied, self.log_decrement, strict=True)]
         if self.threshold:  # 0 where it is unstable without cross-coupling
             line.append((self.threshold, 0.0))
         applied, decrement = np.array(sorted(line)).T
-        ax.plot(mega * applied, decrement, ".-", color=plotting.COLORS[0], lw=1.4,
-                label="first forward mode")  # fmt: skip
-        ax.plot(mega * self.anticipated, self.anticipated_decrement, "s", color=plotting.COLORS[1],
-                label="anticipated, QA")  # fmt: skip
+        ax.plot(mega * applied, decrement, ".-", color=colors[0], label="first forward mode")
+        at_anticipated = mega * self.anticipated, self.anticipated_decrement
+        ax.plot(*at_anticipated, "s", color=colors[1], label="anticipated, QA")
         if self.threshold is not None:
-            ax.plot(mega * self.threshold, 0.0, "o", color=plotting.COLORS[2], label="Q0")
+            ax.plot(mega * self.threshold, 0.0, "o", color=colors[2], label="Q0")
         ax.axhline(_LEAST_DECREMENT, color="0.5", lw=0.9, ls="--", label="0.1, least at QA")
         lowest, highest = ax.get_ylim()
         room = 0.05 * (highest - lowest)

@@ -116,22 +116,10 @@ def _stays_rigid(interface: Interface, modes: np.ndarray) -> bool:
 def inertial_modes(
     rotor: FiniteElementRotor, others: np.ndarray, basis: np.ndarray, stiffness: np.ndarray
 ) -> ModeBasis:
-    """Return static responses to the loads of a turning rotor's modes.
+    """Return static responses to the loads of a turning rotor's modes, of unit strain energy.
 
-    Parameters
-    ----------
-    rotor : SolidRotor
-    others : ndarray, shape (3n, k)
-        Component modes that these are to go with; interfaces that they keep rigid stay so.
-    basis : ndarray, shape (3n, m)
-        Mass-orthonormal basis Q of the rotor, rigid motions included.
-    stiffness : ndarray, shape (m,)
-        Diagonal Λ of ``QᵀKQ`` [1/s²].
-
-    Returns
-    -------
-    ModeBasis
-        Only the independent responses that can matter, of unit strain energy.
+    Only the independent ones that can matter. Interfaces that the modes `others` (3n, k) keep rigid
+    stay so; `basis` is Q (3n, m) with the rigid motions, `stiffness` the diagonal Λ of ``QᵀKQ``.
     """
     momenta = rotor.mass @ basis
     loads = _loads(rotor, basis, momenta, stiffness)

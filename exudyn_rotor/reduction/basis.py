@@ -17,8 +17,8 @@ from exudyn_rotor.reduction.fields import ModeKind, rigid_names
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import rotations, translations
 
-# length of a column, of the largest, that is rounding
-_NOTHING = 1e-12
+# share of a column that is new, and length of a column, of the largest, that is rounding
+NEW, _NOTHING = 1e-7, 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,19 +53,16 @@ class OrthonormalBasis:
         modes: ModeBasis,
         mass: sp.csr_array,
         stiffness: sp.csr_array,
-        rank_tolerance: float,
     ) -> OrthonormalBasis:
         """Return the basis of rigid motions (3n, r), with their kinds, and component modes.
 
         A column is dropped when what is left of it, once the columns before it are taken out, is
-        smaller than `rank_tolerance` times its own norm. The flexible columns are turned so that M
+        smaller than 1e-7 of its own norm. The flexible columns are turned so that M
         and K become diagonal on them, ascending in frequency.
         """
         motions, kinds = rigid
         names = rigid_names(kinds) + modes.labels
-        matrix, momenta, used = gram_schmidt(
-            np.hstack([motions, modes.matrix]), mass, rank_tolerance
-        )
+        matrix, momenta, used = gram_schmidt(np.hstack([motions, modes.matrix]), mass)
         kept = tuple(kinds[i] for i in used if i < len(kinds))
         held, flexible = np.split(matrix, [len(kept)], axis=1)
         values, turn = scipy.linalg.eigh(flexible.T @ (stiffness @ flexible))
@@ -95,11 +92,11 @@ def rigid_columns(nodes: np.ndarray, axis: SpinAxis, center: np.ndarray) -> np.n
 
 
 def gram_schmidt(
-    columns: np.ndarray, mass: sp.csr_array, tolerance: float
+    columns: np.ndarray, mass: sp.csr_array
 ) -> tuple[np.ndarray, np.ndarray, list[int]]:
     """Return mass-orthonormal columns Q, ``MQ``, and which of the given columns they come from.
 
-    Of a column that is used more than the share `tolerance` is new.
+    Of a column that is used more than 1e-7 is new.
     """
     basis, momenta = (np.empty(columns.shape, order="F") for _ in range(2))
     lengths = np.sqrt(np.maximum(np.einsum("ik,ik->k", columns, mass @ columns), 0.0))
@@ -110,7 +107,7 @@ def gram_schmidt(
             column -= basis[:, :count] @ (momenta[:, :count].T @ column)
         momentum = mass @ column
         norm = np.sqrt(max(column @ momentum, 0.0))
-        if norm > tolerance * length and length > _NOTHING * lengths.max():
+        if norm > NEW * length and length > _NOTHING * lengths.max():
             basis[:, count], momenta[:, count] = column / norm, momentum / norm
             used.append(index)
     return basis[:, : len(used)], momenta[:, : len(used)], used

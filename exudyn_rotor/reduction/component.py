@@ -81,7 +81,7 @@ class ModeBasis:
         checks.keep(self, **checked)
 
 
-def free_modes(rotor: FiniteElementRotor, count: int, *, tolerance: float = 1e-10) -> ModeBasis:
+def free_modes(rotor: FiniteElementRotor, count: int) -> ModeBasis:
     """Return the lowest flexible eigenmodes of the rotor at rest, without bearings.
 
     Rigid motions that the stiffness leaves free are not among them (``rotor.rigid_motions`` says
@@ -92,8 +92,6 @@ def free_modes(rotor: FiniteElementRotor, count: int, *, tolerance: float = 1e-1
     rotor : SolidRotor
     count : int
         Number of modes.
-    tolerance : float, optional
-        Relative accuracy of the iteration (not used for small models, which are solved directly).
 
     Returns
     -------
@@ -103,7 +101,7 @@ def free_modes(rotor: FiniteElementRotor, count: int, *, tolerance: float = 1e-1
     Raises
     ------
     TypeError, ValueError
-        If there are not that many modes, parts are loose, or the iteration misses the tolerance.
+        If there are not that many modes, parts are loose, or the iteration does not converge.
 
     Warns
     -----
@@ -129,7 +127,6 @@ def free_modes(rotor: FiniteElementRotor, count: int, *, tolerance: float = 1e-1
     ('eigenmode 1',) [2000000.]
     """
     check_rotor(rotor)
-    checks.tolerance(tolerance)
     stiffness, mass = rotor.stiffness, rotor.mass
     rigid = free_motions_of(rotor)
     size, rigid_count = rigid.shape
@@ -141,7 +138,7 @@ def free_modes(rotor: FiniteElementRotor, count: int, *, tolerance: float = 1e-1
             dense = stiffness.toarray(), mass.toarray()
             return eigen.dense_modes(*dense, number, skip=rigid_count)
         inverse = inertia_relief(rotor, rigid)
-        return eigen.lowest_modes(stiffness, mass, inverse, number, tolerance)
+        return eigen.lowest_modes(stiffness, mass, inverse, number)
 
     values, modes = lowest_with_pairs(solve, count, size - rigid_count)
     precision = relative_rounding(stiffness, rigid)

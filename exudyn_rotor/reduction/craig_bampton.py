@@ -49,7 +49,6 @@ def craig_bampton_modes(
     interfaces: Iterable[str] | None = None,
     *,
     coupling: str = "RBE2",
-    tolerance: float = 1e-10,
 ) -> ModeBasis:
     """Return static modes of the interfaces, then eigenmodes with the interfaces fixed.
 
@@ -68,8 +67,6 @@ def craig_bampton_modes(
     coupling : {'RBE2', 'RBE3'}, optional
         'RBE2': the nodes of an interface move as one rigid body. 'RBE3': their weighted mean
         motion (:meth:`Interface.mean_motion`) is prescribed and the surface may deform.
-    tolerance : float, optional
-        Relative accuracy of the eigenmode iteration (not used for small models).
 
     Returns
     -------
@@ -101,9 +98,8 @@ def craig_bampton_modes(
     check_rotor(rotor)
     checks.count(count, "count")
     checks.choice(coupling, "coupling", _COUPLINGS)
-    checks.tolerance(tolerance)
     chosen = _choose(rotor, interfaces)
-    static, values, eigenmodes = _COUPLINGS[coupling](rotor, count, chosen, tolerance)
+    static, values, eigenmodes = _COUPLINGS[coupling](rotor, count, chosen)
     labels = sum((_labels(interface) for interface in chosen), ()) + numbered("eigenmode", count)
     return ModeBasis(
         np.hstack([static, eigen.with_fixed_sign(eigenmodes)]),
@@ -141,9 +137,7 @@ def _labels(interface: Interface) -> tuple[str, ...]:
     return tuple(names[: _motion_count(interface)])
 
 
-def _rigid_coupling(
-    rotor: FiniteElementRotor, count: int, chosen: list[Interface], tolerance: float
-) -> CoupledModes:
+def _rigid_coupling(rotor: FiniteElementRotor, count: int, chosen: list[Interface]) -> CoupledModes:
     """Return static modes, eigenvalues and eigenmodes with rigid interfaces (RBE2)."""
     _refuse_shared_nodes(chosen)
     static = _rigid_interfaces(chosen, rotor.mass.shape[0])
@@ -159,7 +153,7 @@ def _rigid_coupling(
             f"the interfaces do not hold the rotor, or it has loose parts ({error})"
         ) from error
     static[inner] = -inverse.solve((rotor.stiffness @ static)[inner])
-    solve = partial(_eigenmodes, stiffness, mass, inverse, tolerance=tolerance)
+    solve = partial(_eigenmodes, stiffness, mass, inverse)
     values, inner_modes = lowest_with_pairs(solve, count, len(inner))
     eigen.check_modes(stiffness, mass, values, inner_modes)
     eigenmodes = np.zeros((rotor.mass.shape[0], count))
@@ -167,9 +161,7 @@ def _rigid_coupling(
     return static, values, eigenmodes
 
 
-def _mean_coupling(
-    rotor: FiniteElementRotor, count: int, chosen: list[Interface], tolerance: float
-) -> CoupledModes:
+def _mean_coupling(rotor: FiniteElementRotor, count: int, chosen: list[Interface]) -> CoupledModes:
     """Return static modes, eigenvalues and eigenmodes with prescribed mean motions (RBE3)."""
     stiffness, mass = rotor.stiffness, rotor.mass
     rows = [
@@ -187,8 +179,7 @@ def _mean_coupling(
             f"the interfaces miss their unit motions by {error:.1e}: they nearly depend on each "
             "other"
         )
-    held = {"tolerance": tolerance, "constraints": constraints}
-    solve = partial(_eigenmodes, stiffness, mass, inverse, **held)
+    solve = partial(_eigenmodes, stiffness, mass, inverse, constraints=constraints)
     values, modes = lowest_with_pairs(solve, count, available)
     precision = relative_rounding(stiffness, relief.rigid)
     eigen.check_modes(stiffness, mass, values, modes, precision=precision, constraints=constraints)
@@ -203,7 +194,6 @@ def _eigenmodes(
     mass: sp.csr_array,
     inverse: InertiaRelief | ConstrainedInverse,
     count: int,
-    tolerance: float,
     constraints: sp.csr_array | None = None,
 ) -> eigen.Modes:
     """Return the lowest modes of a held model, under ``C u = 0`` where constraints are given."""
@@ -214,7 +204,7 @@ def _eigenmodes(
         balanced = None
         if constraints is not None:
             balanced = partial(eigen.without_reactions, constraints=constraints)
-        return eigen.lowest_modes(stiffness, mass, inverse, count, tolerance, balanced)
+        return eigen.lowest_modes(stiffness, mass, inverse, count, balanced)
     if constraints is None:
         return eigen.dense_modes(stiffness.toarray(), mass.toarray(), count)
     allowed = la.null_space(constraints.toarray())

@@ -18,7 +18,7 @@ import scipy.linalg
 from exudyn.FEM import FEMinterface
 
 from exudyn_rotor import checks
-from exudyn_rotor.reduction.basis import gram_schmidt, rigid_columns
+from exudyn_rotor.reduction.basis import NEW, gram_schmidt, rigid_columns
 from exudyn_rotor.reduction.component import modes_of
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.fem_interface import import_model
@@ -29,7 +29,7 @@ from exudyn_rotor.theory.axis import SpinAxis
 _SEEN = 1e-6  # share of a mode's mass that moves as a rigid body, above rounding of free modes
 
 
-def use_mean_axis_modes(fem: FEMinterface, *, rank_tolerance: float = 1e-7) -> tuple[int, ...]:
+def use_mean_axis_modes(fem: FEMinterface) -> tuple[int, ...]:
     """Put the modes of a ``FEMinterface`` into a mean-axis frame, in place.
 
     Exudyn's own flexible body then has the same mode space as a fixed-axis rotor with the same
@@ -43,14 +43,12 @@ def use_mean_axis_modes(fem: FEMinterface, *, rank_tolerance: float = 1e-7) -> t
         With nodes, mass matrix and modes. ``modeBasis['matrix']`` is replaced by
         ``Ψ − R (RᵀMR)⁻¹ RᵀMΨ``, R the six rigid motions. Stress modes remain right, since rigid
         motions have no stress.
-    rank_tolerance : float
-        A mode whose remaining part, without the modes before it, is below this share of it is a
-        rigid motion or a combination of others; it is left out, with its stress.
 
     Returns
     -------
     tuple of int
-        Numbers of the modes that are left out, usually none.
+        Numbers of the modes that are left out, usually none: rigid motions, and combinations of
+        others, with their stress.
 
     Raises
     ------
@@ -76,7 +74,6 @@ def use_mean_axis_modes(fem: FEMinterface, *, rank_tolerance: float = 1e-7) -> t
     [[-0.75  0.    0.    0.25  0.    0.  ]]
     """
     checks.instance(fem, "fem", FEMinterface)
-    checks.tolerance(rank_tolerance, "rank_tolerance")
     model = import_model(fem)
     nodes = as_nodes(model.nodes)
     mass = as_mass(model.mass, len(nodes))
@@ -86,8 +83,8 @@ def use_mean_axis_modes(fem: FEMinterface, *, rank_tolerance: float = 1e-7) -> t
     flexible = modes - rigid @ (scipy.linalg.pinvh(rigid.T @ weighted) @ (weighted.T @ modes))
     elastic = [
         index
-        for index in gram_schmidt(flexible, mass, rank_tolerance)[2]
-        if _norm(flexible[:, index], mass) > rank_tolerance * _norm(modes[:, index], mass)
+        for index in gram_schmidt(flexible, mass)[2]
+        if _norm(flexible[:, index], mass) > NEW * _norm(modes[:, index], mass)
     ]
     if not elastic:
         raise ValueError("fem: its modes are rigid motions alone; no flexible mode would remain")

@@ -52,13 +52,11 @@ def reduce_rotor(
     *,
     stress: bool = False,
     keep_shapes: bool = True,
-    rank_tolerance: float = 1e-7,
     prestress: Prestress | bool | None = None,
 ) -> ReducedRotor:
     """Reduce `rotor`; see :meth:`exudyn_rotor.SolidRotor.reduce`."""
     checks.flag(stress, "stress")
     checks.flag(keep_shapes, "keep_shapes")
-    checks.tolerance(rank_tolerance, "rank_tolerance")
     with one_thread():  # waking others for products of thin matrices costs more than it gains
         rotor = with_chosen_prestress(rotor, prestress)
         unknown = prestress is None and rotor.carried_prestress is None
@@ -66,10 +64,10 @@ def reduce_rotor(
     component = component_modes(rotor, modes)
     with one_thread():
         component = _with_turned_displacement(rotor, component)
-        basis = _basis(rotor, component, rank_tolerance)
+        basis = _basis(rotor, component)
         if basis.matrix.shape[1] == 0:
             raise ValueError("the reduced basis is empty: ask for at least one component mode")
-        attached = cache(partial(_with_attachments, rotor, component, basis, rank_tolerance))
+        attached = cache(partial(_with_attachments, rotor, component, basis))
         return _reduced(rotor, component, basis, stress, keep_shapes, attached, network)
 
 
@@ -146,7 +144,6 @@ def _with_attachments(
     rotor: FiniteElementRotor,
     component: ModeBasis,
     basis: OrthonormalBasis,
-    rank_tolerance: float,
 ) -> tuple[ReducedRotor, np.ndarray] | None:
     """Return the rotor with static responses beside its modes, and where its own columns are there.
 
@@ -162,14 +159,14 @@ def _with_attachments(
         except ValueError:  # loose parts; the given modes may do without them
             return None
         every = _joined(component, added)
-        finer = _basis(rotor, every, rank_tolerance)
+        finer = _basis(rotor, every)
         reduced = _reduced(rotor, every, finer, False, False)
         return reduced, finer.matrix.T @ basis.momenta
 
 
-def _basis(rotor: FiniteElementRotor, modes: ModeBasis, tolerance: float) -> OrthonormalBasis:
+def _basis(rotor: FiniteElementRotor, modes: ModeBasis) -> OrthonormalBasis:
     rigid = _rigid_motions(rotor, rotor.center_of_mass)
-    return OrthonormalBasis.of(rigid, modes, rotor.mass, rotor.stiffness, tolerance)
+    return OrthonormalBasis.of(rigid, modes, rotor.mass, rotor.stiffness)
 
 
 def _joined(first: ModeBasis, second: ModeBasis) -> ModeBasis:

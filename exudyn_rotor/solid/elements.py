@@ -20,17 +20,7 @@ _CHUNK = 4_000_000  # numbers in the largest array of a step
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """Elements of one kind.
-
-    Attributes
-    ----------
-    kind : str
-        One of ``exudyn_rotor.solid.shapes.KINDS``.
-    nodes : ndarray of int, shape (e, n)
-        Order of meshio (and VTK).
-    regions : ndarray of int, shape (e,)
-        Number of each element's material.
-    """
+    """Elements of one of ``KINDS``: nodes (e, n) in meshio's order, numbers of materials (e,)."""
 
     kind: str
     nodes: np.ndarray

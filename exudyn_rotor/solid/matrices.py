@@ -61,15 +61,7 @@ def as_matrix(
 ) -> sp.csr_array:
     """Return a checked (3n, 3n) matrix: finite, exactly symmetric, read-only csr_array.
 
-    Parameters
-    ----------
-    label : str
-        Name of the matrix in messages, e.g. ``"mass matrix"``.
-    matrix : array_like or sparse
-    node_count : int
-        The number of nodes n.
-    check : callable, optional
-        Raises if the matrix is wrong otherwise.
+    `label` names it in messages; `check` raises if it is wrong otherwise.
     """
     size = 3 * node_count
     known = _checked.get((label, id(matrix)))

@@ -48,17 +48,8 @@ Rule = tuple[np.ndarray, np.ndarray]
 class ElementKind:
     """One kind of element: corners and mid nodes, shape functions, integration points.
 
-    Attributes
-    ----------
-    name : str
-    corners : ndarray, shape (c, 3)
-        Of the reference element.
-    order : int
-        1, or 2 with a mid node on every edge.
-    powers : ndarray of int, shape (n, 3)
-        Exponents of the monomials that the shape functions are made of.
-    stiffness_rule, mass_rule : tuple of ndarray
-        Integration points (q, 3) and weights (q,).
+    `order` is 2 with a mid node on every edge, else 1; `powers` (n, 3) are exponents of the
+    monomials that the shape functions are made of; the rules are points (q, 3) and weights (q,).
     """
 
     name: str

@@ -23,17 +23,7 @@ class ConstrainedInverse:
     saddle matrix of the whole mesh is never factorised. Without ``d`` the map from ``f`` to ``u``
     is symmetric and positive semi-definite, as an eigenvalue iteration needs it.
 
-    Parameters
-    ----------
-    relief : InertiaRelief
-        Elastic inverse of the stiffness.
-    constraints : scipy.sparse array, shape (c, 3n)
-        ``C``, rows independent.
-
-    Raises
-    ------
-    ValueError
-        If constraints depend on each other or do not hold the free rigid motions.
+    ValueError if constraints depend on each other or do not hold the free rigid motions.
     """
 
     def __init__(self, relief: InertiaRelief, constraints: sp.csr_array) -> None:

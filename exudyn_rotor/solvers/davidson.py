@@ -12,7 +12,7 @@ _BLOCKS = 4  # of as many columns as modes are sought are kept
 _MORE = 5  # modes are sought beside those that are wanted
 _GUARDS = 2  # of them must nearly converge, so that none below is missed
 _GUARD_MULTIPLE = 1e4
-_RESIDUAL = 3e-7  # of ω² M φ, below what check_modes allows
+_RESIDUAL = 3e-7  # of ω² M φ; the error of eigenvalues is of second order in it
 _ROUNDING_SHARE = 0.1
 _MOST_STEPS = 300
 _DEPENDENT = 1e-13
@@ -34,24 +34,13 @@ def davidson_modes(
     mass: sp.csr_array,
     inverse: Inverse,
     count: int,
-    tolerance: float,
     unit: float,
     balanced: Callable[[np.ndarray], np.ndarray] | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the `count` lowest modes by Davidson iteration with an approximate ``K⁻¹``.
 
-    Parameters
-    ----------
-    stiffness, mass : scipy.sparse.csr_array, shape (n, n)
-    inverse : InertiaRelief or ConstrainedInverse
-    count : int
-    tolerance : float
-        Relative accuracy of the eigenvalues; their error is of second order in the residual.
-    unit : float
-        Rounding error of ``K u`` for a displacement of norm 1 [N].
-    balanced : callable, optional
-        Takes what reactions balance out of residuals (n, k).
-
+    `inverse` is an approximate one of the stiffness, `unit` the rounding error of ``K u`` for a
+    displacement of norm 1 [N], and `balanced` takes what reactions balance out of residuals (n, k).
     Returns as :func:`exudyn_rotor.solvers.modes.lanczos_modes`; ValueError without convergence.
 
     Restarts keep the latest Ritz vectors and those before them ("GD+k"): Stathopoulos, Saad,
@@ -59,7 +48,6 @@ def davidson_modes(
     """
     size = stiffness.shape[0]
     sought = min(count + _MORE, size)
-    share = min(_RESIDUAL, np.sqrt(tolerance))
     factors = np.where(np.arange(sought) < count, 1.0, _GUARD_MULTIPLE)[: count + _GUARDS]
     seeded = np.random.default_rng(_SEED).standard_normal((size, _GUARDS))
     new = inverse.precondition(mass @ np.hstack([inverse.start(sought), seeded]))
@@ -82,7 +70,7 @@ def davidson_modes(
         residual = forces @ turn - inertia
         if balanced is not None:
             residual = balanced(residual)
-        allowed = share * np.linalg.norm(inertia, axis=0)
+        allowed = _RESIDUAL * np.linalg.norm(inertia, axis=0)
         allowed += _ROUNDING_SHARE * unit * np.linalg.norm(modes, axis=0)
         excess = np.linalg.norm(residual, axis=0) / allowed
         done = excess[: factors.size] <= factors[: excess.size]

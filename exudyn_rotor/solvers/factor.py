@@ -96,18 +96,7 @@ class SparseCholesky:
     (fill-reducing, threaded), small ones to LAPACK. The residual of a random right-hand side shows
     a singular matrix, and inverse iteration a negative eigenvalue near zero; one that is far from
     zero can pass where NGSolve made the factor.
-
-    Parameters
-    ----------
-    matrix : scipy.sparse array, shape (n, n)
-        Symmetric positive definite; only one triangle is factorised.
-
-    Raises
-    ------
-    NotPositiveDefiniteError
-        If a diagonal entry is not positive or the probe fails.
-    TooLittleMemoryError
-        If Pardiso gets too little memory.
+    Only one triangle is factorised.
     """
 
     def __init__(self, matrix: sp.sparray) -> None:

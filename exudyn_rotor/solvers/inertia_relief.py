@@ -152,12 +152,7 @@ class InertiaRelief:
         this is the ordinary inverse.
     way : Way
 
-    Raises
-    ------
-    ValueError
-        If the stiffness is singular even with the rigid motions held.
-    TooLittleMemoryError
-        If the way does not fit into the memory that is available.
+    ValueError if the stiffness is singular even with the rigid motions held.
     """
 
     def __init__(

@@ -25,15 +25,13 @@ def lowest_modes(
     mass: sp.csr_array,
     inverse: Inverse,
     count: int,
-    tolerance: float,
     balanced: Callable[[np.ndarray], np.ndarray] | None = None,
 ) -> Modes:
     """Return the `count` lowest modes; parameters as of :func:`davidson_modes`."""
     if inverse.iterative:
         unit = rounding_unit(stiffness)
-        return davidson_modes(stiffness, mass, inverse, count, tolerance, unit, balanced)
-    # the error of eigenvalues is of second order in the residual
-    return lanczos_modes(mass, inverse.solve, count, min(_RESIDUAL, np.sqrt(tolerance)))
+        return davidson_modes(stiffness, mass, inverse, count, unit, balanced)
+    return lanczos_modes(mass, inverse.solve, count, _RESIDUAL)
 
 
 def is_small(size: int, count: int) -> bool:
@@ -103,8 +101,7 @@ def lanczos_modes(
     except sla.ArpackError as error:
         raise ValueError(
             f"{count} modes did not converge to {tolerance:.0e} ({error}); ask for more modes (a "
-            "cluster may be cut), for fewer (not all nodes may have mass), or give a larger "
-            "tolerance"
+            "cluster may be cut), or for fewer (not all nodes may have mass)"
         ) from error
     modes = modes[:, np.argsort(squares)]
     further = inverse(mass @ modes)
@@ -136,7 +133,7 @@ def check_modes(
     if np.any(excess > 0.0):
         raise ValueError(
             f"eigenmode {np.argmax(excess) + 1} does not satisfy K φ = ω² M φ; the matrices may "
-            "not be symmetric, or a smaller tolerance is needed"
+            "not be symmetric"
         )
 
 

@@ -42,15 +42,9 @@ _ROUNDING_SHARE = 0.1  # of the rounding of K u that a factorisation leaves as w
 class TwoLevel:
     """Approximate inverse of a stiffness that holds all motions but `rigid`.
 
-    Parameters
-    ----------
-    stiffness, mass : scipy.sparse.csr_array, shape (m, m)
-    rigid : ndarray, shape (m, r)
-        Mass-orthonormal free rigid motions.
-    interpolation : scipy.sparse.csr_array, shape (m, c)
-        ``P``: displacements of all nodes from those of the vertices, which come first.
-    factorised : callable
-        ``factorised(PᵀKP, PᵀMP, rigid motions)`` returns the elastic inverse of linear elements.
+    `rigid` (m, r) are mass-orthonormal, `interpolation` P (m, c) gives displacements of all nodes
+    from those of the vertices, which come first, and ``factorised(PᵀKP, PᵀMP, rigid motions)`` the
+    elastic inverse of linear elements.
 
     Cycles are done in single precision, the linear elements excepted; what uses them sees the
     rounding as a slightly worse approximation.
@@ -124,15 +118,11 @@ class TwoLevel:
 
 def _inverse_blocks(stiffness: sp.csr_array) -> sp.csr_array:
     """Return the inverse of the 3 × 3 blocks on the diagonal."""
-    size = stiffness.shape[0]
-    diagonals = [np.append(stiffness.diagonal(k), np.zeros(k)).reshape(-1, 3) for k in range(3)]
-    blocks = np.empty((size // 3, 3, 3))
-    for row in range(3):
-        for column in range(row, 3):
-            blocks[:, row, column] = blocks[:, column, row] = diagonals[column - row][:, row]
-    nodes = np.arange(size // 3 + 1)
-    inverse = sp.bsr_array((np.linalg.inv(blocks), nodes[:-1], nodes), shape=stiffness.shape)
-    return sp.csr_array(inverse.astype(np.float32))
+    blocks = sp.bsr_array(stiffness, blocksize=(3, 3))
+    nodes = np.arange(len(blocks.indptr))
+    diagonal = np.repeat(nodes[:-1], np.diff(blocks.indptr)) == blocks.indices
+    inverse = np.linalg.inv(blocks.data[diagonal]).astype(np.float32)
+    return sp.csr_array(sp.bsr_array((inverse, nodes[:-1], nodes), shape=stiffness.shape))
 
 
 def conjugate_gradients(

@@ -94,7 +94,7 @@ def test_iteration_takes_over_where_a_factor_does_not_fit_or_is_slow(cylinder, m
 
 
 def test_iteration_needs_elements(cylinder):
-    plain = SolidRotor.from_matrices(cylinder.mass, cylinder.stiffness, cylinder.nodes, "z")
+    plain = SolidRotor.from_matrices(cylinder.mass, cylinder.stiffness.copy(), cylinder.nodes, "z")
     with pytest.raises(ValueError, match="needs a model of second-order elements made by"):
         free_modes(plain.with_solver("iterative"), 2)
     with pytest.raises(ValueError, match="solver"):

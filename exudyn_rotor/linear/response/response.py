@@ -523,11 +523,19 @@ class HarmonicResponse(Response):
 def resolved_peak(at: np.ndarray, size: np.ndarray, index: int) -> tuple[float, float, bool]:
     """Return place and size of the maximum at a point by its neighbours, and if they are near.
 
-    They are not where one of them is below half of the power of the maximum.
+    Near a resonance 1/size² is a parabola, for one mode exactly. Neighbours are not near where one
+    of them is below half of the power of the maximum.
     """
-    near = slice(index - 1, index + 2)
-    is_near = bool(size[near].min() >= HALF_POWER * size[index])
-    return *peak_between(at[near], size[near]), is_near
+    at, size = at[index - 1 : index + 2], size[index - 1 : index + 2]
+    is_near = bool(size.min() >= HALF_POWER * size[1])
+    shift, seen = at - at[1], np.maximum(size, STILL * size[1])
+    square, slope, middle = np.polyfit(shift, (size[1] / seen) ** 2, 2)
+    if square <= 0.0:
+        return float(at[1]), float(size[1]), is_near
+    place = float(np.clip(-0.5 * slope / square, shift[0], shift[2]))
+    least = square * place**2 + slope * place + middle
+    # as close to a pole as the parabola may put it, no size follows from it
+    return float(at[1] + place), float(size[1] / np.sqrt(max(least, 0.25))), is_near
 
 
 def warn_of_coarse_peaks(coarse: Sequence[tuple[str, float]], was_refined: bool) -> None:
@@ -545,22 +553,6 @@ def warn_of_coarse_peaks(coarse: Sequence[tuple[str, float]], was_refined: bool)
         UserWarning,
         stacklevel=user_level(),
     )
-
-
-def peak_between(at: np.ndarray, size: np.ndarray) -> tuple[float, float]:
-    """Return place and size of a maximum by the point with the largest size and its neighbours.
-
-    Near a resonance 1/size² is a parabola, for one mode exactly. Three points, the middle one the
-    largest.
-    """
-    shift, seen = at - at[1], np.maximum(size, STILL * size[1])
-    square, slope, middle = np.polyfit(shift, (size[1] / seen) ** 2, 2)
-    if square <= 0.0:
-        return float(at[1]), float(size[1])
-    place = float(np.clip(-0.5 * slope / square, shift[0], shift[2]))
-    least = square * place**2 + slope * place + middle
-    # as close to a pole as the parabola may put it, no size follows from it
-    return float(at[1] + place), float(size[1] / np.sqrt(max(least, 0.25)))
 
 
 # ------------------------------------------------------------------ phases

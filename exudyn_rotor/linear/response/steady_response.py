@@ -355,12 +355,13 @@ class _OverSpeed(_Sweep):
     unit: ClassVar[str] = "rpm"
 
     def coordinates(self, model: LinearModel, values: np.ndarray) -> Coordinates:
-        load, held = unbalance_load(model, self.unbalances, self.own), model.held_basis
+        # no unbalance acts along the axis, where nothing may hold the rotor
+        load, basis = unbalance_load(model, self.unbalances, self.own), model.moving_basis
         found = {0: np.zeros((len(values), model.size), dtype=complex)}
         moving = np.flatnonzero(values)  # at rest there is no load
         if not moving.size:
             return found
-        stack = model.at_all(values[moving], "held")
+        stack = model.at_all(values[moving], "moving")
         model.warn_beyond(np.abs(values[moving]))
         lost, rows = moving[~stack.known], moving[stack.known]
         self.told.extend(values[lost].tolist())
@@ -370,7 +371,7 @@ class _OverSpeed(_Sweep):
 
         def solve(part: slice) -> Coordinates:
             acting = {n: squares[part] * F for n, F in load.items()}
-            options = {"held": held, "tolerance": self.tolerance}
+            options = {"held": basis, "tolerance": self.tolerance}
             return forced_motions(stack[part], acting, none[part], **options)
 
         for n, X in _in_parts(solve, len(rows), model.size).items():

@@ -223,20 +223,16 @@ def _begin(scene: LinearScene, start: SteadyState | StartState) -> tuple[np.ndar
     """Return orders and harmonics of the motion with which a search begins."""
     how = "steady_state(body) makes one, and its state()"
     checks.instance(start, "start", (SteadyState, StartState), how)
-    if isinstance(start, SteadyState):
-        given = start.scene.size, start.scene.count
-        _check_same(given, (scene.size, scene.count))
-        return start.orders, start.harmonics
-    _check_same((len(start.q), scene.count), (len(scene.rest), scene.count))
-    T = scene.turn(start.angle)[0]
-    y = np.linalg.lstsq(T, (start.q - scene.rest)[scene.free])[0]
-    return np.array([0]), y[None].astype(complex)
-
-
-def _check_same(given: tuple[int, int], wanted: tuple[int, int]) -> None:
-    """Compare the numbers of coordinates and of translations of two scenes."""
+    of_steady = isinstance(start, SteadyState)
+    given = (start.scene.size, start.scene.count) if of_steady else (len(start.q), scene.count)
+    wanted = (scene.size if of_steady else len(scene.rest)), scene.count
     if given != wanted:
         raise ValueError(
             f"start: has {given[0]} coordinates with {given[1]} translations of the rotor, this "
             f"scene {wanted[0]} with {wanted[1]}; it is of another scene"
         )
+    if of_steady:
+        return start.orders, start.harmonics
+    T = scene.turn(start.angle)[0]
+    y = np.linalg.lstsq(T, (start.q - scene.rest)[scene.free])[0]
+    return np.array([0]), y[None].astype(complex)

@@ -82,20 +82,23 @@ def equilibrium(
     K, load = basis.T @ K @ basis, basis.T @ load
     rows = [(one.U @ basis, one.U_s @ basis) for one in journals]
 
-    def solved(equations: Sequence[Resting]) -> tuple[np.ndarray | None, np.ndarray]:
-        return _solved(K, load, rows, equations)
+    def equations_at(places: Sequence, forces: np.ndarray) -> list[Resting]:
+        return [
+            resting(one.bearing, one.speed, u, u_s, R)
+            for one, (u, u_s), R in zip(journals, places, forces, strict=True)
+        ]
 
     begin = [held() if one.bearing.carries else unloaded() for one in journals]
-    y, R = solved(begin)
+    y, R = _solved(K, load, rows, begin)
     if y is None or all(isinstance(one.bearing, RigidBearing) for one in journals):
         return (None if y is None else basis @ y), R
     places = [
         (starting_place(one.bearing, one.speed, force), U_s @ y)
         for one, (_, U_s), force in zip(journals, rows, R, strict=True)
     ]
-    equations = _equations(journals, places, R)
+    equations = equations_at(places, R)
     for step in range(_MOST):
-        new_y, new_R = solved(equations)
+        new_y, new_R = _solved(K, load, rows, equations)
         if new_y is None:
             return None, R
         share = 1.0 if step < _SLOW else 0.5
@@ -103,7 +106,7 @@ def equilibrium(
             tried = y + share * (new_y - y), R + share * (new_R - R)
             places = [(U @ tried[0], U_s @ tried[0]) for U, U_s in rows]
             try:
-                equations = _equations(journals, places, tried[1])
+                equations = equations_at(places, tried[1])
                 break
             except (ValueError, ArithmeticError):
                 share *= 0.5
@@ -121,17 +124,6 @@ def equilibrium(
         f"static_response: no equilibrium found in {_MOST} steps; a bearing with clearance or at "
         "the end of its film may have none under these loads"
     )
-
-
-def _equations(
-    journals: Sequence[Journal],
-    places: Sequence[tuple[np.ndarray, np.ndarray]],
-    forces: np.ndarray,
-) -> list[Resting]:
-    return [
-        resting(one.bearing, one.speed, u, u_s, R)
-        for one, (u, u_s), R in zip(journals, places, forces, strict=True)
-    ]
 
 
 def _solved(

@@ -11,16 +11,11 @@ from exudyn_rotor.solid.meshes import nastran
 
 
 def read(path: Path, numbers: list[int]) -> tuple[sp.csr_array, sp.csr_array]:
-    """Return mass and stiffness on the displacements of nodes, in units of the file.
+    """Return mass and stiffness on the displacements of nodes with these numbers, in file units.
 
-    Parameters
-    ----------
-    path : Path
-        ``name.sti`` with ``name.mas`` and ``name.dof`` beside it (CalculiX, ``*FREQUENCY,
-        SOLVER=MATRIXSTORAGE``), or a punch file of DMIG cards with one matrix whose name begins
-        with M and one with K.
-    numbers : list of int
-        Numbers of the nodes in the file of the mesh.
+    `path` is ``name.sti`` with ``name.mas`` and ``name.dof`` beside it (CalculiX, ``*FREQUENCY,
+    SOLVER=MATRIXSTORAGE``), or a punch file of DMIG cards with one matrix whose name begins with M
+    and one with K.
     """
     if path.suffix == ".sti":
         order = _equations(path.with_suffix(".dof"), numbers)

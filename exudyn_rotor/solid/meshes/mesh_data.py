@@ -14,17 +14,9 @@ from exudyn_rotor.calls import user_level
 
 @dataclass(eq=False)
 class ElementGroup:
-    """Elements of one kind, in the order of meshio.
+    """Elements of one of ``KINDS``: numbers (e,) of theirs and of their nodes, in meshio's order.
 
-    Attributes
-    ----------
-    kind : str
-        One of ``exudyn_rotor.solid.shapes.KINDS``.
-    numbers : ndarray of int, shape (e,)
-    nodes : ndarray of int, shape (e, n)
-        Numbers of nodes.
-    region : str
-        What their material goes by.
+    Their material goes by the name of the region.
     """
 
     kind: str
