@@ -29,7 +29,6 @@ from exudyn_rotor.drives.drive import TorqueCurve as TorqueCurve
 from exudyn_rotor.drives.gear_mesh import GearMesh as GearMesh
 from exudyn_rotor.drives.motors import DirectCurrentMotor as DirectCurrentMotor
 from exudyn_rotor.drives.motors import InductionMotor as InductionMotor
-from exudyn_rotor.drives.motors import LimitedPower as LimitedPower
 from exudyn_rotor.evaluation.level_one import StabilityLevelOne as StabilityLevelOne
 from exudyn_rotor.evaluation.level_one import (
     anticipated_cross_coupling as anticipated_cross_coupling,

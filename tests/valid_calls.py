@@ -228,7 +228,6 @@ CALLS = {
         "direction": np.array([0.0, 0.0, 1.0]),
     },
     "JournalBearing": lambda w: {"film": w.OilFilm, "load": [0.0, -500.0]},
-    "LimitedPower": {"power": 9.0, "stall_torque": 5.0},
     "LinearActuator": {"force_current": 80.0, "negative_stiffness": 3e5},
     "LinearActuator.force": {"place": 1e-5},
     "Link": {"first": "first:left", "second": "second:left", "connection": er.Support("left", 1e6)},

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_rotor.bearings.support import Coefficient, Support
+from exudyn_rotor.bearings.support import Coefficient
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,18 +61,16 @@ class PadSupport:
         The journal.
     masses : ndarray, shape (p,)
         Of every pad, its inertia about the pivot over the square of the radius [kg].
-    tangents : ndarray, shape (p, 2)
-        Along (n1, n2).
-    films : tuple of Support
-        Of every pad.
+    matrices : callable
+        Stiffness and damping (3 + p, 3 + p) between the journal, along (n1, n2, e), and the pads,
+        by the spin speed [rad/s]; a ValueError where the journal has no equilibrium.
     static_stiffness : Coefficient
         Of all in the whirl, the tilts eliminated, with which critical speeds are found [N/m].
     """
 
     interface: str
     masses: np.ndarray
-    tangents: np.ndarray
-    films: tuple[Support, ...]
+    matrices: Callable[[float], tuple[np.ndarray, np.ndarray]]
     static_stiffness: Coefficient
 
     @property

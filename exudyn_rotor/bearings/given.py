@@ -71,10 +71,11 @@ def check_interfaces(
     ValueError
     """
     for support in supports:
-        for place in {support.interface, getattr(support, "sensor", None) or support.interface}:
+        for place in (support.interface, getattr(support, "sensor", None) or support.interface):
             if place not in known:
+                asked = "" if place == support.interface else f" as that of its sensor, {place!r}"
                 raise ValueError(
-                    f"support at {support.interface!r}: no such interface{_asked(place, support)}; "
+                    f"support at {support.interface!r}: no such interface{asked}; "
                     f"the rotor has: {', '.join(known) or 'none'}"
                 )
         turns = known[support.interface].radius > 0.0
@@ -85,7 +86,3 @@ def check_interfaces(
                 "nothing, since the interface is a single node, which has no rotation; make the "
                 "interface of three nodes or more, or leave this out"
             )
-
-
-def _asked(place: str, support: Given | Controlled) -> str:
-    return "" if place == support.interface else f" as that of its sensor, {place!r}"

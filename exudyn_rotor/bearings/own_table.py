@@ -3,11 +3,7 @@
 Of the ports p of a bearing, journal j, sensors s and own coordinates o, a motion of the frequency ν
 has ``Z = K + iν D − ν² M``; nothing acts on the own coordinates, so that
 
-    Z_b = Z_jj − Z_jo Z_oo⁻¹ Z_oj,   K_b = Re Z_b,   D_b = Im Z_b/ν.                      (1)
-
-A pad's film Z_p acts on ``x − s t``, with the pad's mass m = I/R²:
-
-    Z_b = Σ Z_p − Z_p t tᵀZ_p/(tᵀ Z_p t − ν² m).                                          (2)
+    Z_b = Z_jj − Z_jo Z_oo⁻¹ Z_oj,   K_b = Re Z_b,   D_b = Im Z_b/ν.
 """
 
 from __future__ import annotations
@@ -69,19 +65,12 @@ def _at_speed(
         parts = *linear.matrices(speed), linear.mass_matrix(speed)
         return tuple(none + X[:2, :2] for X in parts)
     if isinstance(linear, PadSupport):
-        Z = none + 0j
-        for film, t, mass in zip(linear.films, linear.tangents, linear.masses, strict=True):
-            film.check_range(speed)
-            K, D = (X[:2, :2] for X in film.matrices(speed))
-            each = K + 1j * nu * D
-            left, right = each @ t, t @ each
-            held = left @ t - frequencies**2 * mass
-            Z += each - left[:, :, None] * right[:, None] / held[:, None, None]
+        (K, D), seen = linear.matrices(speed), np.eye(3, 2)
     else:
-        D, K = linear.damping, linear.stiffness
+        K, D = linear.stiffness, linear.damping
         seen = np.kron([[1.0], [1.0]], np.eye(2))  # sensors move as the magnets do
-        whole = K + 1j * nu * D
-        own = whole[:, 4:, 4:] - nu**2 * np.diag(linear.masses)
-        inner = np.linalg.solve(own, whole[:, 4:, :4] @ seen)
-        Z = seen.T @ (whole[:, :4, :4] @ seen - whole[:, :4, 4:] @ inner)
+    first, whole = len(seen), K + 1j * nu * D
+    own = whole[:, first:, first:] - nu**2 * np.diag(linear.masses)
+    inner = np.linalg.solve(own, whole[:, first:, :first] @ seen)
+    Z = seen.T @ (whole[:, :first, :first] @ seen - whole[:, :first, first:] @ inner)
     return Z.real, Z.imag / nu, none

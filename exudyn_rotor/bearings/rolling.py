@@ -148,15 +148,7 @@ class RollingBearing(Bearing):
             Spin angle θ [rad].
         """
         place = checks.vector(displacement, "displacement", "m", size=2)
-        angles = self._angles(checks.number(angle, "angle", "rad"))
-        return self._loads(*place, np.cos(angles), np.sin(angles))
-
-    def _angles(self, angle: float) -> np.ndarray:
-        return 2.0 * pi / self.count * np.arange(self.count) + self.cage_ratio * angle
-
-    def _loads(self, x: float, y: float, c: np.ndarray, s: np.ndarray) -> np.ndarray:
-        depth = np.maximum(x * c + y * s - self.clearance, 0.0)
-        return self.stiffness * depth ** _EXPONENTS[self.elements]
+        return contacts(self, place, checks.number(angle, "angle", "rad"))[0]
 
     def law(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
@@ -168,9 +160,10 @@ class RollingBearing(Bearing):
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float, float]:
         """As :meth:`law`, with the torque (3) on the inner ring [N m]."""
-        angles = self._angles(angle)
+        angles = 2.0 * pi / self.count * np.arange(self.count) + self.cage_ratio * angle
         c, s = np.cos(angles), np.sin(angles)
-        loads, d = self._loads(x, y, c, s), self.damping
+        depth = np.maximum(x * c + y * s - self.clearance, 0.0)
+        loads, d = self.stiffness * depth ** _EXPONENTS[self.elements], self.damping
         px, py = float(loads @ c), float(loads @ s)
         return -px - d * vx, -py - d * vy, self.cage_ratio * (x * py - y * px)
 

@@ -171,18 +171,17 @@ class TiltingPadBearing(Bearing):
         """
         if self.pad_inertia is None:
             return super().linearised()
-        self._static_load(None)
-        count = len(self.film.pads)
-        films = [
-            Support(self.interface, *(_OfPads(self, index, pad) for index in (0, 1)))
-            for pad in range(count)
-        ]
-        masses = np.full(count, self.pad_mass)
-        static = _OfPads(self, 0)
-        return PadSupport(self.interface, masses, self.tangents, tuple(films), static)
+        load, static = self._static_load(None), _InTheWhirl(self, 0)
+
+        def matrices(speed: float) -> tuple[np.ndarray, np.ndarray]:
+            static.check_range(speed)
+            return self._linear.at(speed, load, self._of_pads)[:2]
+
+        masses = np.full(len(self.film.pads), self.pad_mass)
+        return PadSupport(self.interface, masses, matrices, static)
 
     def _of_pads(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return stiffness and damping of each pad's film (p, 2, 2), and stiffness of all."""
+        """Return what :class:`PadSupport` has, and the stiffness (2, 2) of all in the whirl."""
         state, mass = self._state(speed, load), self.pad_mass
         whole = state.impedance(self.whirl_ratio * abs(speed), mass).real
         absent = [pad for pad, each in enumerate(state.states) if each is None]
@@ -195,11 +194,14 @@ class TiltingPadBearing(Bearing):
             )
         soft = min(mass * speed**2, _HELD * float(np.abs(whole).max()))
         held = np.array([soft, 4.0 * np.sqrt(soft * mass)])  # overdamped: no vibration of its own
-        films = [
-            np.multiply.outer(held, np.outer(t, t)) if each is None else each
-            for each, t in zip(state.coefficients, self.tangents, strict=True)
-        ]
-        return *np.moveaxis(np.array(films), 1, 0), whole
+        count = len(state.states)
+        total = np.zeros((2, 3 + count, 3 + count))
+        for pad, (each, t) in enumerate(zip(state.coefficients, self.tangents, strict=True)):
+            seen = np.eye(3, 3 + count)[:2]
+            seen[:, 3 + pad] = -t
+            film = np.multiply.outer(held, np.outer(t, t)) if each is None else each
+            total += [seen.T @ X @ seen for X in film]
+        return total[0], total[1], whole
 
     def _state(self, speed: float, load: np.ndarray) -> _Pads:
         """Return the pads in equilibrium."""
@@ -361,12 +363,9 @@ class _Pads:
 
 
 @dataclass(frozen=True, eq=False)
-class _OfPads(Linearised):
-    """Stiffness (`index` 0) or damping of one pad's film; of all in the whirl without `pad`."""
-
-    pad: int | None = None
+class _InTheWhirl(Linearised):
+    """Stiffness of all pads with inertia in the whirl, by the spin speed."""
 
     def _value(self, speed: float) -> np.ndarray:
         bearing = self.bearing
-        *films, whole = bearing._linear.at(speed, bearing._static_load(None), bearing._of_pads)
-        return whole if self.pad is None else films[self.index][self.pad]
+        return bearing._linear.at(speed, bearing._static_load(None), bearing._of_pads)[2]

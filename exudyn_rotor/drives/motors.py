@@ -6,9 +6,7 @@ Induction motor, by Kloss's formula (M. Kloss, Archiv für Elektrotechnik 5 (191
 
 direct-current motor with separate excitation (W. Leonhard, Control of Electrical Drives, ch. 5):
 
-    T = T_0 (1 − Ω/Ω_0),                                                                   (2)
-
-and a drive with limited power: T = T_0 up to Ω = P/T_0, P/Ω beyond.                         (3)
+    T = T_0 (1 − Ω/Ω_0).                                                                   (2)
 
 Transients of the currents are left out: they are over within some periods of the supply.
 """
@@ -101,45 +99,3 @@ class DirectCurrentMotor(Drive):
         """Return the torque [N m]."""
         sense = 1.0 if self.no_load_speed > 0.0 else -1.0
         return sense * self.stall_torque * (1.0 - speed / self.no_load_speed)
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class LimitedPower(Drive):
-    """Drive of constant torque at low speed and of constant power above (3).
-
-    Parameters
-    ----------
-    power : float
-        P [W].
-    stall_torque : float
-        T_0 [N m]; negative for a drive that turns the rotor backwards.
-
-    Raises
-    ------
-    TypeError, ValueError
-        For a power that is not above zero, a torque that is zero.
-
-    Examples
-    --------
-    >>> from exudyn_rotor import LimitedPower
-    >>> drive = LimitedPower(power=1000.0, stall_torque=20.0)
-    >>> drive.torque(40.0), drive.torque(100.0)
-    (20.0, 10.0)
-    """
-
-    power: float
-    stall_torque: float
-
-    def __post_init__(self) -> None:
-        checks.keep_numbers(self, {"power": "W"}, above=0.0)
-        checks.keep_numbers(self, {"stall_torque": "N m"})
-        self._refuse_zero("stall_torque", "N m")
-
-    def law(self, speed: float, time: float) -> float:
-        """Return the torque [N m]."""
-        sense = 1.0 if self.stall_torque > 0.0 else -1.0
-        corner, forward = sense * self.power / self.stall_torque, sense * speed
-        beyond = forward - corner
-        # the larger of both speeds, without a case
-        larger = 0.5 * (forward + corner + (beyond * beyond) ** 0.5)
-        return sense * self.power / larger

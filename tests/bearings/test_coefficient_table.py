@@ -45,7 +45,7 @@ def test_tables_and_matrices_are_told_apart():
     for wrong, match in (
         (((0.0, 1e5), (-1e5, 0.0)), "may be a matrix or a table"),
         (([0.0, 1.0], [1.0]), "its table need 2 numbers"),
-        (np.eye(4), "needs a number or one of"),
+        (np.eye(4), "needs a number or a matrix of"),
         ([[1.0, 2.0], [3.0]], "stiffness: needs"),
     ):
         with pytest.raises((TypeError, ValueError), match=match):

@@ -243,7 +243,7 @@ RIGHT = {
         angle current end_speed flank force frequency helix_angle initial_angle
         initial_speed line_angle load no_load_speed place ring_speed speed spin start_speed
         synchronous_speed
-        t time value HarmonicResponse.rates.order LimitedPower.stall_torque
+        t time value HarmonicResponse.rates.order
         Pad.start PointMass.mass UnbalanceResponse.rates.order""",
     "unknown": "at interface label name sensor title",
     "number": "Support.stiffness Support.damping tilt_stiffness tilt_damping",

@@ -10,7 +10,6 @@ from exudyn_rotor import (
     DirectCurrentMotor,
     Drag,
     InductionMotor,
-    LimitedPower,
     Support,
     TorqueCurve,
     add_drive,
@@ -30,11 +29,9 @@ def from_slip(slip, motor):
 
 
 INDUCTION = InductionMotor(breakdown_torque=8.0, breakdown_slip=0.25, synchronous_speed=100.0)
-LIMITED = LimitedPower(power=100.0, stall_torque=4.0)
 CLOSED = {  # drive, speed at the start, time, speed then
     "direct current": (MOTOR, 0.0, 1.0, 100.0 * (1.0 - np.exp(-1.0))),
     "induction": (INDUCTION, 0.0, from_slip(0.15, INDUCTION), 85.0),
-    "limited power": (LIMITED, 0.0, 1.0, np.sqrt(25.0**2 + 2.0 * 100.0 / J * (1.0 - J * 25 / 4))),
     "table": (TorqueCurve(([0.0, 100.0], [5.0, 0.0])), 0.0, 1.0, 100.0 * (1.0 - np.exp(-1.0))),
     "function of time": (TorqueCurve(lambda speed, time: 4.0 * time), 0.0, 1.0, 2.0 / J),
     "dry": (Drag(constant=2.0, smooth_speed=1e-3), 60.0, 1.0, 60.0 - 2.0 / J),

@@ -253,7 +253,7 @@ def own_elements(
 
     def matrices(speed: float, *_: float) -> tuple[np.ndarray, np.ndarray]:
         if isinstance(one, PadSupport):
-            return _of_pads(one, rate * speed)
+            return one.matrices(rate * speed)
         K, D = one.stiffness, one.damping
         return lifted @ K @ lifted.T, lifted @ D @ lifted.T
 
@@ -263,17 +263,6 @@ def own_elements(
     if isinstance(one, ControlledSupport):
         return [Element(ends, matrices, motion, law=one)]
     return [Element(ends, matrices, motion, varies=True, stiffness_varies=True)]
-
-
-def _of_pads(one: PadSupport, speed: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return stiffness and damping (3 + p, 3 + p) of films that act on ``x − s t`` of each pad."""
-    total = np.zeros((2, 3 + one.size, 3 + one.size))
-    for number, (film, tangent) in enumerate(zip(one.films, one.tangents, strict=True)):
-        film.check_range(speed)
-        seen = np.eye(3, 3 + one.size)
-        seen[:2, 3 + number] = -tangent
-        total += [seen.T @ X[:3, :3] @ seen for X in film.matrices(speed)]
-    return total[0], total[1]
 
 
 def _series_elements(

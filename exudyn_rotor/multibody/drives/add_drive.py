@@ -76,7 +76,7 @@ def add_drive(
     body : RotorBody or FullRotorBody
         From :func:`exudyn_rotor.add_rotor` with ``spin='free'`` and its marker body.
     drive : Drive
-        InductionMotor, DirectCurrentMotor, LimitedPower, TorqueCurve or Drag.
+        InductionMotor, DirectCurrentMotor, TorqueCurve or Drag.
     at : str, optional
         Interface on which the torque acts, about the spin axis, by its mean rotation there. The
         whole rotor by default: the torque acts on the spin and bends or twists nothing.

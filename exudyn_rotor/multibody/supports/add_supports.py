@@ -159,74 +159,64 @@ def add_supports(
     check_body(body, "body")
     supports = given_supports(supports)
     check_interfaces(supports, body.selection.source.interfaces)
+    places = []
     for support in supports:
-        if isinstance(support, SeriesSupport | FloatingRingBearing):
-            raise ValueError(
-                f"supports: what is in series at {support.interface!r} has a ring, which is a body "
-                "of a scene: add the ring as a rotor with the outer bearing, and give the inner "
-                "one base=ring.marker(…)"
-            )
-        if isinstance(support, Bearing):
-            _check_law(body, support)
-        elif isinstance(support, Support):
-            _check_support(support)
-            _check_about_the_axis(body, support)
-    seats = [Seat.of(body, support.interface, base) for support in supports]
-    for support, seat in zip(supports, seats, strict=True):
+        _check_support(body, support)
+        seat = Seat.of(body, support.interface, base)
         _check_on_rotor(body, support, seat)
-    sensed = [_seat_of_sensor(body, support, base) for support in supports]
-    added = tuple(
-        _added(body, support, *places)
-        for support, *places in zip(supports, seats, sensed, strict=True)
-    )
+        # the bearing's base carries the sensors of a magnetic bearing
+        sensor = getattr(support, "sensor_interface", support.interface)
+        places.append((seat, Seat.of(body, sensor, seat.base)))
+    pairs = zip(supports, places, strict=True)
+    added = tuple(_added(body, support, *seats) for support, seats in pairs)
     body.supports.extend(added)
     return added
 
 
-def _check_law(body: Body, bearing: Bearing) -> None:
-    """Refuse a bearing without a law for scenes, and one that could not brake a free spin."""
-    if isinstance(bearing, TiltingPadBearing) and bearing.pad_inertia is None:
-        bearing.law(*6 * (0.0,))  # which says what there is instead
-    interface = body.selection.source.interfaces[bearing.interface]
-    if has_torque(bearing) and body.formulation.has_spin and interface.radius == 0.0:
+def _check_support(body: Body, support: Given) -> None:
+    """Refuse what has no force by the coordinates of a scene."""
+    name, free = support.interface, body.formulation.has_spin
+    if isinstance(support, SeriesSupport | FloatingRingBearing):
         raise ValueError(
-            f"support at {bearing.interface!r}: its torque would not brake the free spin, since "
-            "the interface is a single node, which has no rotation; make the interface of three "
-            "nodes or more, or prescribe the spin"
+            f"supports: what is in series at {name!r} has a ring, which is a body of a scene: add "
+            "the ring as a rotor with the outer bearing, and give the inner one "
+            "base=ring.marker(…)"
         )
-
-
-def _check_support(support: Support) -> None:
-    """Refuse coefficients over the frequency, and a mass that is not alike across the axis."""
-    where = f"support at {support.interface!r}"
+    if isinstance(support, TiltingPadBearing) and support.pad_inertia is None:
+        support.law(*6 * (0.0,))  # which says what there is instead
+    turns = body.selection.source.interfaces[name].radius > 0.0
+    if isinstance(support, Bearing) and has_torque(support) and free and not turns:
+        raise ValueError(
+            f"support at {name!r}: its torque would not brake the free spin, since the interface "
+            "is a single node, which has no rotation; make the interface of three nodes or more, "
+            "or prescribe the spin"
+        )
+    if not isinstance(support, Support):
+        return
     if support.over_frequency:
         raise ValueError(
-            f"{where}: a scene has no single frequency, which its coefficients need; give "
-            "support.at_frequency(…), e.g. of the motion of interest, or what has states of its "
-            "own: a MagneticBearing, pads with pad_inertia, a SeriesSupport"
+            f"support at {name!r}: a scene has no single frequency, which its coefficients need; "
+            "give support.at_frequency(…), e.g. of the motion of interest, or what has states of "
+            "its own: a MagneticBearing, pads with pad_inertia, a SeriesSupport"
         )
     M = support.mass_matrix(0.0)
     if np.any(M - M[0, 0] * np.diag([1.0, 1.0, 0.0, 0.0, 0.0, 0.0])):
         raise ValueError(
-            f"{where}: mass: a scene takes one number, alike across the axis [kg], got a matrix"
+            f"support at {name!r}: mass: a scene takes one number, alike across the axis [kg], "
+            "got a matrix"
+        )
+    stiffness, damping = support.matrices(body.plan.setup.placement.speed)
+    acting = {"stiffness": stiffness} | ({"damping": damping} if support.frame == "rotor" else {})
+    for kind in [kind for kind, X in acting.items() if free and _about_the_axis(X)]:
+        raise ValueError(
+            f"support at {name!r}: {kind} about the spin axis needs a prescribed spin, and that of "
+            f"rotor {body.name!r} is free; use a matrix with zeros there, or a torsional spring on "
+            "the frame's node"
         )
 
 
-def _check_about_the_axis(body: Body, support: Support) -> None:
-    """Refuse what acts against the rotation of a frame whose spin is free."""
-    if not body.formulation.has_spin:
-        return
-    stiffness, damping = support.matrices(body.plan.setup.placement.speed)
-    acting = {"stiffness": stiffness}
-    if support.frame == "rotor":
-        acting["damping"] = damping
-    for name, matrix in acting.items():
-        if np.any(matrix[5]) or np.any(matrix[:, 5]):
-            raise ValueError(
-                f"support at {support.interface!r}: {name} about the spin axis needs a prescribed "
-                f"spin, and that of rotor {body.name!r} is free; use a matrix with zeros there, or "
-                "a torsional spring on the frame's node"
-            )
+def _about_the_axis(matrix: np.ndarray) -> bool:
+    return bool(np.any(matrix[5]) or np.any(matrix[:, 5]))
 
 
 def _check_on_rotor(body: Body, support: Given, seat: Seat) -> None:
@@ -234,42 +224,33 @@ def _check_on_rotor(body: Body, support: Given, seat: Seat) -> None:
     rotor = carrying_rotor(body.mbs, seat.base)
     if rotor is None:
         return
-    where = f"base: the support at {support.interface!r} stands on another rotor"
     tilts = isinstance(support, Support) and support.tilts
     across = isinstance(support, Support) and not tilts
+    bearing, reason = bearing_of(support), None
     if not across and abs(rotor.standing_axes[:, 2] @ seat.axes[:, 2]) < 1.0 - _PARALLEL:
-        raise ValueError(
-            f"{where}, whose axis is not parallel to that of rotor {body.name!r}; mount both on "
-            "parallel axes"
+        reason = (
+            f", whose axis is not parallel to that of rotor {body.name!r}; mount both on parallel "
+            "axes"
         )
-    if isinstance(support, TiltingPadBearing | MagneticBearing):
-        raise ValueError(
-            f"{where}, with which its pads or magnets would turn; give another bearing there"
+    elif isinstance(support, TiltingPadBearing | MagneticBearing):
+        reason = ", with which its pads or magnets would turn; give another bearing there"
+    elif bearing is not None and not isinstance(bearing, RollingBearing):
+        reason = (
+            f", and has the coefficients of a {type(bearing).__name__} whose bore is at rest; give "
+            "the bearing itself"
         )
-    bearing = bearing_of(support)
-    if bearing is not None and not isinstance(bearing, RollingBearing):
-        raise ValueError(
-            f"{where}, and has the coefficients of a {type(bearing).__name__} whose bore is at "
-            "rest; give the bearing itself"
+    elif tilts and any(map(_about_the_axis, support.matrices(0.0))):
+        reason = (
+            ", to which it would act about the axis; between rotors of one speed connect_rotors "
+            "with a FlexibleCoupling has torsion"
         )
-    if tilts and any(np.any(X[5]) or np.any(X[:, 5]) for X in support.matrices(0.0)):
+    if reason is not None:
         raise ValueError(
-            f"{where}, to which it would act about the axis; between rotors of one speed "
-            "connect_rotors with a FlexibleCoupling has torsion"
+            f"base: the support at {support.interface!r} stands on another rotor{reason}"
         )
 
 
-def _seat_of_sensor(
-    body: Body, support: Given, base: Base | Mapping[str, Base] | None
-) -> Seat | None:
-    """Return where the sensors of a magnetic bearing are; the bearing's base carries them."""
-    if not isinstance(support, MagneticBearing):
-        return None
-    given = base.get(support.interface) if isinstance(base, Mapping) else base
-    return Seat.of(body, support.sensor_interface, given)
-
-
-def _added(body: Body, support: Given, seat: Seat, sensed: Seat | None) -> SceneSupport:
+def _added(body: Body, support: Given, seat: Seat, sensed: Seat) -> SceneSupport:
     mbs = body.mbs
     end, base = RotorEnd(body, support.interface), seat.end(mbs)
     if isinstance(support, Support):
