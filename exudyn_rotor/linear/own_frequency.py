@@ -19,7 +19,7 @@ import numpy as np
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.linear.equations import PeriodicSystem, joined
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.solve.motions import Motions, joined_motions, motions_of
+from exudyn_rotor.linear.solve.motions import REAL, Motions, joined_motions, motions_of
 
 _TOLERANCE, _ENOUGH = 1e-10, 1e-6  # of a frequency: what is aimed at, and what counts as found
 _STILL = 1e-6  # of the largest motion of a support: none
@@ -55,9 +55,9 @@ def met(model: LinearModel, found: Motions) -> np.ndarray:
             acted = np.any(element.matrices(float(found.speeds[found.known[0]]))[0], axis=0)
             moved = np.linalg.norm(U[0].real[acted] @ shapes, axis=1)
             moves = moved > _STILL * np.nanmax(moved, initial=0.0)
-            used.append(np.abs(found.values.imag[moves]))
-    used = np.concatenate(used)
-    return used[used > 0.0]
+            values = found.values[moves & (np.abs(found.values.imag) > REAL * np.abs(found.values))]
+            used.append(np.abs(values.imag))
+    return np.concatenate(used)
 
 
 def _at_speed(model: LinearModel, speed: float) -> Motions:

@@ -25,7 +25,7 @@ from exudyn_rotor.linear.solve.hill import Exponents, hill_motions
 
 METHODS = ("auto", "hill", "floquet")
 _ROUNDING = 100.0 * EPSILON  # of the size of a state matrix: what a real part may be off by
-_REAL = 1e-9  # share of |λ|: a frequency that is rounding
+REAL = 1e-9  # share of |λ|: a frequency that is rounding
 _AT_ONCE = 2_000_000  # entries of matrices that are solved at once
 
 
@@ -234,7 +234,7 @@ def _bounds(made: States) -> np.ndarray:
 
 def one_of_each_pair(values: np.ndarray) -> np.ndarray:
     """Return which of 2k eigenvalues of real matrices (s, 2k) stand for all, (s, k), ascending."""
-    real = np.abs(values.imag) <= _REAL * np.abs(values.real)
+    real = np.abs(values.imag) <= REAL * np.abs(values.real)
     lower = ~real & (values.imag <= 0.0)
     chosen = np.lexsort((np.where(real, -values.real, 0.0), real + 2.0 * lower), axis=-1)
     chosen = chosen[:, : values.shape[1] // 2]
