@@ -8,14 +8,7 @@ import netgen.occ as occ
 import ngsolve as ngs
 import numpy as np
 
-from exudyn_rotor import (
-    Formulation,
-    SolidRotor,
-    Support,
-    campbell,
-    select_modes,
-    stability,
-)
+from exudyn_rotor import Formulation, SolidRotor, Support, campbell, select_modes, stability
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from validation.extremes.rotors import held, two_rings
 from validation.extremes.rows import EPS, Row, breaking_point, message

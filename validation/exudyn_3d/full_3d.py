@@ -28,6 +28,7 @@ from validation.exudyn_3d.scenes import (
     deviation,
     disc_on_shaft,
     extrapolated,
+    simulate,
 )
 from validation.exudyn_3d.spatial_body import SpatialBody, add_spatial_rotor
 from validation.rows import Row, print_rows, verdict
@@ -96,15 +97,7 @@ def run(
     steps: int,
     samples: int = 20,
 ) -> Orbits:
-    """Return the motion of a body on its bearings, integrated almost to round-off a step."""
-    sensors = hold(body, rotor)
-    integrate(body.mbs, duration, steps, samples)
-    stored = [body.mbs.GetSensorStoredData(sensor) for sensor in sensors]
-    return Orbits(stored[0][:, 0], *(data[:, 1:] for data in stored))
-
-
-def hold(body: SpatialBody | RotorItems, rotor: SolidRotor) -> list[exudyn.SensorIndex]:
-    """Put a body on its bearings, assemble, and return sensors of their and the rim's places."""
+    """Return the motion of a body on its bearings."""
     mbs, ground = body.mbs, body.mbs.CreateGround()
     for end in ENDS:
         mbs.CreateCartesianSpringDamper(
@@ -117,25 +110,7 @@ def hold(body: SpatialBody | RotorItems, rotor: SolidRotor) -> list[exudyn.Senso
     rim = int(np.argmax(np.linalg.norm(rotor.nodes[:, :2], axis=1)))
     sensors = [body.add_interface_sensor(end, place) for end in ENDS]
     sensors.append(body.add_node_sensor(rim, place))
-    mbs.Assemble()
-    return sensors
-
-
-def integrate(mbs: exudyn.MainSystem, duration: float, steps: int, samples: int) -> None:
-    """Solve from the initial state on."""
-    settings = exudyn.SimulationSettings()
-    settings.solution.file.write = False
-    settings.solution.sensors.writePeriod = duration / samples
-    settings.linearSolver.solverType = exudyn.LinearSolverType.EigenSparse
-    integration = settings.timeIntegration
-    integration.endTime, integration.numberOfSteps = duration, steps
-    integration.generalizedAlpha.spectralRadius = 0.9
-    integration.newton.useModifiedNewton = True
-    integration.newton.relativeTolerance = 1e-10
-    integration.newton.absoluteTolerance = 1e-12
-    integration.newton.modifiedNewtonContractivity = 0.05
-    integration.verboseMode = 0
-    mbs.SolveDynamic(settings)
+    return simulate(mbs, sensors, duration, duration / steps, samples, spectral_radius=0.9)
 
 
 def system() -> exudyn.MainSystem:
