@@ -186,6 +186,7 @@ ELSEWHERE = {
     "linear/model/build.py:warn_of_structural_damping": "campbell finds modes without it",
     "multibody/add_rotor.py:_add_reduced": "A scene runs without it",
     "prestress/static_solution.py:_warn_of_yield": "above yield_stress",
+    "solvers/factor.py:_tell_of_mkl": "exudyn-rotor\\[mkl\\]",
     "solid/meshes/mesh_data.py:warn": "taken as",
     "theory/stiffening.py:warn_of_left_out": "beyond 'tilt' is left out",
     "ross.py:_check_held": "of shaft elements are left out",
