@@ -7,7 +7,7 @@ Elements", SSRN 4830498: prints Eqs. (116–129) and draws Fig. 2.
 import numpy as np
 
 from exudyn_rotor import SolidRotor, campbell, plotting
-from exudyn_rotor.theory.nodal import block_diagonal, tilde, tilde_basis, translations
+from exudyn_rotor.theory.axis import block_diagonal, tilde, tilde_basis, translations
 
 nodes = [[1.0, 0.0, 0.0], [1.75, 0.0, 0.0]]
 mass = np.eye(6)

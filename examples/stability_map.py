@@ -22,7 +22,7 @@ from exudyn_rotor import (
     stability_map,
     unstable_ranges,
 )
-from exudyn_rotor.reduction.fields import ModeKind
+from exudyn_rotor.reduction.reduced_rotor import ModeKind
 
 UPRIGHT, SIDEWAYS, ALONG = 6e6, 3e6, 1e7  # stiffness of a bearing [N/m]
 

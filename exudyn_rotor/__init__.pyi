@@ -114,9 +114,9 @@ from exudyn_rotor.results import Result as Result
 from exudyn_rotor.results import load_result as load_result
 from exudyn_rotor.ross import from_ross as from_ross
 from exudyn_rotor.solid.carried_prestress import Prestress as Prestress
-from exudyn_rotor.solid.interface import Interface as Interface
 from exudyn_rotor.solid.point_mass import PointMass as PointMass
 from exudyn_rotor.solid.rigid_disc import RigidDisc as RigidDisc
+from exudyn_rotor.solid.rotor import Interface as Interface
 from exudyn_rotor.solid_rotor import SolidRotor as SolidRotor
 from exudyn_rotor.strength.field import StressField as StressField
 from exudyn_rotor.strength.history import StressHistory as StressHistory

@@ -15,10 +15,10 @@ from exudyn_rotor.prestress.given_loads import Loads, Spring
 from exudyn_rotor.prestress.static_solution import static_prestress
 from exudyn_rotor.reduction.reduce import ModeSource, reduce_rotor
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.solid import fem_interface, matrices, ngsolve_model
+from exudyn_rotor.solid import matrices, ngsolve_model
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.meshes import mesh_model
-from exudyn_rotor.solid.model import FiniteElementModel, node_set
+from exudyn_rotor.solid.model import FiniteElementModel, import_model, node_set
 from exudyn_rotor.solid.rotor import AxisLike, FiniteElementRotor
 from exudyn_rotor.solid.summary import summary
 from exudyn_rotor.theory.axis import SpinAxis
@@ -264,7 +264,7 @@ class SolidRotor(FiniteElementRotor):
             If `fem` is not a FEMinterface, nodes carry rotations, something is missing, or a check
             of the matrices fails.
         """
-        model = fem_interface.import_model(fem)
+        model = import_model(fem)
         return cls._of_model(model, axis, check_units, grounded, allow_parts)
 
     @classmethod

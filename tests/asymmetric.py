@@ -4,7 +4,7 @@ import numpy as np
 
 from exudyn_rotor import SolidRotor
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.theory.nodal import rotations, translations
+from exudyn_rotor.theory.axis import rotations, translations
 
 DISC, END = 10.0, 1.0  # mass of the disc and of each end [kg]
 SHAFT = np.array([4e5, 6e5])  # bending stiffness in the rotor's x and y [N/m]

@@ -6,7 +6,7 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor import ReducedRotor, SpinAxis
-from exudyn_rotor.reduction.fields import RIGID_KINDS, ReducedInterface
+from exudyn_rotor.reduction.reduced_rotor import RIGID_KINDS, ReducedInterface
 from exudyn_rotor.theory.invariants import Invariants
 
 _TURN = np.array([[0.0, -1.0], [1.0, 0.0]])

@@ -5,8 +5,8 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
 from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.theory.axis import rotations, translations
 from exudyn_rotor.theory.invariants import Invariants
-from exudyn_rotor.theory.nodal import rotations, translations
 
 SKEW_AXIS = np.array([2.0, -1.0, 2.0]) / 3.0
 

@@ -27,7 +27,7 @@ from exudyn_rotor import (
     StressHistory,
     UnbalanceResponse,
 )
-from exudyn_rotor.reduction.fields import Centrifugal
+from exudyn_rotor.reduction.reduced_rotor import Centrifugal
 
 RNG = np.random.default_rng(3)
 TRIANGLES = [[0, 1, 2], [1, 2, 3]]
@@ -82,7 +82,8 @@ def results() -> list:
         BaseResponse(("left", "node 2"), speeds, motion[:, :, 0].real, 90.0),
         Stability(speeds, table + 1j, speeds, speeds > 15.0, speeds, table, codes, codes),
         StabilityThresholds([20.0], [True], [9.0], [0], [1], 10.0, 30.0, False),
-        StabilityMap(speeds, speeds[:2], table, table > 1.5, ("k [N/m]", "speed [rad/s]")),
+        StabilityMap(speeds, speeds[:2], table, table > 1.5, table, codes, codes, table,
+                     ("k [N/m]", "speed [rad/s]")),
         SeparationMargins(("left",), [20.0], [1e-5], [[19.0, np.nan]], [10.0], [0.15], [0.2],
                           [25.0, 30.0], ("left", "right"), speeds, table.T),
         StabilityLevelOne(speeds - 10.0, 0.3 - 0.01 * speeds, speeds, 10.0, 90.0, "centrifugal",

@@ -216,7 +216,6 @@ CALLS = {
     },
     "GearMesh": {"radii": [0.05, 0.1], "stiffness": 1e8, "teeth": [20, 40], "variation": [0.1]},
     "HarmonicForce": {"force": [1.0, 0.0, 0.0]},
-    "HarmonicResponse.state": lambda w: {"frequency": w.HarmonicResponse.frequencies[0]},
     "InductionMotor": {"breakdown_torque": 5.0, "breakdown_slip": 0.2, "synchronous_speed": 90.0},
     "Invariants.in_basis": lambda w: {"T": np.eye(w.Invariants.size)},
     "Invariants.of": lambda w: {
@@ -338,7 +337,6 @@ CALLS = {
     "TorqueCurve": {"curve": ([0.0, 90.0], [5.0, 0.0])},
     "TorqueCurve.torque": {"speed": 10.0},
     "Unbalance": {"amount": 1e-4},
-    "UnbalanceResponse.state": {"speed": 10.0},
     "add_base_motion": lambda w: {"bodies": w.SceneFoundation},
     "add_drive": lambda w: {"body": w.free_body, "drive": w.Drag},
     "add_rotor": lambda w: {"modal_coordinates": np.zeros(4), "rotation": np.eye(3)},

@@ -28,6 +28,7 @@ SCRIPTS = {
     "timoshenko": Script("references.timoshenko", "Timoshenko beam"),
     "benchmarks": Script("references.benchmarks", "published and independently computed rotors"),
     "calculix": Script("references.calculix", "rotating discs of CalculiX's test suite"),
+    "branches": Script("branches", "a sweep through a fold beside runs"),
     "film": Script("references.film", "oil films of finite length"),
     "nonlinear": Script("stiffening.nonlinear", "nonlinear solid, clamped blade"),
     "spun_up_blade": Script("stiffening.spun_up_blade", "blade spun up"),

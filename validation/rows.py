@@ -1,10 +1,8 @@
-"""Rows of numbers: printed as a table, written as JSON, and closed by a verdict."""
+"""Rows of numbers: printed as a table, and closed by a verdict."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 Row = dict[str, "str | float | None"]
 
@@ -23,20 +21,6 @@ def _cell(value: str | float | None) -> str:
     if isinstance(value, str):
         return value
     return "-" if value is None or value != value else f"{value:.4g}"
-
-
-def write_json(path: str | Path, data: object) -> None:
-    """Write tables as strict JSON: null where a number is not finite."""
-    text = json.dumps(_strict(data), indent=1, allow_nan=False, ensure_ascii=False)
-    Path(path).write_text(text + "\n", encoding="utf-8")
-
-
-def _strict(value: object) -> object:
-    if isinstance(value, dict):
-        return {key: _strict(one) for key, one in value.items()}
-    if isinstance(value, list | tuple):
-        return [_strict(one) for one in value]
-    return None if isinstance(value, float) and not abs(value) < float("inf") else value
 
 
 def verdict(numbers: Mapping[str, tuple[float, float]]) -> int:

@@ -14,7 +14,7 @@ import scipy.linalg as la
 from exudyn_rotor.advice.run_loads import instants, interface_loads
 from exudyn_rotor.multibody.rotor.record import Record
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.reduction.fields import ModeKind
+from exudyn_rotor.reduction.reduced_rotor import ModeKind
 from exudyn_rotor.theory.rotating_axes import axes_of
 
 _LOOKED_AT = 20  # instants

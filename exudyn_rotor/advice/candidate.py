@@ -13,8 +13,7 @@ from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.calls import kept
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.reduction.fields import ModeKind
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.rotating_axes import axes_of
 

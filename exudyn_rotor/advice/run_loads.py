@@ -16,8 +16,7 @@ from exudyn_rotor.multibody.load_places import load_places
 from exudyn_rotor.multibody.rotor.record import Record
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.theory.axis import SpinAxis, skew
 
 _MOST = 400  # instants of a run that are looked at
 _STILL = 1e-5  # of the rotor's size: motion that counts as none

@@ -11,8 +11,8 @@ from exudyn_rotor.bearings.controlled_support import Controlled
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.series import FloatingRingBearing, SeriesSupport
 from exudyn_rotor.bearings.support import Support, acts
-from exudyn_rotor.reduction.fields import ReducedInterface
-from exudyn_rotor.solid.interface import Interface
+from exudyn_rotor.reduction.reduced_rotor import ReducedInterface
+from exudyn_rotor.solid.rotor import Interface
 
 Given = Support | Bearing | MagneticBearing | SeriesSupport | FloatingRingBearing
 _TILTING = ("tilt_stiffness", "tilt_damping")

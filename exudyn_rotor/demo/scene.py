@@ -18,7 +18,7 @@ from exudyn.rigidBodyUtilities import InertiaCuboid
 from netgen import occ
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor.markers import virtual_nodes
+from exudyn_rotor.multibody.rotor.rotor_items import virtual_nodes
 from exudyn_rotor.solid_rotor import SolidRotor
 
 AddRotor = Callable[[exudyn.MainSystem, FEMinterface], dict]

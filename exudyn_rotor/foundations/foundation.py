@@ -22,7 +22,7 @@ from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.places import SAME_PLACE, off_place
 from exudyn_rotor.solid_rotor import SolidRotor
-from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.theory.axis import skew
 
 _SINGULAR = 1e-10  # of a matrix scaled to a diagonal of ones
 _UNITS = {"mass": "kg", "damping": "N s/m", "stiffness": "N/m"}

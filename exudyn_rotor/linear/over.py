@@ -11,13 +11,14 @@ import numpy as np
 from tqdm import tqdm
 
 from exudyn_rotor import checks
-from exudyn_rotor.calls import one_thread, user_level
+from exudyn_rotor.calls import user_level
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms
 from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
 from exudyn_rotor.linear.own_frequency import met, own_motions
 from exudyn_rotor.linear.solve.forced import forced_motions
 from exudyn_rotor.linear.solve.motions import Motions, motions_of
 from exudyn_rotor.results import Result, text_table
+from exudyn_rotor.solvers.factor import one_thread
 from exudyn_rotor.theory.stiffening import LEVELS
 
 NOT_KNOWN = "error of the basis: not known"

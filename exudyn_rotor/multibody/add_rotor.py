@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import exudyn
+import numpy as np
+from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.full.add_full import add_full
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.full.full_plan import check_memory, make_full_plan
-from exudyn_rotor.multibody.rotor.equations import constant_object, user_function_object
-from exudyn_rotor.multibody.rotor.frame import LOCKINGS, add_constraints, driving_force
-from exudyn_rotor.multibody.rotor.markers import add_weight, flexible_body
+from exudyn_rotor.multibody.rotor.frame import (
+    LOCKINGS,
+    Layout,
+    LockedForce,
+    add_constraints,
+    driving_force,
+)
 from exudyn_rotor.multibody.rotor.plan import (
     Setup,
     check_free_names,
@@ -26,7 +32,11 @@ from exudyn_rotor.multibody.rotor.plan import (
     placement,
 )
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.multibody.rotor.rotor_items import add_interface_markers
+from exudyn_rotor.multibody.rotor.rotor_items import (
+    add_interface_markers,
+    add_weight,
+    flexible_body,
+)
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.rotor import LOSS_LEFT_OUT
@@ -37,6 +47,8 @@ from exudyn_rotor.theory.formulation import (
     PrescribedMotion,
     suited_translation,
 )
+from exudyn_rotor.theory.kernel import Kernel, constant_part
+from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.stiffening import CHOICES, chosen_level, warn_of_left_out
 
 DEFAULT_COLOR = (0.62, 0.70, 0.80, 1.0)
@@ -270,3 +282,108 @@ def _add_solid(mbs: exudyn.MainSystem, rotor: SolidRotor, setup: Setup) -> FullR
     if rotor.structural_damping:
         warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=3)
     return add_full(mbs, plan)
+
+
+StateForce = Callable[[float, list, list], np.ndarray]
+
+
+def constant_object(motion: Motion, layout: Layout, nodes: list) -> ObjectGenericODE2:
+    """Return the object with constant matrices (109): no Python call in a time step."""
+    rest = np.zeros(motion.size)
+    return ObjectGenericODE2(
+        nodeNumbers=nodes,
+        massMatrix=layout.spread(motion.mass_matrix(0.0, rest), layout.lock_mass),
+        **_constant_items(motion, layout),
+        visualization=VObjectGenericODE2(show=False),
+    )
+
+
+def user_function_object(
+    motion: Motion, layout: Layout, nodes: list, locked_force: LockedForce | None
+) -> ObjectGenericODE2:
+    """Return the object with user functions for what varies, and matrices for what does not.
+
+    `locked_force(t)` gives the forces, shape (size,), that drive locked coordinates along their
+    prescribed motion.
+    """
+    rest = np.zeros(motion.size)
+    kernel, functions = Kernel(motion, layout.unknowns, layout.size), {}
+    mass = layout.spread(motion.mass_matrix(0.0, rest), layout.lock_mass)
+    if kernel.rows.size:
+        mass, functions["massMatrixUserFunction"] = _varying_mass(mass, kernel, layout.size)
+    functions["jacobianUserFunction"] = _jacobian(kernel)
+    functions["forceUserFunction"] = _with_guide(
+        kernel.forces if kernel.has_forces else None, locked_force
+    )
+    return ObjectGenericODE2(
+        nodeNumbers=nodes,
+        massMatrix=mass,
+        **_constant_items(motion, layout),
+        **functions,
+        visualization=VObjectGenericODE2(show=False),
+    )
+
+
+def _constant_items(motion: Motion, layout: Layout) -> dict[str, np.ndarray]:
+    """Return the matrices and the force that Exudyn itself evaluates."""
+    constant = constant_part(motion)
+    force = np.zeros(layout.size)
+    force[layout.unknowns] = constant.force
+    return {
+        "stiffnessMatrix": layout.spread(constant.stiffness),
+        "dampingMatrix": layout.spread(constant.damping),
+        "forceVector": force,
+    }
+
+
+def _with_guide(forces: StateForce | None, guide: LockedForce | None) -> Callable:
+    """Return the user function of the forces, with those on locked coordinates."""
+    # Exudyn takes a list faster than an array
+    if guide is None:
+        return lambda mbs, t, item, q, q_t: forces(t, q, q_t).tolist()
+    if forces is None:
+        return lambda mbs, t, item, q, q_t: guide(t).tolist()
+    return lambda mbs, t, item, q, q_t: (guide(t) + forces(t, q, q_t)).tolist()
+
+
+def _varying_mass(
+    start: np.ndarray, kernel: Kernel, size: int
+) -> tuple[exudyn.MatrixContainer, Callable]:
+    """Return the mass matrix and its user function: only some entries vary.
+
+    Exudyn takes entries (row, column, value) faster than a matrix.
+    """
+    above, beside = kernel.rows, kernel.columns
+    off = above != beside
+    fixed = start.copy()
+    fixed[above, beside] = fixed[beside, above] = 0.0
+    rows, columns = np.nonzero(fixed)
+    table = np.zeros((rows.size + above.size + np.count_nonzero(off), 3))
+    table[:, 0] = np.concatenate([rows, above, beside[off]])
+    table[:, 1] = np.concatenate([columns, beside, above[off]])
+    table[: rows.size, 2] = fixed[rows, columns]
+    one = table[rows.size : rows.size + above.size, 2]
+    mirrored = table[rows.size + above.size :, 2]
+    skipped = above.size - mirrored.size  # the only diagonal entry is the first
+    matrix = exudyn.MatrixContainer()
+    # one container, its method found once: Exudyn takes a copy, and a new one costs a microsecond
+    fill = matrix.SetWithSparseMatrixCSR
+
+    def mass_matrix(mbs, t, item, q, q_t):
+        values = kernel.mass_entries(t, q)
+        one[:], mirrored[:] = values, values[skipped:]
+        fill(size, size, table, False)
+        return matrix
+
+    return mass_matrix(None, 0.0, None, [0.0] * size, [0.0] * size), mass_matrix
+
+
+def _jacobian(kernel: Kernel) -> Callable:
+    """Return the Jacobian of the user force; Exudyn adds that of its own matrices.
+
+    It is needed even where it is zero: without it, Exudyn differentiates the object numerically
+    with all its matrices, and calls the user force for every coordinate.
+    """
+    return lambda mbs, t, item, q, q_t, factor_q, factor_v: kernel.jacobian(
+        t, q, q_t, factor_q, factor_v
+    )

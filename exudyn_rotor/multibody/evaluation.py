@@ -13,6 +13,14 @@ STATES = tuple(
     getattr(exudyn.ConfigurationType, name)
     for name in ("Initial", "Current", "StartOfStep", "Visualization")
 )
+_NO_FORCES = {
+    "stiffnessMatrix": np.zeros((0, 0)),
+    "dampingMatrix": np.zeros((0, 0)),
+    "forceVector": np.zeros(0),
+    "forceUserFunction": 0,
+    "jacobianUserFunction": 0,
+}
+
 Saved = list[tuple]
 
 
@@ -43,6 +51,19 @@ def evaluating(mbs: exudyn.MainSystem) -> Iterator[exudyn.MainSolverStatic]:
     finally:
         solver.FinalizeSolver(mbs, settings)
         restore_states(mbs, saved)
+
+
+@contextmanager
+def without_forces(mbs: exudyn.MainSystem, number: exudyn.ObjectIndex) -> Iterator[None]:
+    """Let the object of a rotor's equations have its mass matrix alone, but no forces."""
+    given = {name: mbs.GetObjectParameter(number, name) for name in _NO_FORCES}
+    for name, nothing in _NO_FORCES.items():
+        mbs.SetObjectParameter(number, name, nothing)
+    try:
+        yield
+    finally:
+        for name, value in given.items():
+            mbs.SetObjectParameter(number, name, value)
 
 
 def constraint_rows(

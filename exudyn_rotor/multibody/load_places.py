@@ -10,8 +10,8 @@ import numpy as np
 
 from exudyn_rotor.multibody.drives.connect_rotors import SceneConnection
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
-from exudyn_rotor.solid.interface import rotation_moments
-from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.solid.rotor import rotation_moments
+from exudyn_rotor.theory.axis import skew
 
 _MARKERS = {"SuperElementPosition": 3, "SuperElementRigid": 6}
 # loads and connectors that exert no moment

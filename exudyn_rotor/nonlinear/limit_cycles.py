@@ -20,7 +20,6 @@ from scipy.optimize import root
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, given_supports
-from exudyn_rotor.calls import one_thread
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.build import Target
@@ -35,6 +34,7 @@ from exudyn_rotor.nonlinear.periodic_response import size_of, warn_of
 from exudyn_rotor.nonlinear.periodic_result import PeriodicResponse
 from exudyn_rotor.nonlinear.problem import Problem
 from exudyn_rotor.nonlinear.scene import as_lists
+from exudyn_rotor.solvers.factor import one_thread
 
 _FIRST = 0.02  # of a clearance: size of the first motion
 _BELOW = 0.3  # of the onset, down to which a branch is followed that turns back

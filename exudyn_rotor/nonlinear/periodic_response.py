@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.support import NoCoefficientsError
-from exudyn_rotor.calls import one_thread, user_level
+from exudyn_rotor.calls import user_level
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.build import Target, warn_of_left_out_stiffening
@@ -26,6 +26,7 @@ from exudyn_rotor.nonlinear.continuation import Family, Point, same
 from exudyn_rotor.nonlinear.periodic_result import PeriodicResponse
 from exudyn_rotor.nonlinear.problem import Problem
 from exudyn_rotor.nonlinear.scene import as_lists
+from exudyn_rotor.solvers.factor import one_thread
 
 _LABELS = {"speed": "spin speed [rad/s]", "unbalance": "unbalance"}
 _MOST = (24, 48)  # harmonics of the second phase, and of the spin in a revolution

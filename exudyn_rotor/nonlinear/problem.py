@@ -25,7 +25,7 @@ from exudyn_rotor.linear.response.loads import (
 from exudyn_rotor.nonlinear.balance import Balance, Laws, real_part_of
 from exudyn_rotor.nonlinear.rest import Rest, Unloaded, of_both_signs
 from exudyn_rotor.nonlinear.scene import Listed
-from exudyn_rotor.reduction.fields import ModeKind
+from exudyn_rotor.reduction.reduced_rotor import ModeKind
 from exudyn_rotor.theory.rotating_axes import axes_of, parts_across
 
 _DEPTH = 1e-3  # of the radius of the elements, at which a contact has the stiffness of k₀

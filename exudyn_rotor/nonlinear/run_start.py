@@ -19,8 +19,8 @@ from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import StartState
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation
-from exudyn_rotor.reduction.fields import ModeKind
-from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.reduction.reduced_rotor import ModeKind
+from exudyn_rotor.theory.axis import skew
 from exudyn_rotor.theory.rotating_axes import axes_of
 
 _OWN = dict(zip((MagneticBearing, TiltingPadBearing), WORDS.values(), strict=False))

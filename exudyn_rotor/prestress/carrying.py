@@ -36,7 +36,7 @@ from exudyn_rotor.solvers.inertia_relief import (
     free_motions_of,
     inertia_relief,
 )
-from exudyn_rotor.theory.nodal import coupled, rotations, translations
+from exudyn_rotor.theory.axis import coupled, rotations, translations
 
 # share of the load by which an imported matrix may miss it, and a computed one, with the rounding
 # of the elastic forces

@@ -44,8 +44,7 @@ from exudyn_rotor.prestress.given_loads import (
     support_forces,
 )
 from exudyn_rotor.solid.carried_prestress import Prestress
-from exudyn_rotor.solid.interface import Interface
-from exudyn_rotor.solid.rotor import FiniteElementRotor, check_unstressed
+from exudyn_rotor.solid.rotor import FiniteElementRotor, Interface, check_unstressed
 from exudyn_rotor.solid.tensor import von_mises
 from exudyn_rotor.solvers.inertia_relief import (
     InertiaRelief,
@@ -53,7 +52,7 @@ from exudyn_rotor.solvers.inertia_relief import (
     free_motions_of,
     inertia_relief,
 )
-from exudyn_rotor.theory.nodal import rotations, skew
+from exudyn_rotor.theory.axis import rotations, skew
 
 # a stress field in equilibrium loses a few per cent where it was averaged at nodes
 _OUT_OF_BALANCE = 0.3

@@ -25,13 +25,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from exudyn_rotor.reduction.basis import rigid_columns
-from exudyn_rotor.reduction.component import ModeBasis, numbered, unit_columns
-from exudyn_rotor.solid.interface import Interface
-from exudyn_rotor.solid.rigid import clamped_coordinates
-from exudyn_rotor.solid.rotor import FiniteElementRotor
-from exudyn_rotor.solvers.inertia_relief import coordinates, held_inverse, inertia_relief
-from exudyn_rotor.theory.nodal import rotations, translations, turned
+from exudyn_rotor.reduction.component import ModeBasis, numbered, rigid_columns, unit_columns
+from exudyn_rotor.solid.rotor import FiniteElementRotor, Interface
+from exudyn_rotor.solvers.inertia_relief import (
+    clamped_coordinates,
+    coordinates,
+    held_inverse,
+    inertia_relief,
+)
+from exudyn_rotor.theory.axis import rotations, translations, turned
 
 # share of its motion by which an interface may deform and still be rigid on purpose (RBE2)
 _RIGID = 1e-6

@@ -21,8 +21,7 @@ from exudyn_rotor.reduction.component import (
     lowest_with_pairs,
     numbered,
 )
-from exudyn_rotor.solid.interface import Interface
-from exudyn_rotor.solid.rotor import FiniteElementRotor
+from exudyn_rotor.solid.rotor import FiniteElementRotor, Interface
 from exudyn_rotor.solvers import modes as eigen
 from exudyn_rotor.solvers.constrained import ConstrainedInverse
 from exudyn_rotor.solvers.inertia_relief import (
@@ -32,7 +31,7 @@ from exudyn_rotor.solvers.inertia_relief import (
     inertia_relief,
     relative_rounding,
 )
-from exudyn_rotor.theory.nodal import rotations, translations
+from exudyn_rotor.theory.axis import rotations, translations
 
 # static modes, eigenvalues and eigenmodes
 CoupledModes = tuple[np.ndarray, np.ndarray, np.ndarray]

@@ -18,15 +18,10 @@ import scipy.linalg
 from exudyn.FEM import FEMinterface
 
 from exudyn_rotor import checks
-from exudyn_rotor.reduction.basis import NEW, gram_schmidt, rigid_columns
-from exudyn_rotor.reduction.component import modes_of
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.solid.fem_interface import import_model
+from exudyn_rotor.reduction.component import NEW, gram_schmidt, modes_of, rigid_columns
 from exudyn_rotor.solid.matrices import as_mass, as_nodes
-from exudyn_rotor.solid.rotor import FiniteElementRotor
+from exudyn_rotor.solid.model import import_model
 from exudyn_rotor.theory.axis import SpinAxis
-
-_SEEN = 1e-6  # share of a mode's mass that moves as a rigid body, above rounding of free modes
 
 
 def use_mean_axis_modes(fem: FEMinterface) -> tuple[int, ...]:
@@ -97,28 +92,6 @@ def use_mean_axis_modes(fem: FEMinterface) -> tuple[int, ...]:
             "matrix": np.asarray(stress)[:, columns],
         }
     return tuple(index for index in range(modes.shape[1]) if index not in elastic)
-
-
-def frame_shares(
-    rotor: FiniteElementRotor, reduced: ReducedRotor, modes: np.ndarray
-) -> np.ndarray | None:
-    """Return how the frame of Exudyn's body moves with the columns of a rotor reduced with `modes`.
-
-    Displacements are ``Rρ + Ψη`` with the modes Ψ in Exudyn's body, and ``Rρ' + Qζ`` here with the
-    columns ``Q = (Ψ − RG_r) G_f⁺``, where ``G = [R Q]ᵀMΨ``; so ``ρ = ρ' − G_rG_f⁺ζ``.
-
-    Returns
-    -------
-    ndarray, shape (r, k − r), or None
-        ``−G_rG_f⁺``, shares of the rigid columns of `reduced`; None where it is zero, as for free
-        eigenmodes.
-    """
-    rigid = len(reduced.rigid_kinds)
-    G = reduced.shapes.matrix.T @ (rotor.mass @ modes)
-    energy = np.einsum("ik,ik->k", G, G)
-    if np.all(np.einsum("ik,ik->k", G[:rigid], G[:rigid]) <= _SEEN * energy):
-        return None
-    return -G[:rigid] @ np.linalg.pinv(G[rigid:])
 
 
 def _norm(column: np.ndarray, mass) -> float:

@@ -12,31 +12,32 @@ import scipy.sparse as sp
 from exudyn.FEM import FEMinterface
 
 from exudyn_rotor import checks
-from exudyn_rotor.calls import one_thread
 from exudyn_rotor.prestress.carrying import estimated_stiffness, with_chosen_prestress
 from exudyn_rotor.prestress.static_solution import relief_rotations
 from exudyn_rotor.reduction.attachment import attachment_modes, inertial_modes
-from exudyn_rotor.reduction.basis import OrthonormalBasis, rigid_columns
 from exudyn_rotor.reduction.component import (
     ModeBasis,
+    OrthonormalBasis,
     component_modes,
     free_modes,
     numbered,
+    rigid_columns,
     unit_columns,
 )
-from exudyn_rotor.reduction.fields import (
+from exudyn_rotor.reduction.reduced_rotor import (
     RIGID_KINDS,
     Centrifugal,
     ModeKind,
     ModeShapes,
     ReducedInterface,
+    ReducedRotor,
 )
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.rotor import FiniteElementRotor
+from exudyn_rotor.solvers.factor import one_thread
 from exudyn_rotor.solvers.inertia_relief import free_motions_of, inertia_relief
+from exudyn_rotor.theory.axis import rotations, translations
 from exudyn_rotor.theory.invariants import Invariants
-from exudyn_rotor.theory.nodal import rotations, translations
 from exudyn_rotor.theory.stiffening import with_prestress
 
 _UNRESISTED = (ModeKind.TRANSLATION_1, ModeKind.TRANSLATION_2, ModeKind.AXIAL)

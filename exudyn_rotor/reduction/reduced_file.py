@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields
+from enum import Enum
 from functools import partial
 from os import PathLike
 from typing import Any, TypeVar
@@ -11,7 +12,6 @@ from typing import Any, TypeVar
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.reduction.fields import Centrifugal, ModeKind, ModeShapes, ReducedInterface
 from exudyn_rotor.storage import Entries, read_arrays, write_arrays
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
@@ -52,14 +52,18 @@ def _entries(rotor: Rotor) -> dict[str, object]:
     return data
 
 
-def load_reduced(path: str | PathLike, make: Callable[..., Rotor]) -> Rotor:
+def load_reduced(
+    path: str | PathLike, make: Callable[..., Rotor], parts: Mapping[str, type]
+) -> Rotor:
     """Read a rotor from `path`; `make` is the class :class:`ReducedRotor`.
+
+    `parts` are the classes of its kinds of modes, interfaces, shapes and static fields.
 
     OSError when there is no such file; ValueError when it is damaged or describes no reduced rotor.
     """
     entries = Entries(read_arrays(path, _KIND))
     try:
-        rotor = make(**_fields(entries, make))
+        rotor = make(**_fields(entries, make, parts))
         entries.close()
     except (TypeError, ValueError) as error:
         raise ValueError(
@@ -68,7 +72,9 @@ def load_reduced(path: str | PathLike, make: Callable[..., Rotor]) -> Rotor:
     return rotor
 
 
-def _fields(entries: Entries, make: Callable[..., Rotor]) -> dict[str, Any]:
+def _fields(
+    entries: Entries, make: Callable[..., Rotor], parts: Mapping[str, type]
+) -> dict[str, Any]:
     """Return the constructor's arguments; it checks shapes and values."""
     axis = entries.array("axis")
     if axis.shape != (2, 3):
@@ -78,19 +84,19 @@ def _fields(entries: Entries, make: Callable[..., Rotor]) -> dict[str, Any]:
         "axis": SpinAxis(*axis),
         "center_of_mass": entries.array("center_of_mass"),
         "invariants": _made(Invariants, entries.group("invariants.")),
-        "rigid_kinds": _kinds(entries.words("rigid_kinds", unique=False)),
+        "rigid_kinds": _kinds(entries.words("rigid_kinds", unique=False), parts["rigid_kinds"]),
         "interfaces": {
-            name: _made(ReducedInterface, entries.group(f"interface{index}."))
+            name: _made(parts["interfaces"], entries.group(f"interface{index}."))
             for index, name in enumerate(entries.words("interface_names"))
         },
         "mode_mass": entries.array("mode_mass"),
         "dropped": entries.words("dropped", unique=False),
         "grounded": entries.flag("grounded"),
-        "shapes": _made(ModeShapes, entries.group("shapes."), True),
-        "centrifugal": _made(Centrifugal, entries.group("centrifugal."), True),
+        "shapes": _made(parts["shapes"], entries.group("shapes."), True),
+        "centrifugal": _made(parts["centrifugal"], entries.group("centrifugal."), True),
     }
     if attached:
-        finer = make(**_fields(attached, make))
+        finer = make(**_fields(attached, make, parts))
         shape = finer.size, found["invariants"].size
         columns = checks.array(entries.array(_IN_ATTACHED), _IN_ATTACHED, shape=shape)
         if finer.interfaces.keys() != found["interfaces"].keys():
@@ -100,9 +106,9 @@ def _fields(entries: Entries, make: Callable[..., Rotor]) -> dict[str, Any]:
     return found
 
 
-def _kinds(names: tuple[str, ...]) -> tuple[ModeKind, ...]:
-    checks.labels(names, "rigid_kinds", ModeKind.__members__)
-    return tuple(ModeKind[name] for name in names)
+def _kinds(names: tuple[str, ...], known: type[Enum]) -> tuple[Enum, ...]:
+    checks.labels(names, "rigid_kinds", known.__members__)
+    return tuple(known[name] for name in names)
 
 
 def _made(kind: type, entries: Entries, optional: bool = False) -> Any:

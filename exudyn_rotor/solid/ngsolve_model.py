@@ -10,10 +10,8 @@ import ngsolve as ngs
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.solid import units
 from exudyn_rotor.solid.elements import Block, SolidElements
-from exudyn_rotor.solid.fem_interface import is_named
-from exudyn_rotor.solid.model import FiniteElementModel, NodeSet
+from exudyn_rotor.solid.model import FiniteElementModel, NodeSet, is_named, materials_by_region
 from exudyn_rotor.solid.surface import area_weights
 
 _TETRAHEDRA = {20: 4, 21: 10}  # Netgen's types of elements, and their nodes
@@ -32,7 +30,7 @@ def assemble_model(
     checks.flag(check_units, "check_units")
     _prepare_mesh(mesh, order)
     regions = mesh.GetMaterials()
-    by_region = units.materials_by_region(regions, materials, check_units)
+    by_region = materials_by_region(regions, materials, check_units)
     tetrahedra, region_numbers = _tetrahedra(mesh)
     nodes = np.array(mesh.ngmesh.Coordinates(), dtype=float)
     nodes = nodes if order == 2 else nodes[: mesh.nv]

@@ -22,8 +22,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.solid.matrices import as_node_numbers
-from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.nodal import rotations, translations
+from exudyn_rotor.theory.axis import SpinAxis, rotations, translations
 
 # springs of a rigid section over its own stiffness: a shaft 40 diameters long errs by 6e-6 in its
 # first frequency; stiffer ones cost digits of every static solution

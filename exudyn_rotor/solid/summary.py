@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.solid.interface import Interface
-from exudyn_rotor.solid.rigid import described_parts, loose_parts
-from exudyn_rotor.solid.rotor import FiniteElementRotor
+from exudyn_rotor.solid.model import described_parts, loose_parts
+from exudyn_rotor.solid.rotor import FiniteElementRotor, Interface
 from exudyn_rotor.theory.axis import SpinAxis
 
 

@@ -1,13 +1,18 @@
-"""One factorisation of a symmetric positive definite matrix: its memory, solves and rounding."""
+"""Factors of symmetric positive definite matrices: memory, solves, rounding; threads of LAPACK."""
 
 from __future__ import annotations
 
 import os
+import platform
+import sys
+import warnings
 import weakref
-from collections.abc import Callable
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
+from threading import Lock
 
 import ngsolve
 import numpy as np
@@ -15,6 +20,9 @@ import psutil
 import scipy.linalg as la
 import scipy.sparse as sp
 from ngsolve.la import SparseMatrixd
+from threadpoolctl import ThreadpoolController
+
+from exudyn_rotor.calls import user_level
 
 Solve = Callable[[np.ndarray], np.ndarray]
 
@@ -22,6 +30,8 @@ Solve = Callable[[np.ndarray], np.ndarray]
 DENSE_SIZE = 600
 # above this size Pardiso is quicker than handing the matrix to NGSolve
 PARDISO_SIZE = 10_000
+# above this size it would halve the time of a set-up
+_LARGE = 100_000
 # below this size starting the threads costs more than they gain in one solve
 _THREADED_SIZE = 50_000
 # measured: a held stiffness leaves 1e-12 to 1e-10 (condition up to 1e11), a singular one 0.1
@@ -89,6 +99,17 @@ def has_pardiso() -> bool:
     return find_spec("pypardiso") is not None
 
 
+@cache
+def _tell_of_mkl() -> None:
+    """Warn, once, that a model is large enough for MKL, where there is one for the machine."""
+    if platform.machine() in ("x86_64", "AMD64") and sys.platform != "darwin":
+        warnings.warn(
+            "a model of this size is set up in half the time by Pardiso of Intel's MKL (1 GB on "
+            'disk): pip install "exudyn-rotor[mkl]"',
+            stacklevel=user_level(),
+        )
+
+
 class SparseCholesky:
     """Factorisation of a symmetric positive definite matrix.
 
@@ -109,6 +130,8 @@ class SparseCholesky:
             self._solve = _dense(matrix)
         else:
             by_pardiso = size > PARDISO_SIZE and has_pardiso()
+            if size > _LARGE and not by_pardiso:
+                _tell_of_mkl()
             self._solve = _by_pardiso(matrix) if by_pardiso else _by_ngsolve(matrix)
         if size:
             self._probe(matrix)
@@ -200,3 +223,54 @@ def _by_ngsolve(matrix: sp.csr_array) -> Solve:
         return solution.FV().NumPy().copy()
 
     return solve
+
+
+@cache
+def _libraries() -> ThreadpoolController:
+    """Return what is loaded; the search takes as long as two eigenvalue problems.
+
+    MKL beside another one is Pardiso's, not numpy's.
+    """
+    loaded = ThreadpoolController().select(user_api="blas")
+    names = {each.internal_api for each in loaded.lib_controllers}
+    return loaded.select(internal_api=sorted(names - {"mkl"} or names))
+
+
+class _Limit:
+    """One thread as long as anyone holds it, also where several threads of Python do."""
+
+    def __init__(self) -> None:
+        self._lock, self._holders = Lock(), 0
+
+    def take(self) -> None:
+        with self._lock:
+            if self._holders == 0:
+                libraries = _libraries().lib_controllers
+                self._before = [(each, each.num_threads) for each in libraries]
+                for library in libraries:
+                    library.set_num_threads(1)
+            self._holders += 1
+
+    def leave(self) -> None:
+        with self._lock:
+            self._holders -= 1
+            if self._holders == 0:
+                for library, count in self._before:
+                    library.set_num_threads(count)
+
+
+_LIMIT = _Limit()
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Let BLAS and LAPACK use one thread meanwhile; also a decorator.
+
+    Dense problems of some hundred coordinates, many of them one after the other, take up to fifty
+    times longer on several threads, which wait for one another.
+    """
+    _LIMIT.take()
+    try:
+        yield
+    finally:
+        _LIMIT.leave()

@@ -9,9 +9,8 @@ import scipy.linalg as la
 import scipy.sparse as sp
 import scipy.sparse.linalg as sla
 
-from exudyn_rotor.calls import one_thread
 from exudyn_rotor.solvers.davidson import Inverse, davidson_modes
-from exudyn_rotor.solvers.factor import DENSE_SIZE, rounding_unit
+from exudyn_rotor.solvers.factor import DENSE_SIZE, one_thread, rounding_unit
 
 Modes = tuple[np.ndarray, np.ndarray]
 _SEED = 4830498

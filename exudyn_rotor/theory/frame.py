@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.axis import SpinAxis, skew
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.invariants import Invariants
-from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.stiffening import SpinTerms, Stiffening
 
 

@@ -28,10 +28,10 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
+from exudyn_rotor.theory.axis import skew
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.invariants import Invariants, inverse_inertia
 from exudyn_rotor.theory.motion import Motion
-from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.stiffening import Stiffening, work_factors
 
 _ROUNDING = 1e-13  # of their upper bound: what P leaves of moments that are zero

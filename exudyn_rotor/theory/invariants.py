@@ -16,7 +16,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from exudyn_rotor import checks
-from exudyn_rotor.theory.nodal import skew, translations, turned
+from exudyn_rotor.theory.axis import skew, translations, turned
 
 Matrix = np.ndarray | sp.csr_array
 

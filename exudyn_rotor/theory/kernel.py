@@ -26,8 +26,8 @@ from itertools import pairwise
 import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.theory.axis import skew
 from exudyn_rotor.theory.frame import FloatingFrame
-from exudyn_rotor.theory.nodal import skew
 
 
 @dataclass(frozen=True, eq=False)

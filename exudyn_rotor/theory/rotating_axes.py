@@ -11,8 +11,7 @@ from math import cos, sin
 import numpy as np
 
 from exudyn_rotor.checks import read_only
-from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.theory.axis import SpinAxis, skew
 
 FRAMES = ("inertial", "rotor")
 # of a vector: products, axes and a gravity along one leave 20 units of the last place, 2e-15, and

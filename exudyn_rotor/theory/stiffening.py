@@ -34,8 +34,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from exudyn_rotor import checks
+from exudyn_rotor.theory.axis import skew
 from exudyn_rotor.theory.invariants import EPSILON, Invariants, Matrix, moments_about
-from exudyn_rotor.theory.nodal import skew
 
 LEVELS = ("none", "tilt", "full")
 CHOICES = ("auto", *LEVELS)
@@ -74,7 +74,7 @@ class Stiffening:
 
     >>> import numpy as np
     >>> from exudyn_rotor import Invariants
-    >>> from exudyn_rotor.theory.nodal import rotations
+    >>> from exudyn_rotor.theory.axis import rotations
     >>> from exudyn_rotor.theory.stiffening import stiffening
     >>> ring = [[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]]
     >>> tilts = rotations(ring, [0, 0, 0])[:, :2]

@@ -17,8 +17,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
+from exudyn_rotor.theory.axis import skew
 from exudyn_rotor.theory.frame import FloatingFrame, Instant
-from exudyn_rotor.theory.nodal import skew
 
 
 class Term(NamedTuple):

@@ -45,7 +45,7 @@ LEFT_OUT = {
 # methods that scenes call in every step, with the numbers of the equations
 OF_SCENES = (
     *("law", "law_with_torque", "law_along", "slopes", "clearance_along", "coupling"),
-    *("solved", "beside", "reach_along", "coefficients_at"),
+    *("solved", "beside", "reach_along", "coefficients_at", "body_acceleration", "unbalance"),
     *("forces", "tangent", "transmitted", "energy", "loss", "check_places"),
 )
 

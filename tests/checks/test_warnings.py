@@ -156,7 +156,7 @@ PLACES = {
         stress_at_speed_without_prestress, UserWarning, "without the static centrifugal stress"),
     "advice/proposal.py:propose": (
         proposal_beyond_the_formulation, AssumptionWarning, "flexible modes given lie in the band"),
-    "solid/units.py:check_model_units": (
+    "solid/model.py:check_model_units": (
         small_rotor_in_millimetres, UserWarning, "few rotors are that heavy; lengths in mm"),
     "solid/ngsolve_model.py:_prepare_mesh": (
         curved_elements, UserWarning, "are replaced by mid nodes"),
@@ -186,6 +186,7 @@ ELSEWHERE = {
     "linear/model/build.py:warn_of_structural_damping": "campbell finds modes without it",
     "multibody/add_rotor.py:_add_reduced": "A scene runs without it",
     "prestress/static_solution.py:_warn_of_yield": "above yield_stress",
+    "solvers/factor.py:_tell_of_mkl": "exudyn-rotor\\[mkl\\]",
     "solid/meshes/mesh_data.py:warn": "taken as",
     "theory/stiffening.py:warn_of_left_out": "beyond 'tilt' is left out",
     "ross.py:_check_held": "of shaft elements are left out",

@@ -63,7 +63,7 @@ def nearest(values: np.ndarray, given: np.ndarray, speed: float) -> np.ndarray:
 @pytest.mark.parametrize("name", TRAINS)
 def test_estimates_are_the_errors_against_more_modes(name):
     """Five free modes of each rotor lack flexibility; 16 with static ones are the truth."""
-    with pytest.warns(UserWarning, match=r"rotor 'inner' .* rotor 'outer' .* they lack fl"):
+    with pytest.warns(UserWarning, match=r"rotor 'inner' .* rotor 'outer' .* the flexibility"):
         found = campbell(TRAINS[name](5, True), [0.0, SPEED], modes=18)
     exact = campbell(TRAINS[name](16), [0.0, SPEED], accuracy=None)
     for row, speed in enumerate(found.speeds):

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from point_rotors import random_rotor
 
-from exudyn_rotor.theory.nodal import rotations, translations
+from exudyn_rotor.theory.axis import rotations, translations
 from validation.exudyn_3d.spatial_body import add_spatial_rotor
 
 KINDS = exudyn.OutputVariableType

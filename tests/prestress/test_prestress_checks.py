@@ -11,7 +11,7 @@ from exudyn_rotor import (
     ReducedRotor,
     SolidRotor,
 )
-from exudyn_rotor.theory.nodal import rotations
+from exudyn_rotor.theory.axis import rotations
 from exudyn_rotor.theory.stiffening import stiffening
 
 OUTER, BORE, THICKNESS = 0.2, 0.1, 0.02

@@ -13,7 +13,7 @@ from exudyn_rotor import (
     check_run,
     keep_modes,
 )
-from exudyn_rotor.theory.nodal import rotations, translations
+from exudyn_rotor.theory.axis import rotations, translations
 
 
 @pytest.fixture(scope="module")

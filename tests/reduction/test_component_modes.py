@@ -15,7 +15,7 @@ from exudyn_rotor.reduction.component import fem_interface_modes, free_modes
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.solvers.factor import DENSE_SIZE, NotPositiveDefiniteError, SparseCholesky
-from exudyn_rotor.theory.nodal import rotations, translations
+from exudyn_rotor.theory.axis import rotations, translations
 
 EPS = float(np.finfo(float).eps)
 STEEL = {"density": 7800.0, "youngsModulus": 2.1e11, "poissonsRatio": 0.3}

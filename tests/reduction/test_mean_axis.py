@@ -13,7 +13,7 @@ from exudyn_rotor import (
     SolidRotor,
     use_mean_axis_modes,
 )
-from exudyn_rotor.reduction.basis import rigid_columns
+from exudyn_rotor.reduction.component import rigid_columns
 
 OWN, TWIN = "CreateFFRFReducedOrderObject", "CreateFixedAxisFFRFReducedOrderObject"
 SPEED = 500.0

@@ -15,8 +15,8 @@ from exudyn_rotor import (
     free_modes,
     select_modes,
 )
-from exudyn_rotor.reduction.fields import RIGID_KINDS, rigid_names
-from exudyn_rotor.theory.nodal import block_diagonal, rotations, translations
+from exudyn_rotor.reduction.reduced_rotor import RIGID_KINDS, rigid_names
+from exudyn_rotor.theory.axis import block_diagonal, rotations, translations
 
 RIGID = rigid_names(RIGID_KINDS)
 EXACT = 1e-12  # sums over six nodes with entries of order 1

@@ -8,7 +8,7 @@ from models import ALUMINIUM, STEEL
 from netgen.occ import Box, Compound, Glue, OCCGeometry, Pnt
 
 from exudyn_rotor import SolidRotor
-from exudyn_rotor.solid.rigid import loose_parts
+from exudyn_rotor.solid.model import loose_parts
 
 MATERIALS = {"steel": STEEL, "aluminium": ALUMINIUM}
 

@@ -7,8 +7,7 @@ from models import ALUMINIUM, STEEL, disc_rotor, two_material_cylinder
 
 from exudyn_rotor.solid.surface import area_weights
 from exudyn_rotor.solid_rotor import SolidRotor
-from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.nodal import rotations
+from exudyn_rotor.theory.axis import SpinAxis, rotations
 
 MATERIALS = {"steel": STEEL, "aluminium": ALUMINIUM}
 

@@ -1,5 +1,7 @@
 """Factors by Pardiso, where it is installed, and modes with any factor."""
 
+import warnings
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -61,3 +63,20 @@ def test_pardiso_gives_the_modes_of_ngsolve(shaft, monkeypatch):
     again = SolidRotor.from_matrices(shaft.mass, shaft.stiffness.copy(), shaft.nodes, "x")
     assert free_modes(again, 12).frequencies == pytest.approx(expected.frequencies, rel=1e-9)
     assert len(made) == 1
+
+
+def test_mkl_is_named_once_where_a_model_is_large(shaft, monkeypatch):
+    """Not where it is installed."""
+    monkeypatch.setattr(factor, "_LARGE", 100)
+    monkeypatch.setattr("platform.machine", lambda: "AMD64")
+    monkeypatch.setattr("sys.platform", "linux")
+    for installed, count in ((False, 1), (True, 0)):
+        monkeypatch.setattr(factor, "has_pardiso", lambda installed=installed: installed)
+        monkeypatch.setattr(factor, "PARDISO_SIZE", 10**6 if not installed else 0)
+        factor._tell_of_mkl.cache_clear()
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            for _ in range(2):
+                stiffness = shaft.stiffness.copy()  # whose factor is not known yet
+                free_modes(SolidRotor.from_matrices(shaft.mass, stiffness, shaft.nodes, "x"), 1)
+        assert len([one for one in caught if "mkl" in str(one.message)]) == count

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from exudyn_rotor import Invariants, SolidRotor, free_modes
-from exudyn_rotor.theory.nodal import tilde_basis
+from exudyn_rotor.theory.axis import tilde_basis
 
 STIFFNESS = 1e4 * np.array(
     [  # (123)

@@ -14,7 +14,7 @@ from exudyn_rotor import (
     PrescribedMotion,
     select_modes,
 )
-from exudyn_rotor.multibody.rotor.equations import Layout, user_function_object
+from exudyn_rotor.multibody.add_rotor import Layout, user_function_object
 from exudyn_rotor.multibody.solver_settings import recommended_settings
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.stiffening import stiffening

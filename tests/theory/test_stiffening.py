@@ -8,7 +8,7 @@ import scipy.linalg as la
 from point_rotors import SKEW_AXIS, random_invariants, ring_rotor
 
 from exudyn_rotor import Formulation, Motion, select_modes
-from exudyn_rotor.theory.nodal import rotations, skew, translations
+from exudyn_rotor.theory.axis import rotations, skew, translations
 from exudyn_rotor.theory.stiffening import stiffening
 
 MASS = 12.0

@@ -4,12 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor import (
-    Support,
-    campbell,
-    stability,
-    stability_threshold,
-)
+from exudyn_rotor import Support, campbell, stability, stability_threshold
 from validation.extremes.rotors import held, two_rings
 from validation.extremes.rows import EPS, Row
 from validation.extremes.runs import bare_rotor, history, run

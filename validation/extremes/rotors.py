@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import SolidRotor, Support
-from exudyn_rotor.theory.nodal import rotations, translations
+from exudyn_rotor.theory.axis import rotations, translations
 
 
 def deformations(nodes: np.ndarray, soft: np.ndarray) -> np.ndarray:

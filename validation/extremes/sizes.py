@@ -8,26 +8,13 @@ import netgen.occ as occ
 import ngsolve as ngs
 import numpy as np
 
-from exudyn_rotor import (
-    Formulation,
-    SolidRotor,
-    Support,
-    campbell,
-    select_modes,
-    stability,
-)
+from exudyn_rotor import Formulation, SolidRotor, Support, campbell, select_modes, stability
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from validation.extremes.rotors import held, two_rings
 from validation.extremes.rows import EPS, Row, breaking_point, message
 
 MODES = 6
 STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
-
-
-def orthonormality(rotor: SolidRotor, reduced: ReducedRotor) -> float:
-    """Return the largest entry of ``ΨᵀMΨ − I``; the invariants hold I by construction."""
-    columns = reduced.shapes.matrix
-    return float(np.abs(columns.T @ (rotor.mass @ columns) - np.eye(reduced.size)).max())
 
 
 def block(scale: float = 1.0) -> ngs.Mesh:
@@ -109,10 +96,8 @@ def units(quick: bool = False) -> Row:
     )
 
 
-def cylinder_modes(
-    poissons_ratio: float, order: int, safety: float = 2.0
-) -> tuple[np.ndarray, float]:
-    """Return the flexible frequencies of a free cylinder, and the orthonormality error.
+def cylinder_modes(poissons_ratio: float, order: int, safety: float = 2.0) -> np.ndarray:
+    """Return the flexible frequencies of a free cylinder [rad/s].
 
     `safety` is the radius over the length of the elements there.
     """
@@ -121,15 +106,14 @@ def cylinder_modes(
     mesh = ngs.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.04, curvaturesafety=safety))
     steel = STEEL | {"poissonsRatio": poissons_ratio}
     rotor = SolidRotor.from_ngsolve(mesh, {"steel": steel}, "z", order=order)
-    reduced = rotor.reduce(8)
-    return reduced.frequencies[6:], orthonormality(rotor, reduced)
+    return rotor.reduce(8).frequencies[6:]
 
 
 def poisson(quick: bool = False) -> Row:
     """Bring Poisson's ratio to 0.4999."""
     safety = 1.5 if quick else 2.0
-    reference, near = (cylinder_modes(ratio, 2, safety)[0][0] for ratio in (0.3, 0.4999))
-    linear = [cylinder_modes(ratio, 1, safety)[0][0] for ratio in (0.3, 0.4999)]
+    reference, near = (cylinder_modes(ratio, 2, safety)[0] for ratio in (0.3, 0.4999))
+    linear = [cylinder_modes(ratio, 1, safety)[0] for ratio in (0.3, 0.4999)]
     return Row(
         "Poisson's ratio",
         "0.4999 on quadratic elements",

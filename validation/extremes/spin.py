@@ -4,13 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor import (
-    LinearModel,
-    Support,
-    campbell,
-    linear_model,
-    stability,
-)
+from exudyn_rotor import LinearModel, Support, campbell, linear_model, stability
 from exudyn_rotor.theory.stiffening import stiffening
 from validation.extremes.rotors import held, shaft_frequencies, shaft_rotor, two_rings
 from validation.extremes.rows import EPS, Row, breaking_point

@@ -1,7 +1,6 @@
 """How far every input can be pushed, what breaks first, and what the user is told there.
 
-Run ``python -m validation extremes``, with ``--quick`` for less than a minute, ``--json FILE`` to
-keep the rows.
+Run ``python -m validation extremes``, with ``--quick`` for less than a minute.
 """
 
 from __future__ import annotations
@@ -9,13 +8,11 @@ from __future__ import annotations
 import argparse
 import textwrap
 from collections.abc import Callable
-from dataclasses import asdict
 
 from tqdm import tqdm
 
 from validation.extremes import holding, sizes, spin
 from validation.extremes.rows import Row
-from validation.rows import write_json
 
 GROUPS: dict[str, tuple[Callable[..., Row], ...]] = {
     "Spin speed": (
@@ -57,15 +54,12 @@ def main() -> None:
     """Measure all rows; ends with an error code if one fails."""
     parser = argparse.ArgumentParser(description="How far every input can be pushed.")
     parser.add_argument("--quick", action="store_true", help="fewer points of each range")
-    parser.add_argument("--json", metavar="FILE", help="write the rows to FILE")
     options = parser.parse_args()
     rows = {}
     for group, makers in GROUPS.items():
         print(f"\n{group}\n{'-' * len(group)}")
         rows[group] = [make(quick=options.quick) for make in tqdm(makers, group, leave=False)]
         print("\n".join(printed(row) for row in rows[group]))
-    if options.json:
-        write_json(options.json, {name: [asdict(row) for row in rows[name]] for name in rows})
     failed = sum(not row.passed for entries in rows.values() for row in entries)
     if failed:
         raise SystemExit(f"{failed} rows failed")

@@ -11,8 +11,7 @@ The story in four parts:
    body moves every basis to the mean motion, so its motion does not.
 4. The members of the formulation family are one physics in different coordinates.
 
-Run ``python -m validation against_3d``, with ``--quick`` for a short version, ``--json FILE`` to
-keep the numbers.
+Run ``python -m validation against_3d``, with ``--quick`` for a short version.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ from validation.exudyn_3d.scenes import (
     fixed_axis_orbits,
     three_d_orbits,
 )
-from validation.rows import Row, print_rows, verdict, write_json
+from validation.rows import Row, print_rows, verdict
 
 SPEED = 314.0  # rad/s
 SUPPORTS = {
@@ -269,7 +268,6 @@ def main() -> int:
     """Run all parts, print their tables and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="fewer cases, shorter motions")
-    parser.add_argument("--json", metavar="FILE", help="write the tables to FILE")
     options = parser.parse_args()
     quick = options.quick
     duration, step = (0.02, 2e-5) if quick else (0.06, 2e-5)
@@ -290,8 +288,6 @@ def main() -> int:
     }
     for title, rows in tables.items():
         print_rows(title, rows)
-    if options.json:
-        write_json(options.json, tables)
     first = next(iter(tables.values()))
     least = [row for row in first if row["stiffening"] == "tilt" and row["tilt"] < 1.5e-4]
     return verdict(

@@ -5,15 +5,12 @@ the same start, with the same steps; the 3D body has Euler parameters and mean-a
 the fixed axis leaves out is of second order, so the deviation relative to the motion falls with the
 tilt. With ``stiffening='none'``, the paper's own equations, it does not.
 
-A second table has the time of a start and of a step of the 3D body over the size of the mesh.
-
-Run ``python -m validation full_3d``, with ``--quick`` for the first table on a smaller mesh alone.
+Run ``python -m validation full_3d``, with ``--quick`` for a smaller mesh.
 """
 
 from __future__ import annotations
 
 import argparse
-import time
 from collections.abc import Callable
 
 import exudyn
@@ -31,6 +28,7 @@ from validation.exudyn_3d.scenes import (
     deviation,
     disc_on_shaft,
     extrapolated,
+    simulate,
 )
 from validation.exudyn_3d.spatial_body import SpatialBody, add_spatial_rotor
 from validation.rows import Row, print_rows, verdict
@@ -99,15 +97,7 @@ def run(
     steps: int,
     samples: int = 20,
 ) -> Orbits:
-    """Return the motion of a body on its bearings, integrated almost to round-off a step."""
-    sensors = hold(body, rotor)
-    integrate(body.mbs, duration, steps, samples)
-    stored = [body.mbs.GetSensorStoredData(sensor) for sensor in sensors]
-    return Orbits(stored[0][:, 0], *(data[:, 1:] for data in stored))
-
-
-def hold(body: SpatialBody | RotorItems, rotor: SolidRotor) -> list[exudyn.SensorIndex]:
-    """Put a body on its bearings, assemble, and return sensors of their and the rim's places."""
+    """Return the motion of a body on its bearings."""
     mbs, ground = body.mbs, body.mbs.CreateGround()
     for end in ENDS:
         mbs.CreateCartesianSpringDamper(
@@ -120,27 +110,7 @@ def hold(body: SpatialBody | RotorItems, rotor: SolidRotor) -> list[exudyn.Senso
     rim = int(np.argmax(np.linalg.norm(rotor.nodes[:, :2], axis=1)))
     sensors = [body.add_interface_sensor(end, place) for end in ENDS]
     sensors.append(body.add_node_sensor(rim, place))
-    mbs.Assemble()
-    return sensors
-
-
-def integrate(mbs: exudyn.MainSystem, duration: float, steps: int, samples: int = 1) -> float:
-    """Solve from the initial state on, and return the seconds that it took."""
-    settings = exudyn.SimulationSettings()
-    settings.solution.file.write = False
-    settings.solution.sensors.writePeriod = duration / samples
-    settings.linearSolver.solverType = exudyn.LinearSolverType.EigenSparse
-    integration = settings.timeIntegration
-    integration.endTime, integration.numberOfSteps = duration, steps
-    integration.generalizedAlpha.spectralRadius = 0.9
-    integration.newton.useModifiedNewton = True
-    integration.newton.relativeTolerance = 1e-10
-    integration.newton.absoluteTolerance = 1e-12
-    integration.newton.modifiedNewtonContractivity = 0.05
-    integration.verboseMode = 0
-    began = time.perf_counter()
-    mbs.SolveDynamic(settings)
-    return time.perf_counter() - began
+    return simulate(mbs, sensors, duration, duration / steps, samples, spectral_radius=0.9)
 
 
 def system() -> exudyn.MainSystem:
@@ -180,36 +150,18 @@ def compare(
     return with_orders(rows, ("lateral", "axial"))
 
 
-def costs(meshes: dict[str, SolidRotor], steps: int) -> list[Row]:
-    """Return seconds of a start, with one step, and of a step of the 3D body."""
-    rows = []
-    for name, rotor in meshes.items():
-        body = three_d(system(), rotor, np.array([0.1, 0.0, SPEED]))
-        hold(body, rotor)
-        start = integrate(body.mbs, 1e-4, 1)
-        more = integrate(body.mbs, (1 + steps) * 1e-4, 1 + steps)
-        row = {"mesh": name, "nodes": float(rotor.node_count), "start/s": start}
-        rows.append(row | {"step/s": (more - start) / steps})
-    return rows
-
-
 LIMITS = {"lateral": 1e-5, "axial": 1e-4, "rim": 1e-4}  # at the least tilt
 
 
 def main() -> int:
-    """Print both tables and the verdict."""
+    """Print the table and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--quick", action="store_true", help="a smaller mesh, no table of costs")
+    parser.add_argument("--quick", action="store_true", help="a smaller mesh")
     quick = parser.parse_args().quick
-    shaft = SolidRotor.from_ngsolve(cylinder(0.05, 0.3, 0.1), STEEL, "z", order=1)
-    disc = SolidRotor.from_ngsolve(disc_on_shaft(0.1, 0.5), STEEL, "z", order=1)
-    rotor = balanced(shaft if quick else disc)
+    mesh = cylinder(0.05, 0.3, 0.1) if quick else disc_on_shaft(0.1, 0.5)
+    rotor = balanced(SolidRotor.from_ngsolve(mesh, STEEL, "z", order=1))
     duration, steps = (0.005, 40) if quick else (0.01, 80)
     rows = compare(rotor, duration, steps)
     print_rows(f"full bodies, {rotor.node_count} nodes, deviation over lateral motion", rows)
-    if not quick:
-        fine = SolidRotor.from_ngsolve(disc_on_shaft(0.1), STEEL, "z", order=1)
-        meshes = {"shaft": balanced(shaft), "disc": rotor, "fine": balanced(fine)}
-        print_rows("Exudyn's full 3D body", costs(meshes, 10))
     least = min((row for row in rows if row["stiffening"] == "tilt"), key=lambda row: row["tilt"])
     return verdict({name: (least[name], most) for name, most in LIMITS.items()})

@@ -211,7 +211,7 @@ def fixed_axis_orbits(
     )
     _add_bearings(mbs, model, body.markers, bearings)
     sensors = _add_sensors(mbs, model, body.objects["marker_body"], body.markers)
-    return _simulate(mbs, sensors, duration, step, samples, spectral_radius)
+    return simulate(mbs, sensors, duration, step, samples, spectral_radius)
 
 
 def three_d_orbits(
@@ -239,7 +239,7 @@ def three_d_orbits(
     }
     _add_bearings(mbs, model, markers, bearings)
     sensors = _add_sensors(mbs, model, body, markers)
-    return _simulate(mbs, sensors, duration, step, samples, SPECTRAL_RADIUS)
+    return simulate(mbs, sensors, duration, step, samples, SPECTRAL_RADIUS)
 
 
 def _add_bearings(
@@ -270,7 +270,7 @@ def _add_sensors(
     return [*ends, mbs.AddSensor(rim)]
 
 
-def _simulate(
+def simulate(
     mbs: exudyn.MainSystem,
     sensors: list[exudyn.SensorIndex],
     duration: float,
@@ -292,6 +292,7 @@ def _simulate(
     settings = exudyn.SimulationSettings()
     settings.solution.file.write = False
     settings.solution.sensors.writePeriod = duration / samples
+    settings.linearSolver.solverType = exudyn.LinearSolverType.EigenSparse
     integration = settings.timeIntegration
     integration.endTime = duration
     integration.numberOfSteps = samples * round(steps)

@@ -35,7 +35,7 @@ from exudyn.itemInterface import (
 from exudyn.utilities import AngularVelocity2EulerParameters_t
 
 from exudyn_rotor import SolidRotor
-from exudyn_rotor.theory.nodal import tilde, translations
+from exudyn_rotor.theory.axis import tilde, translations
 
 STORED = {"storeInternal": True, "writeToFile": False}
 

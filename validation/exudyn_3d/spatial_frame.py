@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from exudyn_rotor.theory.nodal import skew, tilde, tilde_basis, translations
+from exudyn_rotor.theory.axis import skew, tilde, tilde_basis, translations
 from exudyn_rotor.theory.terms import Term, Terms
 
 Matrix = np.ndarray | sp.csr_array

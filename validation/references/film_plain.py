@@ -13,14 +13,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from exudyn_rotor import OilFilm, grooved_pads
-from validation.references.film_tables import (
-    BUTENSCHOEN,
-    CLEARANCE,
-    RADIUS,
-    SPEED,
-    VISCOSITY,
-    rows,
-)
+from validation.references.film_tables import BUTENSCHOEN, CLEARANCE, RADIUS, SPEED, VISCOSITY, rows
 
 RELATIVE = CLEARANCE / RADIUS
 NAMES = ("load", "flow", "stiffness", "damping", "squeeze", "away")

@@ -6,7 +6,7 @@ reduced by Craig–Bampton modes with averaged interfaces, so that supports act 
 face. A beam's gyroscopic matrix is that of discs which tilt with the bending shaft: level 'full' of
 centrifugal stiffening holds that, level 'tilt' for rigid tilts of the whole rotor only.
 
-    python -m validation timoshenko [--json FILE] [--quick]
+    python -m validation timoshenko [--quick]
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from exudyn_rotor import (
     critical_speeds,
     linear_model,
 )
-from validation.rows import verdict, write_json
+from validation.rows import verdict
 
 REFERENCE = Path(__file__).with_name("timoshenko_ross.json")
 LATERAL = ("forward", "backward", "mixed")
@@ -126,15 +126,12 @@ def table(title: str, speeds: list[float], result: dict) -> str:
 def main() -> int:
     """Compare all shafts, print the tables and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", type=Path, help="write the numbers to this file")
     parser.add_argument("--quick", action="store_true", help="coarse meshes")
     options = parser.parse_args()
     data, results = compare_all(0.04 if options.quick else 0.025)
     print(f"beam numbers: {data['source']}\n")
     for name, result in results.items():
         print(table(name, data["speeds"], result))
-    if options.json:
-        write_json(options.json, results)
     uniform = results["uniform, 'full'"]
     return verdict(
         {

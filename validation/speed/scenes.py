@@ -23,7 +23,6 @@ from exudyn_rotor.demo.scene import (
     add_3d_rotor_with_virtual_nodes,
     disc_on_shaft,
 )
-from exudyn_rotor.multibody.rotor import equations
 
 STEP = 1e-4  # s
 CALLS = ("massMatrixUserFunction", "forceUserFunction", "jacobianUserFunction")
@@ -168,7 +167,7 @@ def python_calls(
                 options[name] = _timed(options[name], kind, count, spent)
         return ObjectGenericODE2(**options)
 
-    with mock.patch.object(equations, "ObjectGenericODE2", watched):
+    with mock.patch("exudyn_rotor.multibody.add_rotor.ObjectGenericODE2", watched):
         mbs, _ = assemble(add_rotor, fem)
     mbs.SolveDynamic(settings)
     return Calls(count, {kind: 1e6 * spent[kind] / max(count[kind], 1) for kind in count})

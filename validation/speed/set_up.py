@@ -2,7 +2,7 @@
 
 Then what each part of our own set-up takes, with what ``stiffening='full'`` and stress add.
 
-python -m validation set_up [--json FILE] [--quick | --large]
+python -m validation set_up [--quick | --large]
 """
 
 from __future__ import annotations
@@ -10,14 +10,13 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 from exudyn.FEM import FEMinterface
 
 from exudyn_rotor import SolidRotor, free_modes
 from exudyn_rotor.demo.scene import BEARINGS, STEEL, disc_on_shaft
-from validation.rows import verdict, write_json
+from validation.rows import verdict
 
 MODES = 20
 # lengths of the elements [m], and how much shorter they are than the radius of curves
@@ -90,7 +89,6 @@ def compare(size: Size) -> dict:
 def main() -> int:
     """Compare, print a table and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", type=Path, help="write the numbers to this file")
     which = parser.add_mutually_exclusive_group()
     which.add_argument("--quick", action="store_true", help="a coarse mesh")
     which.add_argument("--large", action="store_true", help="200 000 degrees of freedom")
@@ -107,8 +105,6 @@ def main() -> int:
         print(f"\nSolidRotor, {row['degrees_of_freedom']} degrees of freedom [s]")
         for name, seconds in row["parts"].items():
             print(f"  {name:26s}{seconds:7.2f}")
-    if options.json:
-        write_json(options.json, rows)
     return verdict(
         {
             "deviation of the frequencies": (max(row["deviation"] for row in rows), 1e-5),

@@ -3,13 +3,12 @@
 The scene is the demonstration's rotor on two anisotropic bearings. All bodies have the same modes
 and the same steps; every body runs with Exudyn's default tolerances and with the recommended ones.
 
-python -m validation speed [--json FILE] [--quick]
+python -m validation speed [--quick]
 """
 
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
 import exudyn
 from exudyn.FEM import FEMinterface
@@ -17,7 +16,7 @@ from tqdm import tqdm
 
 from exudyn_rotor import recommended_settings
 from exudyn_rotor.demo.scene import AddRotor
-from validation.rows import verdict, write_json
+from validation.rows import verdict
 from validation.speed.scenes import (
     BODIES,
     POINT_BODIES,
@@ -138,7 +137,6 @@ def _head(row: dict) -> str:
 def main(argv: list[str] | None = None) -> int:
     """Measure, print the table and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", type=Path, help="write the numbers to this file")
     parser.add_argument("--quick", action="store_true", help="coarse mesh, fewer modes and steps")
     options = parser.parse_args(argv)
     counts = QUICK_COUNTS if options.quick else MODE_COUNTS
@@ -150,9 +148,6 @@ def main(argv: list[str] | None = None) -> int:
         rows = [row for count in counts for row in measure(model, count, steps, progress)]
     summary = ratios(rows)
     print_table(rows, summary)
-    if options.json:
-        data = {"nodes": model.node_count, "steps": steps, "rows": rows, "ratios": summary}
-        write_json(options.json, data)
     numbers = ("standard", "virtual")
     shares = [row[f"{name} target"] / row[name] for row in summary for name in numbers]
     return verdict({"speed ratio aimed at over the one measured": (max(shares), 1.0)})

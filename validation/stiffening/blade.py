@@ -16,8 +16,7 @@ frequencies, from the unreduced model, are compared with Ritz solutions of the E
 
 The level 'none' loses the lag mode (NaN or −1) where the spin softening exceeds its stiffness.
 
-Run ``python -m validation blade``, with ``--quick`` for one mesh and fewer speeds, ``--json FILE``
-to keep the numbers.
+Run ``python -m validation blade``, with ``--quick`` for one mesh and fewer speeds.
 """
 
 from __future__ import annotations
@@ -32,7 +31,7 @@ from tqdm import tqdm
 
 from exudyn_rotor import SolidRotor, SpinAxis, campbell, free_modes
 from validation.references.beam import Section, flap_frequencies, lag_frequencies, thick_frequencies
-from validation.rows import Row, print_rows, verdict, write_json
+from validation.rows import Row, print_rows, verdict
 
 LENGTH, WIDTH, HEIGHT = 0.5, 0.02, 0.01  # along x, in the plane of rotation, across it [m]
 STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
@@ -252,7 +251,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Print the tables and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="a coarse mesh, fewer speeds")
-    parser.add_argument("--json", metavar="FILE", help="write the tables to FILE")
     options = parser.parse_args(argv)
     sizes = (0.03, 0.02) if options.quick else (0.03, 0.02, 0.01, 0.007)
     etas = (0.0, 4.0, 8.0) if options.quick else (0.0, 1.0, 2.0, 4.0, 6.0, 8.0, 10.0)
@@ -268,8 +266,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     }
     for title, rows in tables.items():
         print_rows(title, rows)
-    if options.json:
-        write_json(options.json, tables)
     plain = tables["3. Over speed, Poisson's ratio zero"]
     return verdict(
         {

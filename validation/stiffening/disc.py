@@ -11,8 +11,7 @@
 Annuli have meshes of cyclic symmetry: waves with and against the spin stay pairs. The mid nodes of
 second-order elements lie on circles.
 
-Run ``python -m validation disc``, with ``--quick`` for coarser meshes, ``--json FILE`` to keep the
-numbers.
+Run ``python -m validation disc``, with ``--quick`` for coarser meshes.
 """
 
 from __future__ import annotations
@@ -32,7 +31,7 @@ from exudyn_rotor import SolidRotor, campbell
 from exudyn_rotor.linear.modal.campbell import Campbell
 from validation.references import plate
 from validation.references.plate import Annulus, PlaneStress
-from validation.rows import Row, print_rows, verdict, write_json
+from validation.rows import Row, print_rows, verdict
 from validation.stiffening.blade import STEEL
 
 MATERIAL = {"modulus": 2.1e11, "ratio": 0.3, "density": 7850.0}
@@ -329,7 +328,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Print the tables and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="coarser meshes")
-    parser.add_argument("--json", metavar="FILE", help="write the tables to FILE")
     options = parser.parse_args(argv)
     levels = {1: (1, 2, 4), 2: (1, 2)} if options.quick else {1: (1, 2, 4), 2: (1, 2, 4)}
     cells = (6, 36, 1) if options.quick else (8, 48, 1)
@@ -342,8 +340,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     }
     for title, rows in tables.items():
         print_rows(title, rows)
-    if options.json:
-        write_json(options.json, tables)
     speeds = tables[f"3a. At {SPEED:g} rad/s: slopes of ω² over Ω²"]
     return verdict(
         {

@@ -11,7 +11,7 @@ this tangent, so that only rounding may be between them; what is between the two
 second-order part of the static state. Three solids: a stout blade, a thin blade whose sections turn
 with the static deflection, and a disc with staggered blades.
 
-python -m validation nonlinear [--json FILE] [--quick]
+python -m validation nonlinear [--quick]
 """
 
 from __future__ import annotations
@@ -20,7 +20,6 @@ import argparse
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
 import ngsolve as ngs
 import numpy as np
@@ -33,8 +32,8 @@ from tqdm import tqdm
 from exudyn_rotor import SolidRotor
 from exudyn_rotor.solid.tensor import von_mises
 from exudyn_rotor.solvers.factor import SparseCholesky
-from exudyn_rotor.theory.nodal import block_diagonal
-from validation.rows import verdict, write_json
+from exudyn_rotor.theory.axis import block_diagonal
+from validation.rows import verdict
 
 STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
 LEVELS = ("none", "full", "full, initial displacement")
@@ -304,7 +303,6 @@ def orders(rows: Sequence[dict]) -> dict[str, float]:
 def main(argv: list[str] | None = None) -> int:
     """Compare on one mesh, print the tables and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", type=Path, help="write the numbers to this file")
     parser.add_argument("--quick", action="store_true", help="fewer speeds")
     options = parser.parse_args(argv)
     speeds = QUICK_SPEEDS if options.quick else SPEEDS
@@ -322,8 +320,6 @@ def main(argv: list[str] | None = None) -> int:
         found = orders(rows)
         print("order in Ω²: " + ", ".join(f"{x} {value:.2f}" for x, value in found.items()) + "\n")
         written[name] = {"rows": rows, "orders": found}
-    if options.json:
-        write_json(options.json, written)
     rows = [row for solid in written.values() for row in solid["rows"]]
     return verdict(
         {

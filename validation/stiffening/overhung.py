@@ -3,13 +3,12 @@
 Lowest bending frequencies in the rotating frame over the speed: the levels of stiffening, Exudyn's
 3D body, and vibrations about the geometrically nonlinear static state as the referee.
 
-python -m validation overhung [--json FILE] [--quick]
+python -m validation overhung [--quick]
 """
 
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
 import exudyn
 import ngsolve as ngs
@@ -27,7 +26,7 @@ from tqdm import tqdm
 
 from exudyn_rotor import Formulation, Motion, ReducedRotor, free_modes, select_modes
 from exudyn_rotor.theory.stiffening import stiffening
-from validation.rows import verdict, write_json
+from validation.rows import verdict
 from validation.stiffening.nonlinear import LEVELS, STEEL, ClampedSolid
 
 SPEEDS, QUICK_SPEEDS = (0.0, 30.0, 60.0, 90.0, 120.0, 150.0), (0.0, 60.0)  # rad/s
@@ -148,7 +147,6 @@ COLUMNS = ("none", "reduced, tilt", "3D body", "full", "reduced, full", LEVELS[2
 def main(argv: list[str] | None = None) -> int:
     """Compare, print the table and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", type=Path, help="write the numbers to this file")
     parser.add_argument("--quick", action="store_true", help="fewer speeds")
     options = parser.parse_args(argv)
     solid = ClampedSolid.of(overhung_mesh(), "root")
@@ -164,6 +162,4 @@ def main(argv: list[str] | None = None) -> int:
             f"{row[name]:26.1e}" if name == LEVELS[2] else f"{row[name]:15.1e}" for name in COLUMNS
         )
         print(f"{row['speed']:10.0f}{row['strain']:10.1e}{pair:>20}{errors}")
-    if options.json:
-        write_json(options.json, rows)
     return verdict({"error of 'full'": (max(row["full"] for row in rows), 1e-4)})

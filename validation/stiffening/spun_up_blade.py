@@ -6,7 +6,7 @@ what Exudyn's 3D body has with its frame in the hub (``overhung.py``), and at 't
 integrates the geometrically nonlinear solid in the rotating frame; all models take the trapezoidal
 rule with the same steps.
 
-python -m validation spun_up_blade [--json FILE] [--quick] [--picture FILE]
+python -m validation spun_up_blade [--quick] [--picture FILE]
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from tqdm import tqdm
 
 from exudyn_rotor import Formulation, Motion, PrescribedMotion, plotting, select_modes
 from exudyn_rotor.theory.stiffening import stiffening
-from validation.rows import verdict, write_json
+from validation.rows import verdict
 from validation.stiffening.nonlinear import ClampedSolid
 
 HUB, LENGTH = 0.05, 0.4  # m
@@ -165,7 +165,6 @@ def draw(tracks: dict[str, np.ndarray], step: float, path: Path) -> None:
 def main(argv: list[str] | None = None) -> int:
     """Integrate all models, print the table and the verdict."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", type=Path, help="write the numbers to this file")
     parser.add_argument("--quick", action="store_true", help="larger steps")
     parser.add_argument("--picture", type=Path, help="draw the deflections to this file")
     options = parser.parse_args(argv)
@@ -182,7 +181,5 @@ def main(argv: list[str] | None = None) -> int:
         print(f"{row['level']:8}{text}")
     if options.picture:
         draw(tracks, step, options.picture)
-    if options.json:
-        write_json(options.json, {"largest": largest, "rows": rows})
     full = next(row for row in rows if row["level"] == "full")
     return verdict({"deviation of 'full'": (full["deviation"], 1e-3)})

@@ -7,24 +7,12 @@ from collections.abc import Iterable
 import numpy as np
 from tqdm import tqdm
 
-from exudyn_rotor import (
-    ReducedRotor,
-    SolidRotor,
-    Support,
-    Unbalance,
-    unbalance_response,
-)
+from exudyn_rotor import ReducedRotor, SolidRotor, Support, Unbalance, unbalance_response
 from exudyn_rotor.demo.scene import BEARINGS, START_SPEED
 from exudyn_rotor.linear.response.response import UnbalanceResponse
 from exudyn_rotor.theory.rotating_axes import axes_of
 from validation.trade.error import Row
-from validation.trade.scene import (
-    CRAIG_BAMPTON,
-    FREE,
-    RIM,
-    UNBALANCE,
-    Rotor,
-)
+from validation.trade.scene import CRAIG_BAMPTON, FREE, RIM, UNBALANCE, Rotor
 
 STIFFNESS, DAMPING = (2e6, 1.2e6, 1.6e6), 200.0  # N/m, N s/m, as in the time integration
 PLACES = (*BEARINGS, "disc")

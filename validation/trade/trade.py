@@ -8,18 +8,17 @@ it holds the errors of the step, of the modes and of the formulation together, s
 added. The mesh is the same for all; what it costs is in a table of its own. The time is that of
 the whole simulation without the set-up.
 
-    python -m validation trade [--json FILE] [--quick]
+    python -m validation trade [--quick]
 """
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Iterable, Sequence
-from pathlib import Path
 
 import exudyn
 
-from validation.rows import print_rows, write_json
+from validation.rows import print_rows
 from validation.trade.error import Row, cheapest, crossing, front
 from validation.trade.linear import mesh_errors, reduction_errors
 from validation.trade.plan import plan, run_up
@@ -166,14 +165,11 @@ def report(data: dict) -> None:
 
 
 def main(argv: list[str] | None = None) -> None:
-    """Measure, print, and write what is asked for."""
+    """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write all numbers to FILE")
     parser.add_argument("--quick", action="store_true", help="coarse mesh, few simulations")
     options = parser.parse_args(argv)
     # warnings about memory that user functions allocate would tear the tables
     exudyn.SetWriteToConsole(False)
     data = with_conclusions(everything(options.quick))
     report(data)
-    if options.json:
-        write_json(options.json, data)

@@ -9,25 +9,21 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
 import scipy.linalg as la
-from scipy.optimize import linear_sum_assignment
 
 from exudyn_rotor.calls import user_level
-from exudyn_rotor.linear.modal.whirl import Content, Named
+from exudyn_rotor.linear.modal.whirl import Content, Named, matched
 from exudyn_rotor.linear.model.assembly import rotors_of
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import motions_over
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
 _DAMPED = 0.01  # share of the frequency that growth counts as at least
 _SLOW = 0.1  # share of the spin speed that a frequency counts as at least
 _RANGE, _LOWEST = 2.0, 6  # times the fastest speed, and lowest modes: what is judged in any case
-_ALIKE = 0.2  # likeness of two shapes below which they are not the same motion
-_NEAR = 0.3  # share of a frequency by which the same motion may differ
-_MISSING = 0.1  # share of a flexibility that counts as missing
-_DIGITS = 9  # of costs that are compared
+_SPREAD = 0.2  # third of the share of a frequency by which the same motion may differ
 _POINTS = 3  # speeds at which the richer model is solved
 _LEAST = 0.1  # of the largest motion at the same speed or frequency: smaller ones count as that
 _AXIAL = 1e-6  # share of a motion across the axis that is rounding
@@ -62,12 +58,13 @@ def shifts_over(model: LinearModel, named: Named, *, held: bool = False) -> np.n
     if lifted.shape[0] == lifted.shape[1]:
         return np.zeros(shape, dtype=complex)
     better = Content.of(richer).named(motions_over(richer, speeds[chosen], held=held))
-    shifts = _shifts(named.rows(chosen), better, lifted)
-    if len(chosen) == 1:
-        return np.broadcast_to(shifts, shape).copy()
-    lines = [np.interp(speeds, speeds[chosen], part.real) for part in shifts.T]
-    slopes = [np.interp(speeds, speeds[chosen], part.imag) for part in shifts.T]
-    return np.array(lines).T + 1j * np.array(slopes).T
+    shifts = _shifts(named.rows(chosen), better, lifted, richer.mass_matrix)
+    lines = [
+        np.interp(speeds, speeds[chosen], part.real)
+        + 1j * np.interp(speeds, speeds[chosen], part.imag)
+        for part in shifts.T
+    ]
+    return np.array(lines).T
 
 
 def lifting(model: LinearModel, richer: LinearModel) -> np.ndarray:
@@ -82,30 +79,16 @@ def lifting(model: LinearModel, richer: LinearModel) -> np.ndarray:
     return la.block_diag(*blocks)
 
 
-def _shifts(given: Named, richer: Named, lifted: np.ndarray) -> np.ndarray:
+def _shifts(given: Named, richer: Named, lifted: np.ndarray, M: np.ndarray) -> np.ndarray:
     """Return the shifts (s, k) of motions, of richer ones at the same speeds."""
-    x, z = lifted @ given.motions.main, richer.motions.main
-    sizes = np.linalg.norm(x, axis=1)[:, :, None] * np.linalg.norm(z, axis=1)[:, None]
-    across = np.swapaxes(x, 1, 2)
-    products = np.maximum(np.abs(across.conj() @ z), np.abs(across @ z))
-    likeness = (products / np.maximum(sizes, 1e-300)) ** 2
-    speeds, values = np.abs(given.motions.speeds[:, None]), given.motions.values
-    least = np.maximum(np.abs(values), speeds)[:, :, None] + 1e-12
+    lift = replace(given.motions, vectors=lifted @ given.motions.vectors)
+    chosen, same = matched(given._replace(motions=lift), richer, M, _SPREAD)
+    better = richer.columns(chosen)
     # of a train, which rotor's frame a motion is seen from may differ between both models
-    change = richer.rotor[:, None] - given.rotor[:, :, None]
-    seen = richer.inertial[:, None] - given.inertial[:, :, None]
+    change, seen = better.rotor - given.rotor, better.inertial - given.inertial
     change = np.where(np.abs(seen) < 0.5 * np.abs(change), seen, change)
-    growth = richer.motions.values.real[:, None] - values.real[:, :, None]
-    cost = 1.0 - likeness
-    cost += np.minimum((np.abs(change) + np.abs(growth)) / (least * _NEAR), 2.0)
-    cost = np.round(np.nan_to_num(cost, nan=1e3), _DIGITS)
-    shifts = np.full(given.inertial.shape, np.nan, dtype=complex)
-    for row, each in enumerate(cost):
-        i, j = linear_sum_assignment(each)
-        good = (likeness[row, i, j] > _ALIKE) & (each[i, j] < 2.0)
-        i, j = i[good], j[good]
-        shifts[row, i] = growth[row, i, j] + 1j * change[row, i, j]
-    return shifts
+    growth = better.motions.values.real - given.motions.values.real
+    return np.where(same, growth + 1j * change, np.nan)
 
 
 def relative_errors(
@@ -207,9 +190,10 @@ def motion_error(given: Mapping[int, np.ndarray], finer: Mapping[int, np.ndarray
 
     Relative to the larger one of the two motions at the place, or to a tenth of the largest at any.
     """
-    across = {n: np.linalg.norm(each[:, :2]) for n, each in finer.items()}
-    largest = {n: _size(each).max() for n, each in finer.items()}
-    sizes = across if max(across.values()) > _AXIAL * max(largest.values()) else largest
+    sizes = {
+        n: np.linalg.norm(each[:, :2]) + _AXIAL * np.linalg.norm(each[:, :3])
+        for n, each in finer.items()
+    }
     order = max(sizes, key=sizes.get)  # not the static stretch by the rotation
     other = given.get(order, np.zeros_like(finer[order]))
     size = np.maximum(_size(finer[order]), _size(other))  # beside a sharp peak either is larger
@@ -228,38 +212,17 @@ def warn(errors: np.ndarray, what: str, model: LinearModel, accuracy: float) -> 
     worst = np.max(np.nan_to_num(errors), initial=0.0)
     if worst <= accuracy:
         return
-    bases = " and ".join(_basis(name, rotor) for name, rotor in model.rotors.items())
-    advice = "reduce the rotor with more, up to twice as many"
-    if any(_lacks_flexibility(model, name) for name in model.rotors):
-        advice = (
-            "they lack flexibility at the interfaces; reduce the rotor with "
-            "craig_bampton_modes(rotor, …), whose static modes have it"
-        )
+    bases = []
+    for name, rotor in model.rotors.items():
+        elastic = rotor.size - len(rotor.rigid_kinds)
+        highest = rotor.frequencies[-1] / (2.0 * np.pi) if elastic else 0.0
+        label = f"rotor {name!r}" if name else "the reduced rotor"
+        bases.append(f"the flexible modes of {label} ({elastic}, up to {highest:.4g} Hz)")
     warnings.warn(
-        f"{what} errs by about {worst:.2g} of its value, for {bases} are too few for the accuracy "
-        f"of {accuracy:g}: {advice}, give another accuracy=…, or None for no check",
+        f"{what} errs by about {worst:.2g} of its value, for {' and '.join(bases)} are too few for "
+        f"the accuracy of {accuracy:g}: reduce the rotor with more, up to twice as many, or with "
+        "craig_bampton_modes(rotor, …), whose static modes have the flexibility at the interfaces; "
+        "give another accuracy=…, or None for no check",
         UserWarning,
         stacklevel=user_level(),
     )
-
-
-def _basis(name: str, rotor: ReducedRotor) -> str:
-    elastic = rotor.size - len(rotor.rigid_kinds)
-    highest = rotor.frequencies[-1] / (2.0 * np.pi) if elastic else 0.0
-    label = f"rotor {name!r}" if name else "the reduced rotor"
-    return f"the flexible modes of {label} ({elastic}, up to {highest:.4g} Hz)"
-
-
-def _lacks_flexibility(model: LinearModel, name: str) -> bool:
-    """Return whether a basis misses much of the flexibility at the places that are loaded."""
-    rotor, places = model.rotors[name], model.places(name)
-    richer = rotor.with_attachments
-    if richer is None or not places:
-        return False
-    found = []
-    for each in (rotor, richer):
-        motion = np.vstack([each.interfaces[place].motion for place in places])
-        flexible = slice(len(each.rigid_kinds), None)
-        given = motion[:, flexible] / np.maximum(each.frequencies[flexible], 1e-300)
-        found.append(np.linalg.norm(given) ** 2)
-    return bool(found[1] - found[0] > _MISSING * found[1])

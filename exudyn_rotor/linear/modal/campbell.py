@@ -14,7 +14,6 @@ from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.modal import basis_error
 from exudyn_rotor.linear.modal import campbell_diagram as diagram
-from exudyn_rotor.linear.modal.basis_error import relative_errors
 from exudyn_rotor.linear.modal.whirl import (
     BACKWARD,
     FORWARD,
@@ -141,22 +140,6 @@ class Campbell(ModelResult):
     def __post_init__(self) -> None:
         super().__post_init__()
         checks.choice(self.frame, "frame", FRAMES)
-        if np.any(np.sort(self.order, axis=1) != np.arange(self.order.shape[1])):
-            raise ValueError("order: needs every column once at each speed")
-
-    @property
-    def whirl_frequencies(self) -> np.ndarray:
-        """Inertial frequencies with the sign of the whirl, shape (s, k) [rad/s].
-
-        Negative for backward whirl, positive for all other motions.
-        """
-        sign = np.where(self.whirl_codes == BACKWARD, -1.0, 1.0)
-        return sign * self.frequencies_inertial
-
-    @property
-    def oscillates(self) -> np.ndarray:
-        """False for overdamped and free motions, shape (s, k); they are not drawn."""
-        return oscillates(self.growth, self.frequencies_inertial)
 
     @property
     def whirl(self) -> np.ndarray:
@@ -181,8 +164,9 @@ class Campbell(ModelResult):
         """
         if self.basis_shifts is None:
             return None
-        given = self.growth, self.frequencies_inertial, self.speeds
-        return relative_errors(self.basis_shifts, *given)
+        return basis_error.relative_errors(
+            self.basis_shifts, self.growth, self.frequencies_inertial, self.speeds
+        )
 
     def tracked(self) -> Campbell:
         """Return the same result with columns that follow each mode over the speeds.
@@ -275,7 +259,8 @@ class Campbell(ModelResult):
         scale = np.maximum(tracked.frequencies_inertial, np.abs(self.speeds)[:, None])
         unstable = tracked.growth > _UNSTABLE * scale
         codes, continued = tracked.whirl_codes, tracked.continued
-        drawn = np.where(tracked.oscillates, shown.frequencies(values), np.nan)
+        moves = oscillates(tracked.growth, tracked.frequencies_inertial)
+        drawn = np.where(moves, shown.frequencies(values), np.nan)
         handles = diagram.draw_campbell(ax, speeds, drawn, codes, continued, unstable)
         if limits is not None:
             handles += diagram.shade_range(ax, limits, shares, shown)
@@ -349,7 +334,6 @@ def campbell(
     stiffening: str = "auto",
     axes: str = "auto",
     allow_negative: bool = False,
-    tolerance: float = 1e-6,
     accuracy: float | None = 1e-2,
     progress: bool = False,
 ) -> Campbell:
@@ -384,9 +368,6 @@ def campbell(
         Of the equations, see :func:`linear_model`.
     allow_negative : bool, optional
         Accept speeds below zero.
-    tolerance : float, optional
-        Largest relative error of an eigenvalue by the harmonics that are left out of periodic
-        equations, of an uneven rotor on uneven supports.
     accuracy : float, optional
         Relative error of frequencies and growth by the basis of a reduced rotor, estimated, above
         which a warning is given: see :attr:`Campbell.basis_errors`. It looks at the modes asked
@@ -430,7 +411,6 @@ def campbell(
     values = checks.spin_speeds(speeds, allow_negative)
     if modes is not None:
         modes = checks.count(modes, "modes", least=1)
-    tolerance = checks.tolerance(tolerance)
     checks.accuracy(accuracy)
     checks.flag(progress, "progress")
     checks.choice(frame, "frame", FRAMES)
@@ -442,18 +422,16 @@ def campbell(
         raise ValueError(f"modes: {modes} is not between 1 and the {model.size} there are")
     warn_of_structural_damping(model, "campbell finds modes")
     warn_of_left_out_stiffening(model, np.abs(values).max())
-    motions = motions_over(model, values, tolerance=tolerance, progress=progress, label="Campbell")
+    motions = motions_over(model, values, progress=progress, label="Campbell")
     named = Content.of(model).named(motions)
     if model.free_motions:
         named = _resting(named)
-    named = named.columns(ascending(named, frame))
+    named = named.columns(_ascending(named, frame))
     order, continued = track(named, model.mass_matrix)
     kept = _lowest(named, order, modes, frame, model)
-    tracked = named.columns(order[:, kept])
-    shifts = None
-    if accuracy is not None:
-        shifts = basis_error.shifts_over(model, tracked)
-    result = _collected(tracked, continued[:, kept], shifts, model, frame, modes)
+    tracked, continued = named.columns(order[:, kept]), continued[:, kept]
+    shifts = None if accuracy is None else basis_error.shifts_over(model, tracked)
+    result = _collected(tracked, continued, shifts, model, frame, modes)
     _warn_of_basis(result, model, accuracy)
     return result
 
@@ -472,7 +450,7 @@ def _resting(found: Named) -> Named:
     )
 
 
-def ascending(found: Named, frame: str = "inertial") -> np.ndarray:
+def _ascending(found: Named, frame: str) -> np.ndarray:
     """Return the order of motions (s, k): ascending in a frame, overdamped and lost ones last.
 
     Equal frequencies ascend in the other frame, then from backward to forward waves.
@@ -514,7 +492,7 @@ def _collected(
     modes: int | None,
 ) -> Campbell:
     """Return the result, whose columns ascend at every speed."""
-    speeds, upwards = tracked.motions.speeds, ascending(tracked, frame)
+    speeds, upwards = tracked.motions.speeds, _ascending(tracked, frame)
     order = np.argsort(upwards, axis=1)
     order[np.isnan(tracked.motions.bounds)] = np.arange(order.shape[1])
     found = tracked.columns(upwards)
@@ -548,11 +526,10 @@ def _collected(
 def _warn_of_basis(result: Campbell, model: LinearModel, accuracy: float | None) -> None:
     """Warn where the basis leaves out too much for the modes that count."""
     errors = result.basis_errors
-    if accuracy is None or errors is None or not np.any(np.nan_to_num(errors) > accuracy):
+    if accuracy is None or errors is None:
         return
-    at, mode = np.unravel_index(np.argmax(np.nan_to_num(errors)), errors.shape)
-    shown = Units.of("rpm")
-    speed = shown.speeds(result.speeds[at])
-    heard = shown.frequencies(result.frequencies_inertial[at, mode])
-    what = f"mode {mode + 1} ({result.whirl[at, mode]}, {heard:.4g} Hz) at {speed:.5g} rpm"
-    basis_error.warn(errors, what, model, accuracy)
+    errors, shown = np.nan_to_num(errors), Units.of("rpm")
+    at = np.unravel_index(np.argmax(errors), errors.shape)
+    heard, speed = shown.frequencies(result.frequencies_inertial[at]), result.speeds[at[0]]
+    mode = f"mode {at[1] + 1} ({result.whirl[at]}, {heard:.4g} Hz)"
+    basis_error.warn(errors, f"{mode} at {shown.speeds(speed):.5g} rpm", model, accuracy)

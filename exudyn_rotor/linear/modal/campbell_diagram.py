@@ -37,9 +37,7 @@ _STYLES = {  # colour, line
 
 def checked_orders(orders: Sequence[float] | float) -> np.ndarray:
     """Return positive orders of excitation, shape (p,)."""
-    if isinstance(orders, int | float | np.number) and not isinstance(orders, bool):
-        orders = [orders]
-    values = checks.vector(orders, "orders", size=None)
+    values = checks.vector(np.atleast_1d(orders), "orders", size=None)
     if values.size == 0 or np.any(values <= 0.0):
         raise ValueError(f"orders: needs positive numbers, got {checks.shown(orders)}")
     return values
@@ -164,7 +162,7 @@ def draw_campbell(
     continued: np.ndarray,
     unstable: np.ndarray,
 ) -> list[Line2D]:
-    """Draw modes [Hz] over the spin speed [Hz], coloured by whirl; return what the legend needs.
+    """Draw modes over the spin speed, coloured by whirl; return what the legend needs.
 
     Parameters
     ----------
@@ -181,12 +179,18 @@ def draw_campbell(
     """
     from matplotlib.lines import Line2D
 
+    marker = {"marker": "o", "ms": 4} if len(speeds) == 1 else {}
     for column in range(values.shape[1]):
-        starts = [0, *np.flatnonzero(~continued[1:, column]) + 1, len(speeds)]
-        for start, stop in itertools.pairwise(starts):
-            _draw_mode(
-                ax, speeds[start:stop], values[start:stop, column], codes[start:stop, column]
-            )
+        code, joined = codes[:, column], continued[:, column]
+        # the way to a speed takes its style: at rest the sense is not yet settled
+        style = np.r_[code[1:2] if len(code) > 1 else code, code[1:]]
+        starts = np.flatnonzero(np.r_[True, (style[1:] != style[:-1]) | ~joined[1:]])
+        for start, stop in itertools.pairwise([*starts, len(speeds)]):
+            first = max(start - 1, 0) if joined[start] else start
+            color, line = _STYLES[style[start]]
+            part, label = slice(first, stop), f"_{whirl.WHIRLS[style[start]]}"
+            given = {"ls": line, "color": color, "lw": 1.3, "label": label, **marker}
+            ax.plot(speeds[part], values[part, column], **given)
     handles = [
         Line2D([], [], color=color, ls=line, label=whirl.WHIRLS[code])
         for code, (color, line) in _STYLES.items()
@@ -195,20 +199,3 @@ def draw_campbell(
         at = np.broadcast_to(speeds[:, None], unstable.shape)[unstable]
         handles += ax.plot(at, values[unstable], "kx", ms=4, label="unstable")
     return handles
-
-
-def _draw_mode(ax: Axes, speeds: np.ndarray, values: np.ndarray, codes: np.ndarray) -> None:
-    """Draw one mode, changing its style where its whirl changes."""
-    if len(speeds) == 1:
-        label = f"_{whirl.WHIRLS[codes[0]]}"
-        ax.plot(speeds, values, "o", color=_STYLES[codes[0]][0], ms=4, label=label)
-        return
-    # a piece between two speeds takes the style of its end: at rest the sense is not yet settled
-    start = 0
-    pieces = codes[1:]
-    for stop in range(1, len(pieces) + 1):
-        if stop == len(pieces) or pieces[stop] != pieces[start]:
-            color, line = _STYLES[pieces[start]]
-            piece, label = slice(start, stop + 1), f"_{whirl.WHIRLS[pieces[start]]}"
-            ax.plot(speeds[piece], values[piece], ls=line, color=color, lw=1.3, label=label)
-            start = stop

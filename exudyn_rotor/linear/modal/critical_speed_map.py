@@ -23,8 +23,8 @@ from exudyn_rotor.linear.modal.critical_speeds import (
     collected,
     warn_of_critical,
 )
-from exudyn_rotor.linear.modal.resonance import NO_EQUATIONS, Search, Stiffness
-from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, Content
+from exudyn_rotor.linear.modal.resonance import NO_EQUATIONS, Search
+from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS
 from exudyn_rotor.linear.model.build import linear_model, warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import AXES, LinearModel, warn_of_refused
 from exudyn_rotor.linear.over import ModelResult, basis_column, table_lines
@@ -178,7 +178,6 @@ def critical_speed_map(
     bearing: Given | None = None,
     stiffening: str = "auto",
     axes: str = "auto",
-    tolerance: float = 1e-6,
     accuracy: float | None = 1e-2,
     progress: bool = False,
 ) -> CriticalSpeedMap:
@@ -195,7 +194,7 @@ def critical_speed_map(
         Further supports that do not change; magnetic bearings by their static stiffness.
     foundation : Foundation, optional
         What carries all supports, as in :func:`linear_model`.
-    order, max_speed, nodal_diameters, stiffening, axes, tolerance, accuracy
+    order, max_speed, nodal_diameters, stiffening, axes, accuracy
         See :func:`critical_speeds`; the basis is looked at at the first, the middle and the last
         stiffness.
     bearing : Support or bearing, optional
@@ -234,44 +233,38 @@ def critical_speed_map(
     )
     if not names:
         raise ValueError("interfaces: needs at least one name, got none")
-    supports = tuple(map(_made_once, given_supports(supports)))
     given = checked(order, max_speed, nodal_diameters)
     checks.choice(stiffening, "stiffening", CHOICES)
     checks.choice(axes, "axes", AXES)
-    checks.tolerance(tolerance)
     checks.accuracy(accuracy)
     checks.flag(progress, "progress")
     curve = None if bearing is None else _as_support(bearing)
+    kept = tuple(map(_made_once, given_supports(supports)))
     first = linear_model(
-        target, supports=_with(supports, names, values[0]), foundation=foundation,
+        target, supports=_with(kept, names, values[0]), foundation=foundation,
         stiffening=stiffening, axes=axes,
     ).undamped()  # fmt: skip
-    unit = {n: X / _UNIT for n, X in _added(first, names).items()}
     # a map takes what a film is within its own smoothness, for films are solved at each speed
-    error = 1e-9 if first.table_speeds.size else _FILM
-    search = Search(
-        Stiffness(first, unit, order=given[0]), Content.of(first), *given, tolerance, error
-    )
+    allowed = 1e-7 if first.table_speeds.size else _FILM
+    search = Search(first, *given, _added(first, names), allowed)
     judged = set() if accuracy is None else set(points(len(values)).tolist())
-    solved: list[CriticalSpeeds | None] = []
+    solved: dict[int, CriticalSpeeds] = {}
     failed: list[tuple[str, Exception]] = []
     for row, stiffness in enumerate(tqdm(values, "critical speed map", disable=not progress)):
         model = first
         if row in judged:
-            model = replace(first, supports={"": _with(supports, names, stiffness)})
+            model = replace(first, supports={"": _with(kept, names, stiffness)})
+        search.stiffness.factor = stiffness - values[0]
         try:
-            found = search.resonances(stiffness - values[0])
-            solved.append(collected(found, search, model, row in judged))
+            solved[row] = collected(search, model, row in judged)
         except ValueError as error:  # as of a support whose stiffness is negative
-            solved.append(None)
             failed.append((f"{stiffness:.4g} N/m", error))
     warn_of_refused(failed, len(values))
     search.warn()
     result = _collected(values, solved, curve, max_speed, is_known(first, accuracy))
     if np.any(result.speeds > 0.0):
         warn_of_left_out_stiffening(first, max_speed or np.nanmin(result.speeds))
-    if result.basis_errors is not None:
-        warn_of_critical(first, result.speeds, result.basis_errors, accuracy)
+    warn_of_critical(first, result.speeds, result.basis_errors, accuracy)
     return result
 
 
@@ -280,56 +273,57 @@ def _with(supports: tuple[Given, ...], names: Sequence[str], stiffness: float) -
 
 
 def _added(model: LinearModel, names: Sequence[str]) -> dict[int, np.ndarray]:
-    """Return the Fourier terms of what supports of a large stiffness add, as H has them."""
+    """Return the Fourier terms of what supports of 1 N/m add, in the coordinates of H."""
+    given = {"wanted_axes": model.axes, "largest_unevenness": np.inf}
     stiff, none = (
-        replace(
-            model,
-            supports={"": _with((), names, _UNIT)[:count]},
-            wanted_axes=model.axes,
-            largest_unevenness=np.inf,
-        )
-        .at(1.0)
-        .K
-        for count in (None, 0)
+        replace(model, supports={"": supports}, **given).at(1.0).K
+        for supports in (_with((), names, _UNIT), ())
     )
     basis = np.eye(model.size) if model.moving_basis is None else model.moving_basis
-    added = {n: X - none.get(n, 0.0) for n, X in stiff.items()}
+    added = {n: (X - none.get(n, 0.0)) / _UNIT for n, X in stiff.items()}
     own = model.size - len(added[0])  # rings of supports in series, whose coordinates are the last
     return {n: basis.T @ np.pad(X, (0, own)) @ basis for n, X in added.items()}
-
-
-def _collected(
-    values: np.ndarray,
-    solved: list[CriticalSpeeds | None],
-    curve: Support | None,
-    max_speed: float | None,
-    has_errors: bool,
-) -> CriticalSpeedMap:
-    """Return the result of all stiffnesses, NaN where there is none."""
-    first = next(entry for entry in solved if entry is not None)
-    shape = len(values), max(len(entry.speeds) for entry in solved if entry is not None)
-    speeds, codes, errors = np.full(shape, np.nan), np.full(shape, -1), np.full(shape, np.nan)
-    for row, entry in enumerate(solved):
-        if entry is not None:
-            count = len(entry.speeds)
-            speeds[row, :count] = entry.speeds
-            codes[row, :count] = [WHIRLS.index(word) for word in entry.whirl]
-            if entry.basis_errors is not None:
-                errors[row, :count] = entry.basis_errors
-    own = (None, None)
-    if curve is not None:
-        own = _curve(curve, max_speed or float(np.nanmax(speeds, initial=1.0)))
-    return CriticalSpeedMap(
-        values, speeds, codes.astype(np.int64), first.order, stiffening=first.stiffening,
-        basis_errors=errors if has_errors else None, bearing_speeds=own[0],
-        bearing_stiffnesses=own[1], axes=first.axes, unevenness=first.unevenness,
-    )  # fmt: skip
 
 
 def _made_once(given: Given) -> Given:
     """Return a bearing as the support that it is for all stiffnesses, if it is one."""
     made = given if isinstance(given, MagneticBearing | Support) else given.linearised()
     return made if isinstance(made, Support) else given
+
+
+def _collected(
+    values: np.ndarray,
+    solved: dict[int, CriticalSpeeds],
+    curve: Support | None,
+    max_speed: float | None,
+    has_errors: bool,
+) -> CriticalSpeedMap:
+    """Return the result of all stiffnesses, NaN where there is none."""
+    first = next(iter(solved.values()))
+    shape = len(values), max(len(entry.speeds) for entry in solved.values())
+    speeds, errors = np.full(shape, np.nan), np.full(shape, np.nan)
+    codes = np.full(shape, -1)
+    for row, entry in solved.items():
+        count = len(entry.speeds)
+        speeds[row, :count] = entry.speeds
+        codes[row, :count] = [WHIRLS.index(word) for word in entry.whirl]
+        if entry.basis_errors is not None:
+            errors[row, :count] = entry.basis_errors
+    own = (None, None)
+    if curve is not None:
+        own = _curve(curve, max_speed or float(np.nanmax(speeds, initial=1.0)))
+    return CriticalSpeedMap(
+        values,
+        speeds,
+        codes.astype(np.int64),
+        first.order,
+        basis_errors=errors if has_errors else None,
+        bearing_speeds=own[0],
+        bearing_stiffnesses=own[1],
+        stiffening=first.stiffening,
+        axes=first.axes,
+        unevenness=first.unevenness,
+    )
 
 
 def _as_support(bearing: Given) -> Support:

@@ -9,7 +9,6 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
-from exudyn_rotor.calls import one_thread
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.modal import basis_error
 from exudyn_rotor.linear.modal.resonance import (
@@ -19,17 +18,17 @@ from exudyn_rotor.linear.modal.resonance import (
     Stiffness,
     named,
 )
-from exudyn_rotor.linear.modal.whirl import WHIRLS, Content
+from exudyn_rotor.linear.modal.whirl import WHIRLS
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import ModelResult, basis_column, table_lines
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.results import numbers, storable, words
+from exudyn_rotor.solvers.factor import one_thread
 from exudyn_rotor.units import Units
 
-JUDGED = 6  # critical speeds that count where no largest speed is given
+_JUDGED = 6  # critical speeds that count where no largest speed is given
 _ALIKE = 0.5  # likeness of two shapes below which they are not the same motion
-_NEAR = 0.5  # share of a critical speed by which the same motion may differ
 _BESIDE, _ERROR = 0.97, 1e-6  # of a critical speed: where its change is told, and its error
 
 
@@ -121,7 +120,6 @@ def critical_speeds(
     nodal_diameters: Sequence[int] = (0, 1),
     stiffening: str = "auto",
     axes: str = "auto",
-    tolerance: float = 1e-6,
     accuracy: float | None = 1e-2,
 ) -> CriticalSpeeds:
     """Compute the undamped critical speeds of a rotor on supports, or of a scene.
@@ -152,9 +150,6 @@ def critical_speeds(
     stiffening : {'auto', 'none', 'tilt', 'full'}
     axes : {'auto', 'inertial', 'rotor'}
         Of the equations, see :func:`linear_model`.
-    tolerance : float, optional
-        Largest relative error of a critical speed by the harmonics that are left out of periodic
-        equations, of an uneven rotor on uneven supports.
     accuracy : float, optional
         Relative error of a critical speed by the basis of a reduced rotor, estimated, above which
         a warning is given. It looks at the speeds up to `max_speed`; without, at the lowest six.
@@ -187,21 +182,18 @@ def critical_speeds(
     stiffening: tilt
     """
     given = checked(order, max_speed, nodal_diameters)
-    checks.tolerance(tolerance)
     checks.accuracy(accuracy)
     model = linear_model(
         target, supports=supports, foundation=foundation, body=body, stiffening=stiffening,
         axes=axes,
     ).undamped()  # fmt: skip
-    search = Search(Stiffness(model, order=given[0]), Content.of(model), *given, tolerance)
-    result = collected(search.resonances(), search, model, accuracy is not None)
+    search = Search(model, *given)
+    result = collected(search, model, accuracy is not None)
     search.warn()
-    model.warn_beyond(given[0] * result.speeds)
+    model.warn_beyond(result.order * result.speeds)
     if result.speeds.size:
-        fastest = result.speeds[0] if max_speed is None else max_speed
-        warn_of_left_out_stiffening(model, fastest)
-    if accuracy is not None and result.basis_errors is not None:
-        warn_of_critical(model, result.speeds, result.basis_errors, accuracy)
+        warn_of_left_out_stiffening(model, max_speed or result.speeds[0])
+    warn_of_critical(model, result.speeds, result.basis_errors, accuracy)
     return result
 
 
@@ -218,15 +210,13 @@ def checked(
     return order, sorted({int(n) for n in values}), max_speed
 
 
-def collected(
-    found: list[Resonance], search: Search, model: LinearModel, estimate: bool
-) -> CriticalSpeeds:
-    """Return the result of a search; errors by the basis of the model where they are asked for."""
-    found, rotor, codes, diameters = named(found, search.content)
+def collected(search: Search, model: LinearModel, estimate: bool) -> CriticalSpeeds:
+    """Return the result of a search; errors by the basis of a model where they are asked for."""
+    found, rotor, codes, diameters = named(search.resonances(), search.content)
     speeds = np.array([one.speed for one in found])
     errors = None
     if estimate and basis_error.is_known(model, 1.0):
-        errors = basis_errors(model, found, len(found) if search.limit is not None else JUDGED)
+        errors = _basis_errors(search, model, found)
     shapes = [x[np.argmax(np.linalg.norm(x, axis=1))] for _, x, _ in found]
     shapes = np.array(shapes, dtype=complex).reshape(-1, model.size).T
     return CriticalSpeeds(
@@ -244,37 +234,36 @@ def collected(
 
 
 @one_thread()
-def basis_errors(model: LinearModel, found: Sequence[Resonance], count: int) -> np.ndarray:
+def _basis_errors(search: Search, model: LinearModel, found: Sequence[Resonance]) -> np.ndarray:
     """Return relative errors of the lowest critical speeds by the basis, NaN of others, (c,).
 
     Each motion is followed into the model with the shapes that the basis lacks.
     """
     errors = np.full(len(found), np.nan)
+    judged = found if search.limit is not None else found[:_JUDGED]
     if model.is_full:
-        errors[:count] = 0.0
+        errors[: len(judged)] = 0.0
         return errors
-    richer = model.richer
-    stiffness = Stiffness(richer, order=abs(float(found[0].multiples[0])) if found else 1.0)
-    lifted = basis_error.lifting(model, richer)
-    for i, one in enumerate(found[:count]):
-        lift, slope = one._replace(vectors=one.vectors @ lifted.T), None
+    stiffness = Stiffness(model.richer, search.order)
+    lifted = basis_error.lifting(model, model.richer)
+    for i, one in enumerate(judged):
+        lift = one.vectors @ lifted.T
         try:
-            if model.stiffness_varies:
-                slope = stiffness.along(_BESIDE * one.speed, one.speed, one.speed)
-            better = stiffness.refined(lift, slope, _ERROR)
+            pair = one.speed, stiffness.within(lift)
+            speed, x = stiffness.refined(pair, one.multiples, _BESIDE * one.speed, _ERROR)
         except NO_EQUATIONS:
             continue
-        x, y = lift.vectors, better.vectors
+        x, y = lift, stiffness.motions(x, one.multiples)
         likeness = abs(np.vdot(x, y)) ** 2 / (np.vdot(x, x) * np.vdot(y, y)).real
-        if likeness > _ALIKE and abs(better.speed - one.speed) < _NEAR * one.speed:
-            errors[i] = abs(better.speed / one.speed - 1.0)
+        if likeness > _ALIKE:
+            errors[i] = abs(speed / one.speed - 1.0)
     return errors
 
 
 def warn_of_critical(
-    model: LinearModel, speeds: np.ndarray, errors: np.ndarray, accuracy: float
+    model: LinearModel, speeds: np.ndarray, errors: np.ndarray | None, accuracy: float | None
 ) -> None:
     """Warn where the basis leaves out too much for some critical speed [rad/s]."""
-    if np.any(errors > 0.0):
+    if errors is not None and np.any(errors > 0.0):
         worst = Units.of("rpm").speeds(speeds.flat[np.nanargmax(errors)])
         basis_error.warn(errors, f"the critical speed of {worst:.5g} rpm", model, accuracy)

@@ -394,9 +394,7 @@ def rounded(values: np.ndarray, nan: float = 2.0) -> np.ndarray:
 def track(named: Named, M: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return which column continues each mode of the first speed, and whether it is the same mode.
 
-    Neighbouring speeds are matched as a whole (assignment problem) by the mass-weighted modal
-    assurance criterion ``|φᴴMψ|² / (φᴴMφ ψᴴMψ)``, the frequency seen from outside, and the growth.
-    A motion and its conjugate are one. Speeds without values are passed over.
+    Speeds without values are passed over.
 
     Parameters
     ----------
@@ -412,72 +410,54 @@ def track(named: Named, M: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """
     known, (s, k) = named.motions.known, named.inertial.shape
     columns, continued = np.tile(np.arange(k), (s, 1)), np.ones((s, k), dtype=bool)
-    matched, same = _steps(named.rows(known), M)
+    following, same = matched(named.rows(known[:-1]), named.rows(known[1:]), M)
     for step, (before, after) in enumerate(itertools.pairwise(known)):
         last = columns[before]
-        columns[after], continued[after] = matched[step][last], same[step][last]
+        columns[after], continued[after] = following[step][last], same[step][last]
         columns[before + 1 : after] = last
     return columns, continued
 
 
-def _steps(named: Named, M: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return which motion continues each at the next speed, (s − 1, k), and whether as one mode."""
-    values, bounds = named.motions.values, named.motions.bounds[:-1, None, None]
-    likeness = _likeness(named.motions, M)
-    before, after = named.inertial[:-1, :, None], named.inertial[1:, None]
-    jump, change = np.abs(after - before), np.abs(np.diff(named.motions.speeds))[:, None, None]
-    allowed = _STEEPEST * change + _SPREAD * np.maximum(after, before) + bounds
-    growth = values.real[:-1, :, None], values.real[1:, None]
+def matched(
+    before: Named, after: Named, M: np.ndarray, spread: float = _SPREAD
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return which of later motions (s, l) each motion is, (s, k), and whether it is the same one.
+
+    Each row is matched as a whole (assignment problem) by the mass-weighted modal assurance
+    criterion ``|φᴴMψ|² / (φᴴMφ ψᴴMψ)``, the frequency seen from outside, which may change by a
+    share `spread` of itself, the growth and the sense. A motion and its conjugate are one.
+    """
+    first, second = before.motions, after.motions
+    likeness, bounds = _likeness(first.main, second.main, M), first.bounds[:, None, None]
+    heard = before.inertial[:, :, None], after.inertial[:, None]
+    jump, turned = np.abs(heard[1] - heard[0]), np.abs(second.speeds - first.speeds)
+    allowed = _STEEPEST * turned[:, None, None] + spread * np.maximum(*heard) + bounds
+    growth = first.values.real[:, :, None], second.values.real[:, None]
     size = np.abs(growth[0]) + np.abs(growth[1]) + bounds
-    cost = 1.0 - likeness + _JUMP_WEIGHT * np.minimum(jump / allowed, 4.0)
     apart = np.abs(growth[1] - growth[0]) / np.maximum(size, 1e-300)
+    senses = [(each.codes == FORWARD) * 1 - (each.codes == BACKWARD) for each in (before, after)]
+    cost = 1.0 - likeness + _JUMP_WEIGHT * np.minimum(jump / allowed, 4.0)
     cost += _GROWTH_WEIGHT * np.minimum(apart, 1.0)
-    senses = (named.codes == FORWARD) * 1 - (named.codes == BACKWARD)
-    cost += _SENSE_WEIGHT * (senses[:-1, :, None] * senses[1:, None] < 0)
+    cost += _SENSE_WEIGHT * (senses[0][:, :, None] * senses[1][:, None] < 0)
     cost = np.round(np.nan_to_num(cost, nan=10.0), _DIGITS)
     found = [linear_sum_assignment(each)[1] for each in cost]
-    matched = np.array(found, dtype=int).reshape(-1, values.shape[1])
+    chosen = np.array(found, dtype=int).reshape(first.values.shape)
 
     def of_match(X: np.ndarray) -> np.ndarray:
-        return np.take_along_axis(X, matched[:, :, None], 2)[:, :, 0]
+        return np.take_along_axis(X, chosen[:, :, None], 2)[:, :, 0]
 
-    later, sizes = values[1:], np.abs(values[1:, None]) + 0.0
-    alike = np.abs(later[:, :, None] - later[:, None]) <= _ALIKE * sizes + bounds
+    later = second.values
+    near = np.abs(later[:, :, None] - later[:, None])
+    alike = near <= _ALIKE * np.abs(later[:, None]) + bounds
     together = of_match(likeness @ np.swapaxes(alike, 1, 2))
     same = (together >= _LEAST_LIKENESS) & (of_match(jump) <= _MOST_CHANGES * of_match(allowed))
-    ends = np.take_along_axis(later, matched, 1)
-    return matched, same | ((values[:-1] == 0.0) & (ends == 0.0))
+    return chosen, same | ((first.values == 0.0) & (np.take_along_axis(later, chosen, 1) == 0.0))
 
 
-def _likeness(motions: Motions, M: np.ndarray) -> np.ndarray:
-    """Return the modal assurance criterion of all pairs at neighbouring speeds, (s − 1, k, k)."""
-    vectors, speeds = motions.vectors, motions.speeds
-    if np.any(np.isnan(motions.values)):
-        vectors = np.nan_to_num(vectors)
-    found = _of_pairs(vectors, M)
-    rests = np.flatnonzero((speeds[1:] == 0.0) | (speeds[:-1] == 0.0))
-    if vectors.shape[1] > 1 and rests.size:  # at rest all harmonics are one motion
-        total = vectors.sum(axis=1, keepdims=True)
-        for place in rests:
-            found[place] = _of_pairs(total[place : place + 2], M)[0]
-    return found
-
-
-def _of_pairs(vectors: np.ndarray, M: np.ndarray) -> np.ndarray:
-    """Return the criterion of motions (s, h, c, k), the largest of the forms of the later one.
-
-    These are its copies λ + ipΩ, with harmonics by one more or less, and their conjugates.
-    """
-    weighted = M @ vectors
-    norms = np.sum(vectors.conj() * weighted, axis=(1, 2)).real
-    before, after = np.swapaxes(vectors[:-1].conj(), 2, 3), weighted[1:]
-    h, best = vectors.shape[1], 0.0
-    for later in (after, after[:, ::-1].conj()):
-        for shift in (-1, 0, 1) if h > 1 else (0,):
-            first, second = (
-                slice(max(shift, 0), h + min(shift, 0)),
-                slice(max(-shift, 0), h - max(shift, 0)),
-            )
-            product = np.sum(before[:, first] @ later[:, second], axis=1)
-            best = np.maximum(best, product.real**2 + product.imag**2)
-    return best / np.maximum(norms[:-1, :, None] * norms[1:, None], 1e-300)
+def _likeness(before: np.ndarray, after: np.ndarray, M: np.ndarray) -> np.ndarray:
+    """Return the criterion of all pairs of shapes (s, c, k) and (s, c, l), or their conjugates."""
+    before, after = np.nan_to_num(before), np.nan_to_num(after)
+    norms = [np.sum(x.conj() * (M @ x), axis=1).real for x in (before, after)]
+    left, weighted = np.swapaxes(before, 1, 2), M @ after
+    best = np.maximum(np.abs(left.conj() @ weighted), np.abs(left @ weighted)) ** 2
+    return best / np.maximum(norms[0][:, :, None] * norms[1][:, None], 1e-300)

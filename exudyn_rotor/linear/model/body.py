@@ -29,8 +29,7 @@ from exudyn_rotor.linear.model.turning import (
     radius_of_gyration,
     turning_of,
 )
-from exudyn_rotor.reduction.fields import ModeKind
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.rotating_axes import axes_of
 from exudyn_rotor.theory.stiffening import SpinTerms, chosen_level

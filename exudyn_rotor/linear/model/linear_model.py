@@ -46,8 +46,7 @@ from exudyn_rotor.linear.model.body import (
 )
 from exudyn_rotor.linear.model.rotor_train import Link
 from exudyn_rotor.linear.model.spin import ARM
-from exudyn_rotor.reduction.fields import ModeKind
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
 from exudyn_rotor.theory.stiffening import LEVELS
 
 AXES = ("auto", "inertial", "rotor")

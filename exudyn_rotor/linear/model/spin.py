@@ -23,8 +23,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_rotor.reduction.fields import RIGID_KINDS, ModeKind
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.reduction.reduced_rotor import RIGID_KINDS, ModeKind, ReducedRotor
 from exudyn_rotor.reduction.selection import mean_rotation
 from exudyn_rotor.theory.invariants import Invariants
 

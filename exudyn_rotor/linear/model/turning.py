@@ -25,8 +25,7 @@ import scipy.linalg as la
 
 from exudyn_rotor.calls import kept
 from exudyn_rotor.linear.equations import without_rounding
-from exudyn_rotor.reduction.fields import ModeKind
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.rotating_axes import axes_of, turning_harmonics
 

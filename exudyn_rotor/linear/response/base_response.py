@@ -25,7 +25,6 @@ import scipy.linalg
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given
-from exudyn_rotor.calls import one_thread
 from exudyn_rotor.foundations.record import BaseRecord
 from exudyn_rotor.linear.equations import Terms, UnconvergedError, at_angle, states_of
 from exudyn_rotor.linear.model.build import (
@@ -38,6 +37,7 @@ from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.response.loads import At, Place, checked_places, places
 from exudyn_rotor.linear.response.response import DIRECTIONS, AtPlaces
 from exudyn_rotor.results import numbers, storable, text_table
+from exudyn_rotor.solvers.factor import one_thread
 from exudyn_rotor.theory.rotating_axes import axes_of
 from exudyn_rotor.units import Units
 

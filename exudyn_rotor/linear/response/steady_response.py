@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
-from exudyn_rotor.calls import one_thread, user_level
+from exudyn_rotor.calls import user_level
 from exudyn_rotor.linear.modal.basis_error import basis_errors, warn
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import LinearModel
@@ -36,6 +36,7 @@ from exudyn_rotor.linear.response.loads import (
 from exudyn_rotor.linear.response.response import HarmonicResponse, UnbalanceResponse
 from exudyn_rotor.linear.solve.forced import forced_motions
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.solvers.factor import one_thread
 from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.units import Units
 

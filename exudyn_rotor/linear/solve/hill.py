@@ -15,7 +15,7 @@ import numpy as np
 from exudyn_rotor.linear.equations import PeriodicSystem, States
 
 _SIZES = (2, 3, 4, 6)  # harmonics on either side, in steps of the coefficients
-_LARGEST, _MOST = 300, 420  # unknowns beyond which harmonics are added for slow motions, for none
+_LARGEST, _MOST = 250, 420  # unknowns beyond which harmonics are added for slow motions, for none
 _SLOW = 3.0  # |λ| over Ω up to which a motion is slow
 _UNSETTLED = 1e-4  # energy at the edge with which a slow motion is not waited for
 _FAST = 30.0  # decay over Ω above which a motion is over before the coefficients change

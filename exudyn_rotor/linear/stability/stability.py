@@ -22,7 +22,6 @@ from exudyn_rotor.linear.modal.whirl import (
     FAMILIES,
     WHIRLS,
     Content,
-    Named,
     damping_of,
     families,
     rounded,
@@ -74,8 +73,6 @@ class Stability(ModelResult):
         Frequency of the motion's strongest wave seen from outside [rad/s].
     whirl_codes, nodal_diameters : ndarray of int, shape (s, k)
         As those of :class:`Campbell`; see :attr:`whirl` and :attr:`families`.
-    tolerance : float
-        Largest relative error of λ by harmonics that are left out.
     basis_shifts : ndarray, shape (s,), or None
         Estimated ``λ − λ_reduced`` of the least stable motion with λ of the full model, as
         :attr:`Campbell.basis_shifts`; NaN where the motion is not found again.
@@ -106,18 +103,13 @@ class Stability(ModelResult):
     frequencies_inertial: np.ndarray = numbers("speeds", "modes", finite=False)
     whirl_codes: np.ndarray = numbers("speeds", "modes", dtype=int, least=0, most=len(WHIRLS) - 1)
     nodal_diameters: np.ndarray = numbers("speeds", "modes", dtype=int, least=-1)
-    tolerance: float = 1e-6
     basis_shifts: np.ndarray | None = numbers("speeds", dtype=complex, finite=False, optional=True)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        checks.number(self.tolerance, "tolerance", least=0.0)
 
     def plot(self, ax: Axes | None = None, *, units: str = "rpm") -> Axes:
         """Draw the growth over the spin speed, of each family and of the least stable motion.
 
-        Unstable speeds are shaded; families that decay far faster than lateral motions, which would
-        hide these, are in the legend only. `units` are 'rpm', 'Hz' or 'SI', rad/s.
+        Unstable speeds are shaded; the picture ends below the strongest decay of lateral motions,
+        which others would hide. `units` are 'rpm', 'Hz' or 'SI', rad/s.
         """
         shown = Units.of(units)
         ax = plotting.axes_or_new(ax)
@@ -126,25 +118,17 @@ class Stability(ModelResult):
         moving = [growth for growth in found.values() if np.any(np.nan_to_num(growth))]
         if moving:  # others are free or rest at all speeds
             ax.plot(speeds, np.fmax.reduce(moving), color="0.8", lw=6.0, label="least stable")
-        lowest = _SHOWN * np.fmin.reduce(found["lateral"], initial=0.0)
         for (family, growth), color in zip(found.items(), plotting.COLORS, strict=True):
-            if np.all(np.isnan(growth)):
-                continue
-            hidden = np.nanmax(growth) < lowest < 0.0
-            drawn = np.full(len(speeds), np.nan) if hidden else growth
-            label = f"{family}: {np.nanmax(growth):.3g} at most" if hidden else family
-            ax.plot(speeds, drawn, ".-", color=color, lw=1.3, label=label)
+            if not np.all(np.isnan(growth)):
+                ax.plot(speeds, growth, ".-", color=color, lw=1.3, label=family)
         low, high = ax.get_ylim()
+        lateral = np.fmin.reduce(found["lateral"], initial=0.0)
+        limits = (max(low, _SHOWN * lateral) if lateral < 0.0 else low), high
+        unstable = ~self.stable & self.known
         ax.fill_between(
-            speeds,
-            low,
-            high,
-            where=~self.stable & self.known,
-            color=plotting.COLORS[1],
-            alpha=0.2,
-            lw=0.0,
+            speeds, *limits, where=unstable, color=plotting.COLORS[1], alpha=0.2, lw=0.0
         )
-        ax.set_ylim(low, high)
+        ax.set_ylim(limits)
         ax.axhline(0.0, color="0.3", lw=0.8)
         ax.set_xlabel(f"spin speed [{shown.speed}]")
         ax.set_ylabel("largest growth [1/s]")
@@ -164,11 +148,6 @@ class Stability(ModelResult):
         'lateral', 'torsional', 'axial', 'disc' (two nodal diameters and more), or 'other'.
         """
         return families(self.whirl_codes, self.nodal_diameters)
-
-    @property
-    def damping_ratio(self) -> np.ndarray:
-        """``−Re λ / |Re λ + iω|`` at the inertial frequency ω, from −1 to 1."""
-        return damping_of(self.exponents.real, self.frequencies_inertial)[0]
 
     @property
     def log_decrement(self) -> np.ndarray:
@@ -204,10 +183,9 @@ class Stability(ModelResult):
         if self.basis_shifts is None:
             return None
         rows = np.arange(len(self.speeds)), self.least_stable
-        given = self.exponents[rows].real, self.frequencies_inertial[rows]
-        columns = (each[:, None] for each in (self.basis_shifts, *given))
-        errors = relative_errors(*columns, self.speeds)[:, 0]
-        return np.where(np.isnan(self.basis_shifts) | self.neutral, np.nan, errors)
+        given = self.basis_shifts, self.exponents[rows].real, self.frequencies_inertial[rows]
+        errors = relative_errors(*(each[:, None] for each in given), self.speeds)[:, 0]
+        return np.where(self.neutral, np.nan, errors)
 
     def growth_of(self, family: str) -> np.ndarray:
         """Return the largest real part within a family [1/s], shape (s,).
@@ -361,7 +339,7 @@ def stability(
     [True, False]
     """
     values = checks.ascending_from_zero(speeds, "speeds")
-    check_options(method, tolerance, accuracy)
+    check_options(tolerance, accuracy, method)
     checks.flag(progress, "progress")
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening, axes=axes)
     warn_of_structural_damping(model, WHAT)
@@ -370,12 +348,43 @@ def stability(
         model, values, held=True, method=method, tolerance=tolerance, progress=progress,
         label="stability",
     )  # fmt: skip
-    result = _collected(Content.of(model).named(motions), model, tolerance, accuracy)
+    result = of_motions(model, Content.of(model), motions, accuracy)
     _warn_of_basis(result, model, accuracy)
     return result
 
 
-def check_options(method: str, tolerance: float, accuracy: float | None) -> None:
+def of_motions(
+    model: LinearModel, content: Content, motions: Motions, accuracy: float | None
+) -> Stability:
+    """Return the result of motions of a model, in each row the least stable motion first."""
+    named = content.named(motions)
+    shifts = None
+    if basis_error.is_known(model, accuracy):
+        tracked = named.columns(track(named, model.mass_matrix)[0])
+        shifts = basis_error.shifts_over(model, tracked, held=True)
+        which = least_stable_of(tracked.motions)[:, None]
+        shifts = np.take_along_axis(shifts, which, 1)[:, 0]
+    keys = rounded(named.inertial), -rounded(named.motions.values.real, nan=-2.0)
+    found = named.columns(np.lexsort(keys))
+    values, bounds = found.motions.values, found.motions.bounds
+    growth = np.fmax.reduce(values.real, axis=1, initial=np.nan)
+    return Stability(
+        speeds=found.motions.speeds,
+        exponents=values.real + 1j * np.where(np.isnan(values), np.nan, found.rotor),
+        growth=growth,
+        stable=growth <= bounds,
+        bounds=bounds,
+        frequencies_inertial=np.where(np.isnan(values), np.nan, found.inertial),
+        whirl_codes=found.codes,
+        nodal_diameters=found.diameters,
+        basis_shifts=shifts,
+        stiffening=model.stiffening,
+        axes=model.axes,
+        unevenness=model.unevenness,
+    )
+
+
+def check_options(tolerance: float, accuracy: float | None, method: str = "auto") -> None:
     """Check the options that all analyses of stability have."""
     checks.choice(method, "method", METHODS)
     checks.tolerance(tolerance)
@@ -389,52 +398,13 @@ def least_stable_of(motions: Motions) -> np.ndarray:
     return np.argmax(rounded(np.where(moves, growth, np.nan), nan=-2.0), axis=1)
 
 
-def _collected(
-    named: Named, model: LinearModel, tolerance: float, accuracy: float | None
-) -> Stability:
-    """Return the result, in each row the least stable motion first."""
-    found = named.columns(
-        np.lexsort((rounded(named.inertial), -rounded(named.motions.values.real, nan=-2.0)))
-    )
-    values = found.motions.values
-    growth = np.fmax.reduce(values.real, axis=1, initial=np.nan)
-    return Stability(
-        speeds=found.motions.speeds,
-        exponents=values.real + 1j * np.where(np.isnan(values), np.nan, found.rotor),
-        growth=growth,
-        stable=growth <= found.motions.bounds,
-        bounds=found.motions.bounds,
-        frequencies_inertial=np.where(np.isnan(values), np.nan, found.inertial),
-        whirl_codes=found.codes,
-        nodal_diameters=found.diameters,
-        tolerance=tolerance,
-        basis_shifts=_shifts(model, named, accuracy),
-        stiffening=model.stiffening,
-        axes=model.axes,
-        unevenness=model.unevenness,
-    )
-
-
-def _shifts(model: LinearModel, named: Named, accuracy: float | None) -> np.ndarray | None:
-    """Return the shifts (s,) of the least stable motions by what the basis leaves out."""
-    if not basis_error.is_known(model, accuracy):
-        return None
-    tracked = named.columns(track(named, model.mass_matrix)[0])
-    shifts = basis_error.shifts_over(model, tracked, held=True)
-    if shifts is None:
-        return None
-    return np.take_along_axis(shifts, least_stable_of(tracked.motions)[:, None], 1)[:, 0]
-
-
 def _warn_of_basis(result: Stability, model: LinearModel, accuracy: float | None) -> None:
     """Warn where the basis leaves out too much for the growth of a least stable motion."""
     errors = result.basis_errors
     if errors is None or np.all(np.isnan(errors)):
         return
-    row = int(np.nanargmax(errors))
-    column = result.least_stable[row]
-    shown = Units.of("rpm")
-    heard = shown.frequencies(result.frequencies_inertial[row, column])
-    motion = f"the least stable motion ({result.whirl[row, column]}, {heard:.4g} Hz)"
-    speed = shown.speeds(result.speeds[row])
-    basis_error.warn(errors, f"{motion} at {speed:.5g} rpm", model, accuracy)
+    row, shown = int(np.nanargmax(errors)), Units.of("rpm")
+    at = row, result.least_stable[row]
+    heard, speed = shown.frequencies(result.frequencies_inertial[at]), result.speeds[row]
+    motion = f"the least stable motion ({result.whirl[at]}, {heard:.4g} Hz)"
+    basis_error.warn(errors, f"{motion} at {shown.speeds(speed):.5g} rpm", model, accuracy)

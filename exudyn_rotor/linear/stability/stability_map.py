@@ -12,26 +12,15 @@ from numpy.typing import ArrayLike
 from tqdm import tqdm
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.calls import one_thread
 from exudyn_rotor.checks import ascending
 from exudyn_rotor.linear.modal import basis_error
-from exudyn_rotor.linear.modal.whirl import (
-    UNKNOWN,
-    WHIRLS,
-    Content,
-    Named,
-    damping_of,
-    families,
-)
+from exudyn_rotor.linear.modal.whirl import UNKNOWN, WHIRLS, Content, families
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_structural_damping
 from exudyn_rotor.linear.model.linear_model import LinearModel, warn_of_refused
-from exudyn_rotor.linear.over import NOT_KNOWN, motions_in
-from exudyn_rotor.linear.stability.stability import (
-    WHAT,
-    check_options,
-    least_stable_of,
-)
+from exudyn_rotor.linear.over import NOT_KNOWN, basis_column, motions_in
+from exudyn_rotor.linear.stability.stability import WHAT, check_options, of_motions
 from exudyn_rotor.results import Result, numbers, storable, words
+from exudyn_rotor.solvers.factor import one_thread
 from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:
@@ -51,29 +40,31 @@ class StabilityMap(Result):
     growth : ndarray, shape (a, b)
         Largest real part of the exponents [1/s], 0 where a free motion is neutral.
     stable : ndarray of bool, shape (a, b)
+    frequencies_inertial : ndarray, shape (a, b)
+        Of the least stable motion that is not neutral, seen from outside [rad/s].
+    whirl_codes, nodal_diameters : ndarray of int, shape (a, b)
+        Of that motion, as those of :class:`Campbell`; see :attr:`whirl` and :attr:`families`.
+    log_decrement : ndarray, shape (a, b)
+        Of that motion; NaN where it does not oscillate.
     labels : tuple of str
         Names of x and y.
     basis_errors : ndarray, shape (a, b), or None
         Estimated relative error of the least stable motion by the basis of a reduced rotor, as
         :attr:`Stability.basis_errors`, at the corners and in the middle; NaN elsewhere, None where
         nothing is known.
-    frequencies_inertial : ndarray, shape (a, b), or None
-        Of the least stable motion that is not neutral, seen from outside [rad/s].
-    whirl_codes, nodal_diameters : ndarray of int, shape (a, b), or None
-        Of that motion, as those of :class:`Campbell`; see :attr:`whirl` and :attr:`families`.
-    log_decrement : ndarray, shape (a, b), or None
-        Of that motion; NaN where it does not oscillate.
 
     Examples
     --------
     >>> from exudyn_rotor import StabilityMap
-    >>> stable = [[True], [False]]
-    >>> result = StabilityMap([1.0, 2.0], [10.0], [[-0.5], [0.5]], stable, ("c", "speed"))
-    >>> print(result.table())
+    >>> motion = {"frequencies_inertial": [[60.0], [70.0]], "log_decrement": [[0.05], [-0.04]]}
+    >>> motion |= {"whirl_codes": [[0], [0]], "nodal_diameters": [[1], [1]]}
+    >>> given = {"x": [1.0, 2.0], "y": [10.0], "growth": [[-0.5], [0.5]], "labels": ("c", "speed")}
+    >>> print(StabilityMap(stable=[[True], [False]], **given, **motion).table())
     growth [1/s]; columns: speed
                            c           10
                            1         -0.5
                            2          0.5*
+    least stable: lateral motion, 0.5 1/s at (2, 10), 11.141 Hz, forward, log decrement -0.04
     error of the basis: not known
     """
 
@@ -81,32 +72,22 @@ class StabilityMap(Result):
     y: np.ndarray = numbers("y")
     growth: np.ndarray = numbers("x", "y", finite=False)
     stable: np.ndarray = numbers("x", "y", dtype=bool)
+    frequencies_inertial: np.ndarray = numbers("x", "y", finite=False)
+    whirl_codes: np.ndarray = numbers("x", "y", dtype=int, least=0, most=len(WHIRLS) - 1)
+    nodal_diameters: np.ndarray = numbers("x", "y", dtype=int, least=-1)
+    log_decrement: np.ndarray = numbers("x", "y", finite=False)
     labels: tuple[str, ...] = words(2, default=("x", "y"))
     basis_errors: np.ndarray | None = numbers("x", "y", finite=False, optional=True)
-    frequencies_inertial: np.ndarray | None = numbers("x", "y", finite=False, optional=True)
-    whirl_codes: np.ndarray | None = numbers(
-        "x", "y", dtype=int, least=0, most=len(WHIRLS) - 1, optional=True
-    )
-    nodal_diameters: np.ndarray | None = numbers("x", "y", dtype=int, least=-1, optional=True)
-    log_decrement: np.ndarray | None = numbers("x", "y", finite=False, optional=True)
 
     @property
     def whirl(self) -> np.ndarray:
         """Sense of the least stable motion at each point, shape (a, b); as Campbell.whirl."""
-        return np.array(WHIRLS)[self._codes]
+        return np.array(WHIRLS)[self.whirl_codes]
 
     @property
     def families(self) -> np.ndarray:
         """Kind of the least stable motion at each point, shape (a, b); as Stability.families."""
-        diameters = np.full(self.growth.shape, -1)
-        return families(
-            self._codes, diameters if self.nodal_diameters is None else self.nodal_diameters
-        )
-
-    @property
-    def _codes(self) -> np.ndarray:
-        unknown = np.full(self.growth.shape, UNKNOWN)
-        return unknown if self.whirl_codes is None else self.whirl_codes
+        return families(self.whirl_codes, self.nodal_diameters)
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns, one row for each point.
@@ -115,21 +96,16 @@ class StabilityMap(Result):
         """
         shown = Units.of(units)
         first, second = self.labels
-        unknown = np.full(self.growth.shape, np.nan)
-        heard, decrement, errors = (
-            unknown if each is None else each
-            for each in (self.frequencies_inertial, self.log_decrement, self.basis_errors)
-        )
         return {
             first: np.repeat(self.x, len(self.y)),
             second: np.tile(self.y, len(self.x)),
             "growth [1/s]": self.growth.ravel(),
             "stable": self.stable.ravel(),
-            f"inertial [{shown.frequency}]": shown.frequencies(heard).ravel(),
-            "log decrement": decrement.ravel(),
+            f"inertial [{shown.frequency}]": shown.frequencies(self.frequencies_inertial).ravel(),
+            "log decrement": self.log_decrement.ravel(),
             "whirl": self.whirl.ravel(),
             "kind": self.families.ravel(),
-            "basis error": errors.ravel(),
+            **basis_column(self.basis_errors, self.growth.size),
         }
 
     def table(self) -> str:
@@ -150,7 +126,7 @@ class StabilityMap(Result):
 
     def _worst_line(self) -> list[str]:
         """Return which motion grows most, where that is known."""
-        if self.whirl_codes is None or np.all(np.isnan(self.growth)):
+        if np.all(np.isnan(self.growth)):
             return []
         at = np.unravel_index(np.nanargmax(self.growth), self.growth.shape)
         parts = [f"{self.growth[at]:.4g} 1/s at ({self.x[at[0]]:.5g}, {self.y[at[1]]:.5g})"]
@@ -165,7 +141,7 @@ class StabilityMap(Result):
     ) -> Axes:
         """Draw the growth as a contour plot, with the limit of stability as a line.
 
-        Where one parameter has one value, as a curve over the other one.
+        Where one parameter has one value, as coloured points.
 
         Parameters
         ----------
@@ -178,13 +154,20 @@ class StabilityMap(Result):
             _is_geometric(values) if given is None else checks.flag(given, name)
             for values, given, name in ((self.x, log_x, "log_x"), (self.y, log_y, "log_y"))
         ]
-        if min(self.growth.shape) == 1:
-            return self._plot_curve(ax, logarithmic)
-        from matplotlib.ticker import MaxNLocator
-
+        ax.set_xscale("log" if logarithmic[0] else "linear")
+        ax.set_yscale("log" if logarithmic[1] else "linear")
+        ax.set_xlabel(self.labels[0])
+        ax.set_ylabel(self.labels[1])
         neutral = np.where(self.stable, np.minimum(self.growth, 0.0), self.growth)
         growth = np.ma.masked_invalid(neutral).T
         largest = np.abs(growth).max() or 1.0
+        if min(self.growth.shape) == 1:  # as points, for contours need two values of each
+            places = np.meshgrid(self.x, self.y)
+            filled = ax.scatter(*places, c=growth, cmap="RdBu_r", vmin=-largest, vmax=largest)
+            ax.figure.colorbar(filled, ax=ax, label="growth [1/s]")
+            return ax
+        from matplotlib.ticker import MaxNLocator
+
         levels = MaxNLocator(20, symmetric=True).tick_values(-largest, largest)
         filled = ax.contourf(self.x, self.y, growth, levels, cmap="RdBu_r")
         ax.figure.colorbar(filled, ax=ax, label="growth [1/s]")
@@ -192,27 +175,6 @@ class StabilityMap(Result):
             verdict = np.where(self.stable, -1.0, 1.0).T
             crossing = growth if growth.min() < -1e-6 * largest else verdict
             ax.contour(self.x, self.y, crossing, [0.0], colors="black", linewidths=1.2)
-        ax.set_xscale("log" if logarithmic[0] else "linear")
-        ax.set_yscale("log" if logarithmic[1] else "linear")
-        ax.set_xlabel(self.labels[0])
-        ax.set_ylabel(self.labels[1])
-        return ax
-
-    def _plot_curve(self, ax: Axes, logarithmic: list[bool]) -> Axes:
-        """Draw the growth over one parameter, at the one value of the other."""
-        along = int(len(self.y) > 1)
-        values, fixed = (self.y, self.x) if along else (self.x, self.y)
-        growth, unstable = self.growth.ravel(), (~self.stable & np.isfinite(self.growth)).ravel()
-        ax.axhline(0.0, color="0.6", lw=0.8)
-        ax.plot(values, growth, ".-", color=plotting.COLORS[0])
-        if unstable.any():
-            marks = {"color": plotting.COLORS[1], "label": "unstable"}
-            ax.plot(values[unstable], growth[unstable], "x", **marks)
-            ax.legend()
-        ax.set_xscale("log" if logarithmic[along] else "linear")
-        ax.set_title(f"{self.labels[1 - along]} = {fixed[0]:g}")
-        ax.set_xlabel(self.labels[along])
-        ax.set_ylabel("growth [1/s]")
         return ax
 
 
@@ -231,7 +193,6 @@ def stability_map(
     y: ArrayLike,
     *,
     labels: tuple[str, str] = ("x", "y"),
-    method: str = "auto",
     tolerance: float = 1e-6,
     accuracy: float | None = 1e-2,
     progress: bool = False,
@@ -248,7 +209,7 @@ def stability_map(
         Ascending.
     labels : tuple of str
         Names of x and y with units, for the plot.
-    method, tolerance, progress
+    tolerance, progress
         See :func:`stability`.
     accuracy : float, optional
         Relative error of the growth by the basis of a reduced rotor above which a warning is given,
@@ -277,7 +238,7 @@ def stability_map(
            [ True, False]])
     """
     checks.function(build, "build")
-    check_options(method, tolerance, accuracy)
+    check_options(tolerance, accuracy)
     checks.flag(progress, "progress")
     names = checks.labels(labels, "labels")
     if len(names) != 2:
@@ -302,39 +263,39 @@ def stability_map(
     lossy = next((model for model in models if model.has_structural_damping), None)
     if lossy is not None:
         warn_of_structural_damping(lossy, WHAT)
-    made = {name: np.full(shape, np.nan) for name in ("growth", "least", "inertial", "errors")}
+    growth, inertial, decrement, errors = np.full((4, *shape), np.nan)
     stable, codes = np.zeros(shape, dtype=bool), np.full(shape, UNKNOWN, dtype=np.int64)
     diameters, worst = np.full(shape, -1, dtype=np.int64), (0.0, "", None)
     for points in alike.values():
-        places, model = tuple(np.array([one.at for one in points]).T), points[0].model
+        model, content = points[0].model, Content.of(points[0].model)
         speeds = np.array([one.speed for one in points])
         stack = model.at_points(speeds, [one.coefficients for one in points])
-        motions = motions_in(model, stack, method, tolerance, held=True, least_stable=True)
-        named = Content.of(model).named(motions)
-        which = least_stable_of(named.motions)[:, None]
-        found = named.columns(which)
-        made["growth"][places] = np.fmax.reduce(motions.values.real, axis=1, initial=np.nan)
-        stable[places] = made["growth"][places] <= motions.bounds
-        made["least"][places] = found.motions.values[:, 0].real
-        made["inertial"][places], codes[places] = found.inertial[:, 0], found.codes[:, 0]
-        diameters[places] = found.diameters[:, 0]
+        motions = motions_in(model, stack, "auto", tolerance, held=True, least_stable=True)
+        found = of_motions(model, content, motions, None)
+        rows = np.arange(len(points)), found.least_stable
+        places = tuple(np.array([one.at for one in points]).T)
+        growth[places], stable[places] = found.growth, found.stable
+        inertial[places] = found.frequencies_inertial[rows]
+        decrement[places] = found.log_decrement[rows]
+        codes[places], diameters[places] = found.whirl_codes[rows], found.nodal_diameters[rows]
         for row, one in enumerate(points):
             if one.at in judged and basis_error.is_known(one.model, accuracy):
-                error = _basis_error(one.model, named.rows([row]), which[[row]])
-                made["errors"][one.at] = error
-                worst = max(worst, (np.nan_to_num(error), one.shown, one.model), key=itemgetter(0))
+                alone = of_motions(one.model, content, motions[[row]], accuracy)
+                errors[one.at] = alone.basis_errors[0]
+                worst = max(worst, (np.nan_to_num(errors[one.at]), one.shown, one.model),
+                            key=itemgetter(0))  # fmt: skip
     if worst[2] is not None:
         basis_error.warn(worst[0], f"the least stable motion at {worst[1]}", worst[2], accuracy)
     return StabilityMap(
         *grid,
-        made["growth"],
+        growth,
         stable,
+        inertial,
+        codes,
+        diameters,
+        decrement,
         names,
-        basis_errors=None if np.all(np.isnan(made["errors"])) else made["errors"],
-        frequencies_inertial=made["inertial"],
-        whirl_codes=codes,
-        nodal_diameters=diameters,
-        log_decrement=damping_of(made["least"], made["inertial"])[1],
+        basis_errors=None if np.all(np.isnan(errors)) else errors,
     )
 
 
@@ -357,12 +318,3 @@ def _built(build: Callable, point: tuple[float, float]) -> tuple[LinearModel, fl
         )
     speed = checks.number(built[1], "build: the speed it returns", "rad/s", least=0.0)
     return linear_model(built[0]), speed
-
-
-def _basis_error(model: LinearModel, named: Named, which: np.ndarray) -> float:
-    """Return the relative error of the least stable motion; NaN where it is not found again."""
-    shift = np.take_along_axis(basis_error.shifts_over(model, named, held=True), which, 1)
-    growth, inertial = (
-        np.take_along_axis(X, which, 1) for X in (named.motions.values.real, named.inertial)
-    )
-    return float(basis_error.relative_errors(shift, growth, inertial, named.motions.speeds)[0, 0])

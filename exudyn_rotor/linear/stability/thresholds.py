@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,10 +20,9 @@ from scipy.optimize import brentq, minimize_scalar
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.support import NoCoefficientsError
-from exudyn_rotor.calls import one_thread
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.modal import basis_error
-from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, Named, families
+from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, families
 from exudyn_rotor.linear.model.build import (
     Target,
     linear_model,
@@ -37,6 +36,7 @@ from exudyn_rotor.linear.over import (
     motions_in,
     table_lines,
 )
+from exudyn_rotor.linear.solve.motions import Motions
 from exudyn_rotor.linear.stability.stability import (
     WHAT,
     check_options,
@@ -44,6 +44,7 @@ from exudyn_rotor.linear.stability.stability import (
 )
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.results import Result, numbers, storable
+from exudyn_rotor.solvers.factor import one_thread
 from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:
@@ -53,15 +54,10 @@ _SMALL = 0.1  # share of the range that a limit counts as at least
 _SPEED = "speed [rad/s]"  # how the names of parameters end that are shown in other units
 Supports = Sequence[Given] | Given
 _ROOT = 1e-8  # of the largest parameter: error of a limit
-_INNER, _PERIODIC = 3, 2  # parts of the interval between two samples; of periodic equations
+_INNER, _TURNING = 3, 2  # parts of the interval between two samples; in axes of the rotor
 _PEAKS, _STEPS = 6, 6  # peaks that are looked at, each with so many values
 _ASIDE = 1e-4  # of the range, or half of an unstable one: where the growing motion is named
 _NONE = NoCoefficientsError, UnconvergedError
-
-
-def limit_errors(shifts: np.ndarray, values: np.ndarray, span: float) -> np.ndarray:
-    """Return relative errors of limits (t,) found in a range; NaN where they are not known."""
-    return np.abs(shifts) / np.maximum(np.abs(values), _SMALL * span)
 
 
 @storable
@@ -86,8 +82,8 @@ class StabilityThresholds(Result):
         Name of the parameter with its unit.
     basis_shifts : ndarray, shape (t,), or None
         Estimated ``p − p_reduced`` with the limit p of the full model, to first order: the growth
-        that the motion gains by what the basis leaves out, over its slope. NaN where the motion is
-        not found again, None where nothing is known.
+        at the limit with the shapes that the basis leaves out, over its slope. None where nothing
+        is known.
 
     Examples
     --------
@@ -126,7 +122,8 @@ class StabilityThresholds(Result):
         """
         if self.basis_shifts is None:
             return None
-        return limit_errors(self.basis_shifts, self.values, self.high - self.low)
+        least = np.maximum(np.abs(self.values), _SMALL * (self.high - self.low))
+        return np.abs(self.basis_shifts) / least
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns; `units` are those of :meth:`table`."""
@@ -154,7 +151,8 @@ class StabilityThresholds(Result):
         """
         lines = table_lines(self.columns(units))
         if not self.values.size:
-            lines.append(self._without_limit)
+            state = "unstable" if self.unstable_at_low else "stable"
+            lines.append(f"{state} in the whole range")
         return "\n".join(lines if self.basis_errors is not None else [*lines, NOT_KNOWN])
 
     def _parameter(self, shown: Units) -> tuple[str, float]:
@@ -162,10 +160,6 @@ class StabilityThresholds(Result):
         if not self.label.endswith(_SPEED):
             return self.label, 1.0
         return f"{self.label.removesuffix(_SPEED)}speed [{shown.speed}]", shown.speeds(1.0)
-
-    @property
-    def _without_limit(self) -> str:
-        return f"{'unstable' if self.unstable_at_low else 'stable'} in the whole range"
 
     def plot(self, ax: Axes | None = None, *, units: str = "rpm") -> Axes:
         """Draw the frequencies of the modes at their thresholds; unstable ranges are shaded.
@@ -183,52 +177,44 @@ class StabilityThresholds(Result):
         ax.set_xlabel(label)
         ax.set_ylabel(f"inertial frequency of the mode [{shown.frequency}]")
         ax.grid(alpha=0.3)
-        if not len(self.values):
-            ax.set_title(self._without_limit, fontsize="medium")
         return ax
 
 
-class _Growth:
-    """Growth of the least stable motion over a parameter; values are computed once.
+class _Margin:
+    """By how much the least stable motion grows beyond rounding [1/s], over a parameter.
 
-    Made from a function that gives the model and the spin speed at a point, and options of
-    :func:`motions_in`. Where the parameter is the speed there is one model at all points.
+    Of motions that are not neutral; less the bound where all are. Values are computed once, NaN
+    where there are no coefficients.
     """
 
     def __init__(
-        self, model_at: Callable[[float], tuple[LinearModel, float]], is_speed: bool, **given
+        self, model_at: Callable[[float], tuple[LinearModel, float]], tolerance: float
     ) -> None:
-        self.model_at, self.is_speed, self.given = model_at, is_speed, given
+        self.model_at, self.tolerance = model_at, tolerance
         self.known: dict[float, float] = {}
 
     def at(self, points: Sequence[float]) -> None:
-        """Compute the margin at points; NaN where there are no coefficients, with one warning."""
-        points = [float(point) for point in points]
-        if self.is_speed:
-            model = self.model_at(points[0])[0]
-            self.known.update(zip(points, self._margins(model, points), strict=True))
-            return
+        """Compute the margin at points, with one warning where there are no coefficients."""
         refused = []
         for point in points:
             try:
-                model, speed = self.model_at(point)
-                self.known[point] = self._margins(model, [speed])[0]
+                self.known[point] = self.of(*self.model_at(point))[0]
             except _NONE as error:
                 self.known[point] = np.nan
                 refused.append((f"{point:.5g}", error))
         warn_of_refused(refused, len(points))
 
-    def _margins(self, model: LinearModel, speeds: Sequence[float]) -> list[float]:
-        """Return by how much the least stable motion grows beyond its bound [1/s]; NaN for none.
-
-        Of motions that are not neutral; less the bound where all are.
-        """
-        stack = model.at_all(speeds)
-        how = {"held": True, "least_stable": True, "warns": False}
-        found = motions_in(model, stack, **self.given, **how)
+    def of(self, model: LinearModel, *speeds: float) -> list[float]:
+        """Return the margin of a model at speeds."""
+        found = self.motions(model, *speeds)
         moves = np.abs(found.values.real) > found.bounds[:, None]
         growth = np.where(moves, found.values.real, -np.inf).max(axis=1, initial=-np.inf)
         return (np.where(np.any(moves, axis=1), growth, 0.0) - found.bounds).tolist()
+
+    def motions(self, model: LinearModel, *speeds: float) -> Motions:
+        """Return the motions of a model at speeds, of which the least stable one is right."""
+        how = {"held": True, "least_stable": True, "warns": False}
+        return motions_in(model, model.at_all(speeds), "auto", self.tolerance, **how)
 
     def __call__(self, point: float) -> float:
         """Return the margin at a point between two that have one; negative where it has none."""
@@ -241,40 +227,45 @@ class _Growth:
         return -1.0 if np.isnan(margin) else margin
 
     @property
-    def course(self) -> tuple[np.ndarray, np.ndarray]:
+    def course(self) -> tuple[list[float], list[float]]:
         """Points with a margin, ascending, and the margins."""
-        points = np.array(sorted(p for p, margin in self.known.items() if not np.isnan(margin)))
-        return points, np.array([self.known[p] for p in points.tolist()])
+        points = sorted(p for p, margin in self.known.items() if not np.isnan(margin))
+        return points, [self.known[p] for p in points]
+
+    def look_at_peaks(self) -> None:
+        """Look whether a margin that comes near zero between points crosses it."""
+        points, margins = self.course
+        candidates = []
+        for i, margin in enumerate(margins):
+            sign = 1.0 if margin > 0.0 else -1.0  # a peak below zero, or a gap above
+            near = [j for j in (i - 1, i + 1) if 0 <= j < len(points)]
+            away = [sign * (margins[j] - margin) for j in near]
+            if min(away) >= 0.0 and 0.0 < sign * margin < max(away):
+                candidates.append((sign * margin, sign, (points[near[0]], points[near[-1]])))
+        for _, sign, ends in sorted(candidates)[:_PEAKS]:
+            minimize_scalar(
+                lambda p, sign=sign: sign * self(float(p)), bounds=ends, method="bounded",
+                options={"maxiter": _STEPS},
+            )  # fmt: skip
 
     def changes(self, root: float) -> list[tuple[float, bool]]:
         """Return each limit between neighbouring points, and whether it is unstable above."""
-        points, margins = self.course
         found = []
-        for (a, b), (low, high) in zip(
-            pairwise(points.tolist()), pairwise(margins.tolist()), strict=True
-        ):
+        for (a, low), (b, high) in pairwise(zip(*self.course, strict=True)):
             if (low > 0.0) != (high > 0.0):
                 # −0.0 is stable, as brentq needs a sign
                 limit = brentq(lambda p: self(p) or -1e-300, a, b, xtol=root, rtol=1e-15)
                 found.append((float(limit), high > 0.0))
         return found
 
-    def look_at_peaks(self) -> None:
-        """Look whether a margin that comes near zero between points crosses it."""
-        points, margins = self.course
-        candidates = []
-        for i in range(len(points)):
-            sign = 1.0 if margins[i] > 0.0 else -1.0  # a peak below zero, or a gap above
-            near = [j for j in (i - 1, i + 1) if 0 <= j < len(points)]
-            away = [sign * (margins[j] - margins[i]) for j in near]
-            if min(away) >= 0.0 and 0.0 < sign * margins[i] < max(away):
-                ends = float(points[max(i - 1, 0)]), float(points[min(i + 1, len(points) - 1)])
-                candidates.append((sign * margins[i], sign, ends))
-        for _, sign, ends in sorted(candidates)[:_PEAKS]:
-            minimize_scalar(
-                lambda p, sign=sign: sign * self(float(p)), bounds=ends, method="bounded",
-                options={"maxiter": _STEPS},
-            )  # fmt: skip
+
+class _MarginOverSpeed(_Margin):
+    """The margin of one model over the spin speed."""
+
+    def at(self, points: Sequence[float]) -> None:
+        """Compute the margin at points, with one warning where there are no coefficients."""
+        model = self.model_at(points[0])[0]
+        self.known.update(zip(map(float, points), self.of(model, *points), strict=True))
 
 
 def stability_threshold(
@@ -289,15 +280,14 @@ def stability_threshold(
     body: RotorBody | Sequence[RotorBody] | None = None,
     stiffening: str = "auto",
     axes: str = "auto",
-    method: str = "auto",
     tolerance: float = 1e-6,
     accuracy: float | None = 1e-2,
 ) -> StabilityThresholds:
     """Find the limits of stability over the spin speed or another parameter.
 
     Each is found to 1e-8 of the largest parameter, with the motion that grows there. The range is
-    looked at in `samples` intervals with three steps each (two where equations are periodic, which
-    takes a hundred times longer), and closer where the growth has a peak
+    looked at in `samples` intervals with three steps each (two of an uneven rotor, whose equations
+    may be periodic, which takes a hundred times longer), and closer where the growth has a peak
     near zero. A range that is narrower than a step can be missed, as one of a parametric resonance
     with little damping: take more `samples` where that matters.
 
@@ -316,7 +306,7 @@ def stability_threshold(
         coefficients have kinks, are samples, too.
     label : str, optional
         Name of the parameter with its unit.
-    body, stiffening, axes, method, tolerance
+    body, stiffening, axes, tolerance
         See :func:`stability`.
     accuracy : float, optional
         Relative error of a limit by the basis of a reduced rotor, estimated, above which a warning
@@ -350,7 +340,7 @@ def stability_threshold(
     low = checks.number(low, "low")
     high = checks.number(high, "high", above=low)
     samples = checks.count(samples, "samples", least=2)
-    check_options(method, tolerance, accuracy)
+    check_options(tolerance, accuracy)
     is_speed = not callable(target) and not callable(supports)
     if label is None:
         label = "speed [rad/s]" if is_speed else "parameter"
@@ -361,50 +351,84 @@ def stability_threshold(
         if speed is not None:
             raise ValueError("speed: is the parameter, from low to high; leave it out")
         model = _checked_model(target, high, supports=supports, **made)
-        kinks = model.table_speeds
+        margin, kinks = (
+            _MarginOverSpeed(lambda point: (model, point), tolerance),
+            model.table_speeds,
+        )
     else:
-        speed = _checked_speed(target, supports, speed)
+        if speed is None:
+            raise ValueError(
+                "speed: needs the spin speed [rad/s], since target or supports, a function, says "
+                "that it is not the parameter"
+            )
+        speed = checks.number(speed, "speed", "rad/s", least=0.0)
 
-        kinks = np.zeros(0)
+        def model_at(point: float) -> tuple[LinearModel, float]:
+            chosen = target(point) if callable(target) else target
+            held = supports(point) if callable(supports) else supports
+            return linear_model(chosen, supports=held, **made), speed
 
-    def model_at(point: float) -> tuple[LinearModel, float]:
-        if is_speed:
-            return model, point
-        chosen = target(point) if callable(target) else target
-        held = supports(point) if callable(supports) else supports
-        return linear_model(chosen, supports=held, **made), speed
-
-    growth = _Growth(model_at, is_speed, method=method, tolerance=tolerance)
-    parts = _INNER if _is_constant(*model_at(0.5 * (low + high))) else _PERIODIC
+        margin, kinks = _Margin(model_at, tolerance), np.zeros(0)
+        model = model_at(0.5 * (low + high))[0]
+    parts = _INNER if model.axes == "inertial" else _TURNING
     points = np.linspace(low, high, parts * samples + 1)
     points = np.union1d(points, kinks[(kinks > low) & (kinks < high)])
-    return _found(growth, points, label, accuracy)
+    return _found(margin, points.tolist(), label, accuracy)
 
 
 @one_thread()
 def _found(
-    growth: _Growth, points: np.ndarray, label: str, accuracy: float | None
+    margin: _Margin, points: list[float], label: str, accuracy: float | None
 ) -> StabilityThresholds:
     """Return the limits between points."""
-    growth.at(points)
-    growth.look_at_peaks()
-    low, high = growth.course[0][[0, -1]].tolist()
-    found = growth.changes(_ROOT * max(abs(low), abs(high)))
-    limits = _limits(growth, found, high - low, accuracy)
-    _warn_of_basis(limits, high - low, label, accuracy)
-    shifts = [limit.shift for limit in limits]
-    return StabilityThresholds(
-        values=[limit.value for limit in limits],
-        onset=np.array([limit.onset for limit in limits], dtype=bool),
-        frequencies_inertial=[limit.name[0] for limit in limits],
-        whirl_codes=np.array([limit.name[1] for limit in limits], dtype=np.int64),
-        nodal_diameters=np.array([limit.name[2] for limit in limits], dtype=np.int64),
+    margin.at(points)
+    margin.look_at_peaks()
+    points, margins = margin.course
+    low, high = points[0], points[-1]
+    found = margin.changes(_ROOT * max(abs(low), abs(high)))
+    limits = [_limit(margin, found, place, high - low, accuracy) for place in range(len(found))]
+    heard, codes, diameters, shifts = zip(*limits, strict=True) if limits else ((),) * 4
+    result = StabilityThresholds(
+        values=[value for value, _ in found],
+        onset=np.array([onset for _, onset in found], dtype=bool),
+        frequencies_inertial=np.array(heard),
+        whirl_codes=np.array(codes, dtype=np.int64),
+        nodal_diameters=np.array(diameters, dtype=np.int64),
         low=low,
         high=high,
-        unstable_at_low=bool(growth.course[1][0] > 0.0),
+        unstable_at_low=bool(margins[0] > 0.0),
         label=label,
-        basis_shifts=None if accuracy is None or None in shifts else np.array(shifts, dtype=float),
+        basis_shifts=None if accuracy is None or None in shifts else np.array(shifts),
     )
+    if found and result.basis_shifts is not None:
+        worst = float(result.values[np.argmax(result.basis_errors)])
+        what = f"the limit of stability at {worst:.5g}, {label},"
+        basis_error.warn(result.basis_errors, what, margin.model_at(worst)[0], accuracy)
+    return result
+
+
+def _limit(
+    margin: _Margin,
+    found: list[tuple[float, bool]],
+    place: int,
+    span: float,
+    accuracy: float | None,
+) -> tuple[float, int, int, float | None]:
+    """Return frequency, whirl and n of what grows within the unstable range beside a limit.
+
+    And how far the limit moves by what the basis lacks; None where that is not known.
+    """
+    ends, (value, onset) = [-np.inf, *(value for value, _ in found), np.inf], found[place]
+    width = ends[place + 2 if onset else place] - value
+    aside = np.sign(width) * min(_ASIDE * span, 0.5 * abs(width))
+    model, speed = margin.model_at(value + aside)
+    named = Content.of(model).named(margin.motions(model, speed))
+    which = 0, int(least_stable_of(named.motions)[0])
+    slope, shift = named.motions.values[which].real / aside, None
+    if basis_error.is_known(model, accuracy):
+        there, speed = margin.model_at(value)
+        shift = 0.0 if model.is_full else float(-margin.of(there.richer, speed)[0] / slope)
+    return named.inertial[which], named.codes[which], named.diameters[which], shift
 
 
 def unstable_ranges(
@@ -415,7 +439,6 @@ def unstable_ranges(
     body: RotorBody | Sequence[RotorBody] | None = None,
     stiffening: str = "auto",
     axes: str = "auto",
-    method: str = "auto",
     tolerance: float = 1e-6,
     accuracy: float | None = 1e-2,
 ) -> np.ndarray:
@@ -440,20 +463,12 @@ def unstable_ranges(
     array([[300., 400.]])
     """
     values = checks.ascending_from_zero(speeds, "speeds")
-    check_options(method, tolerance, accuracy)
+    check_options(tolerance, accuracy)
     model = _checked_model(
         target, values[-1], supports=supports, body=body, stiffening=stiffening, axes=axes
     )
-    growth = _Growth(lambda speed: (model, speed), True, method=method, tolerance=tolerance)
-    return _found(growth, values, "speed [rad/s]", accuracy).ranges
-
-
-def _is_constant(model: LinearModel, speed: float) -> bool:
-    """Return whether equations are constant, where they are known."""
-    try:
-        return model.at(speed).is_constant
-    except _NONE:
-        return True
+    margin = _MarginOverSpeed(lambda speed: (model, speed), tolerance)
+    return _found(margin, values.tolist(), "speed [rad/s]", accuracy).ranges
 
 
 def _checked_model(target: Target, fastest: float, **made) -> LinearModel:
@@ -462,72 +477,3 @@ def _checked_model(target: Target, fastest: float, **made) -> LinearModel:
     warn_of_structural_damping(model, WHAT)
     warn_of_left_out_stiffening(model, fastest)
     return model
-
-
-def _checked_speed(target: object, supports: object, speed: float | None) -> float:
-    """Return the spin speed where it is not the parameter."""
-    if speed is None:
-        name, given = ("target", target) if callable(target) else ("supports", supports)
-        raise ValueError(
-            f"speed: needs the spin speed [rad/s], since {name}: a function, "
-            f"{checks.shown(given)}, says that it is not the parameter"
-        )
-    return checks.number(speed, "speed", "rad/s", least=0.0)
-
-
-class _Limit(NamedTuple):
-    """A limit of stability, and the motion that grows beside it.
-
-    `name` is inertial frequency, whirl code and n; `shift` as one of
-    :attr:`StabilityThresholds.basis_shifts`, None where nothing is known.
-    """
-
-    value: float
-    onset: bool
-    name: tuple[float, int, int]
-    shift: float | None
-    model: LinearModel
-
-
-def _limits(
-    growth: _Growth, found: list[tuple[float, bool]], span: float, accuracy: float | None
-) -> list[_Limit]:
-    """Return what grows beside each limit, within its unstable range however narrow that is."""
-    ends, limits = [-np.inf, *(value for value, _ in found), np.inf], []
-    contents: dict[int, Content] = {}
-    for place, (value, onset) in enumerate(found, start=1):
-        width = ends[place + 1 if onset else place - 1] - value
-        beside = value + np.sign(width) * min(_ASIDE * span, 0.5 * abs(width))
-        model, speed = growth.model_at(beside)
-        how = {"held": True, "least_stable": True, "warns": False}
-        motions = motions_in(model, model.at_all([speed]), **growth.given, **how)
-        if id(model) not in contents:
-            contents[id(model)] = Content.of(model)
-        named = contents[id(model)].named(motions)
-        which = int(least_stable_of(motions)[0])
-        name = tuple(each[0, which] for each in (named.inertial, named.codes, named.diameters))
-        shift = None
-        if basis_error.is_known(model, accuracy):
-            slope = (growth(beside) - growth(value)) / (beside - value)
-            shift = _shift(model, named, which, slope if onset else min(slope, 0.0))
-        limits.append(_Limit(value, onset, name, shift, model))
-    return limits
-
-
-def _shift(model: LinearModel, named: Named, which: int, slope: float) -> float:
-    """Return how far a limit moves by the shift of the growth over its slope."""
-    if model.is_full:
-        return 0.0
-    shift = basis_error.shifts_over(model, named, held=True)[0, which].real
-    return float(-shift / slope) if slope else np.nan
-
-
-def _warn_of_basis(limits: list[_Limit], span: float, label: str, accuracy: float | None) -> None:
-    """Warn where the basis leaves out too much for the worst of the limits."""
-    if accuracy is None or not limits or any(limit.shift is None for limit in limits):
-        return
-    shifts, values = (np.array([each[i] for each in limits]) for i in (3, 0))
-    errors = np.nan_to_num(limit_errors(shifts, values, span))
-    worst = limits[int(np.argmax(errors))]
-    what = f"the limit of stability at {worst.value:.5g}, {label},"
-    basis_error.warn(errors, what, worst.model, accuracy)

@@ -13,9 +13,12 @@ from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.full.full_equations import sparse_object, spin_coupling_object
 from exudyn_rotor.multibody.full.ties import Ties, add_ties
 from exudyn_rotor.multibody.rotor.frame import add_constraints, driving_force
-from exudyn_rotor.multibody.rotor.markers import add_weight, flexible_body
 from exudyn_rotor.multibody.rotor.plan import Plan
-from exudyn_rotor.multibody.rotor.rotor_items import add_interface_markers
+from exudyn_rotor.multibody.rotor.rotor_items import (
+    add_interface_markers,
+    add_weight,
+    flexible_body,
+)
 from exudyn_rotor.solid.surface import flat_triangles
 from exudyn_rotor.theory.full_motion import principal
 

@@ -14,15 +14,15 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.full.ties import Ties, add_ties
 from exudyn_rotor.multibody.rotor import sensors
-from exudyn_rotor.multibody.rotor.markers import (
+from exudyn_rotor.multibody.rotor.record import Record
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, SceneBody
+from exudyn_rotor.multibody.rotor.rotor_items import (
     Carrier,
     append_nodes,
     flexible_body,
     interface_of_nodes,
 )
-from exudyn_rotor.multibody.rotor.record import Record
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, SceneBody
-from exudyn_rotor.solid.interface import Interface
+from exudyn_rotor.solid.rotor import Interface
 
 
 @dataclass(frozen=True, eq=False, repr=False)

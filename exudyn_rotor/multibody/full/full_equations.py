@@ -1,6 +1,6 @@
 """A full body's equations in Exudyn: sparse matrices, and user functions for what varies.
 
-As in :mod:`exudyn_rotor.multibody.rotor.equations`, Exudyn evaluates what is linear with constant
+As for a reduced rotor, Exudyn evaluates what is linear with constant
 coefficients. Of a mass matrix that varies, one row and column do, that of the spin; they stand in
 an object of their own, so that the rotor's matrices are handed over once.
 """
@@ -15,8 +15,7 @@ import scipy.sparse as sp
 from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 
 from exudyn_rotor.multibody.full.ties import container, no_jacobian
-from exudyn_rotor.multibody.rotor.equations import Layout
-from exudyn_rotor.multibody.rotor.frame import LockedForce
+from exudyn_rotor.multibody.rotor.frame import Layout, LockedForce
 from exudyn_rotor.theory.full_motion import FullMotion
 
 

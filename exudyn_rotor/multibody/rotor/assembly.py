@@ -32,10 +32,15 @@ from exudyn_rotor.multibody.rotor.connections import (
     ConnectionWarning,
     lost_connections,
 )
-from exudyn_rotor.multibody.rotor.markers import Carrier, append_nodes, virtual_nodes
-from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, known_rotors
-from exudyn_rotor.solid.interface import rotation_moments
-from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.multibody.rotor.rotor_items import (
+    Carrier,
+    RotorItems,
+    append_nodes,
+    known_rotors,
+    virtual_nodes,
+)
+from exudyn_rotor.solid.rotor import rotation_moments
+from exudyn_rotor.theory.axis import skew
 
 _NEEDED = {"SuperElementPosition": 1, "SuperElementRigid": 3}  # nodes of a condensed marker
 _UNIT_SUM = 1e-12  # error of a sum of weights that is one

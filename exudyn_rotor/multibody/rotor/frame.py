@@ -266,6 +266,31 @@ def _component(motion: PrescribedMotion, index: int) -> PrescribedMotion:
     )
 
 
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """Where the unknowns of a formulation stand among the coordinates of the nodes.
+
+    Attributes
+    ----------
+    size : int
+        Number of node coordinates.
+    unknowns : ndarray of int
+        Coordinate of every unknown of the :class:`Motion`.
+    lock_mass : ndarray, shape (size,)
+        Masses of locked coordinates; zero for unknowns.
+    """
+
+    size: int
+    unknowns: np.ndarray
+    lock_mass: np.ndarray
+
+    def spread(self, matrix: np.ndarray, diagonal: np.ndarray | float = 0.0) -> np.ndarray:
+        """Return a (size, size) matrix with `matrix` on the unknowns and `diagonal` added."""
+        full = np.diag(np.broadcast_to(diagonal, self.size).astype(float))
+        full[np.ix_(self.unknowns, self.unknowns)] += matrix
+        return full
+
+
 def lock_masses(locks: Locks, size: int, inertia: np.ndarray, by_mass: bool) -> np.ndarray:
     """Return the masses (size,) of locked coordinates, zero for unknowns.
 

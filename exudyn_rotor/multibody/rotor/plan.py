@@ -11,8 +11,7 @@ from exudyn.itemInterface import NodeGenericODE2, NodeRigidBodyRxyz, VNodeRigidB
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor.equations import Layout
-from exudyn_rotor.multibody.rotor.frame import MODES, BodyFrame, Locks, lock_masses
+from exudyn_rotor.multibody.rotor.frame import MODES, BodyFrame, Layout, Locks, lock_masses
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import Selection, select_modes
 from exudyn_rotor.theory.formulation import Formulation, start_values

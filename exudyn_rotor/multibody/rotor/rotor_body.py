@@ -14,10 +14,9 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor import sensors
 from exudyn_rotor.multibody.rotor.connections import ConnectionWarning, lost_connections
-from exudyn_rotor.multibody.rotor.markers import Carrier, interface_of_nodes
 from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS
 from exudyn_rotor.multibody.rotor.record import Record, add_recording, read_record
-from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
+from exudyn_rotor.multibody.rotor.rotor_items import Carrier, RotorItems, interface_of_nodes
 from exudyn_rotor.multibody.rotor.start_state import StartState, start_from
 
 

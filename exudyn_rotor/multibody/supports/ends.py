@@ -19,11 +19,10 @@ from exudyn.utilities import (
 )
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor.markers import Carrier
-from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, carrying_rotor
+from exudyn_rotor.multibody.rotor.rotor_items import Carrier, RotorItems, carrying_rotor
 from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation, foundation_marker
 from exudyn_rotor.solid.places import SAME_PLACE, leeway, off_place
-from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.theory.axis import skew
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_rotation, axial_skew
 
 _FRAME = exudyn.OutputVariableType.Position, exudyn.OutputVariableType.RotationMatrix

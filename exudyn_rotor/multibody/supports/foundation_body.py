@@ -28,8 +28,8 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.multibody.rotor.markers import Carrier, add_weight
 from exudyn_rotor.multibody.rotor.plan import generic_node, main_system
+from exudyn_rotor.multibody.rotor.rotor_items import Carrier, add_weight
 
 _ARM = 0.1  # m, of the virtual nodes of a point; any does
 

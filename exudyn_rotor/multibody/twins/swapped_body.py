@@ -14,13 +14,15 @@ from exudyn_rotor.multibody.add_rotor import add_rotor
 from exudyn_rotor.multibody.rotor.frame import LOCKINGS
 from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS, color_of
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.reduction.mean_axis import frame_shares
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.carried_prestress import Prestress
+from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.formulation import Formulation, start_values, suited_translation
 from exudyn_rotor.theory.stiffening import chosen_level
 
+_SEEN = 1e-6  # share of a mode's mass that moves as a rigid body, above rounding of free modes
 # what the twins take beyond the arguments of Exudyn's calls
 OWN = ("translation", "spin", "spin_coupling", "stiffening", "locking", "markers", "prestress")
 
@@ -103,8 +105,30 @@ def add_swapped_body(
         **placed,
         **options,
     )
-    body.script.frame_shares = frame_shares(rotor, reduced, modes)
+    body.script.frame_shares = _frame_shares(rotor, reduced, modes)
     return body
+
+
+def _frame_shares(
+    rotor: FiniteElementRotor, reduced: ReducedRotor, modes: np.ndarray
+) -> np.ndarray | None:
+    """Return how the frame of Exudyn's body moves with the columns of a rotor reduced with `modes`.
+
+    Displacements are ``Rρ + Ψη`` with the modes Ψ in Exudyn's body, and ``Rρ' + Qζ`` here with the
+    columns ``Q = (Ψ − RG_r) G_f⁺``, where ``G = [R Q]ᵀMΨ``; so ``ρ = ρ' − G_rG_f⁺ζ``.
+
+    Returns
+    -------
+    ndarray, shape (r, k − r), or None
+        ``−G_rG_f⁺``, shares of the rigid columns of `reduced`; None where it is zero, as for free
+        eigenmodes.
+    """
+    rigid = len(reduced.rigid_kinds)
+    G = reduced.shapes.matrix.T @ (rotor.mass @ modes)
+    energy = np.einsum("ik,ik->k", G, G)
+    if np.all(np.einsum("ik,ik->k", G[:rigid], G[:rigid]) <= _SEEN * energy):
+        return None
+    return -G[:rigid] @ np.linalg.pinv(G[rigid:])
 
 
 def numbers(body: RotorBody) -> dict[str, Any]:

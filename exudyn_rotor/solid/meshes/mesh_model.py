@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.solid import units
 from exudyn_rotor.solid.elements import Block, SolidElements
 from exudyn_rotor.solid.meshes import abaqus, ansys, by_meshio, matrix_files, nastran
 from exudyn_rotor.solid.meshes.mesh_data import ElementGroup, MeshData, Refusals
 from exudyn_rotor.solid.meshes.skin import face_nodes, skin
-from exudyn_rotor.solid.model import FiniteElementModel, NodeSet
+from exudyn_rotor.solid.model import FiniteElementModel, NodeSet, materials_by_region
 from exudyn_rotor.solid.shapes import KINDS
 from exudyn_rotor.solid.surface import area_weights, flat_triangles
 
@@ -71,7 +70,7 @@ def import_model(
             }
             for name, values in data.materials.items()
         }
-    by_name = units.materials_by_region(names, materials, check_units)
+    by_name = materials_by_region(names, materials, check_units)
     elements = SolidElements.of_materials(lengths * nodes, blocks, names, by_name)
     elements.check_shapes()
     refusals.warn()

@@ -36,7 +36,7 @@ from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import spin_at_start
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 from exudyn_rotor.multibody.supports.ends import BaseEnd
-from exudyn_rotor.reduction.fields import ModeKind
+from exudyn_rotor.reduction.reduced_rotor import ModeKind
 
 _HELD = 1e-8  # share of a motion of the rotor that is none of the scene
 

@@ -19,7 +19,7 @@ from exudyn_rotor.linear.model.scene.journal_start import journal_start
 from exudyn_rotor.linear.model.scene.probe import LinearPoint, Probe, linearised, unbalanced
 from exudyn_rotor.linear.model.scene.scene_coordinates import UNHELD, Motion, SceneCoordinates
 from exudyn_rotor.linear.model.spin import ARM
-from exudyn_rotor.reduction.fields import RIGID_KINDS, ModeKind
+from exudyn_rotor.reduction.reduced_rotor import RIGID_KINDS, ModeKind
 
 _FIRST_SAMPLES, _MOST_SAMPLES = 12, 192
 _LEFT_OUT = 3  # harmonics fewer than samples
