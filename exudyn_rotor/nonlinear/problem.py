@@ -32,7 +32,6 @@ _DEPTH = 1e-3  # of the radius of the elements, at which a contact has the stiff
 _INSIDE = 0.5  # of a clearance, where a film has that of k₀
 _SAME_PASS = 1e-9  # relative distance of ball pass frequencies that is rounding
 _DAMPING = (1.0, 0.1)  # of k₀ over the frequency, with which a search begins
-_SHARES = np.linspace(0.1, 1.0, 10)  # of the loads, by which they grow
 _MORE_UNBALANCE = 2.0 ** np.arange(6.0, -0.5, -0.5)
 _ROUGH = 1e-3
 _RESTS = 4  # speeds
@@ -222,18 +221,11 @@ class Problem:
             yield balance, c
         except (UnconvergedError, np.linalg.LinAlgError):
             pass
-        for way in (self._by_more_loads, self._by_less_damping, self._by_less_unbalance):
-            try:
-                c = way(of)
-            except UnconvergedError:
-                continue
+        try:
+            c = self._by_less_unbalance(of) if self.unbalance else self._by_less_damping(of)
             yield of(self.reach), c
-
-    def _by_more_loads(self, of: Callable[..., Balance]) -> np.ndarray:
-        c = 0.0 * of(self.reach).given
-        for share in _SHARES:
-            c = of(self.reach, share=share).solved(c, _ROUGH)
-        return c
+        except UnconvergedError:
+            pass
 
     def _by_less_damping(self, of: Callable[..., Balance]) -> np.ndarray:
         balance = of(self.reach)
@@ -245,8 +237,6 @@ class Problem:
 
     def _by_less_unbalance(self, of: Callable[..., Balance]) -> np.ndarray:
         """Return the whirl that a larger one becomes: of rotors that unbalance alone presses."""
-        if not self.unbalance:
-            raise UnconvergedError("no unbalance")
         c = None
         for more in _MORE_UNBALANCE:
             balance = of(self.reach, more=more)
