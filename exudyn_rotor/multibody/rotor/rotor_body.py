@@ -15,9 +15,14 @@ from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor import sensors
 from exudyn_rotor.multibody.rotor.connections import ConnectionWarning, lost_connections
 from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS
-from exudyn_rotor.multibody.rotor.record import Record, add_recording, read_record
+from exudyn_rotor.multibody.rotor.record import (
+    Record,
+    StartState,
+    add_recording,
+    read_record,
+    start_from,
+)
 from exudyn_rotor.multibody.rotor.rotor_items import Carrier, RotorItems, interface_of_nodes
-from exudyn_rotor.multibody.rotor.start_state import StartState, start_from
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -45,7 +50,7 @@ class SceneBody(RotorItems, ABC):
         """Return lines of :meth:`report` about modes or displacements."""
 
     @abstractmethod
-    def _nodes_carrier(self, where: Sequence[int], weights: ArrayLike | None, kind: str) -> Carrier:
+    def _nodes_carrier(self, where: Sequence[int], kind: str) -> Carrier:
         """Return what moves with the mean rigid motion of mesh nodes."""
 
     @property
@@ -54,11 +59,6 @@ class SceneBody(RotorItems, ABC):
         return not self.motion.is_constant or any(
             each.uses_python for each in (*self.supports, *self.drives)
         )
-
-    @property
-    def locked(self) -> tuple[str, ...]:
-        """Coordinates that exist only because the marker body's node has them."""
-        return self.locks.locked_names
 
     def report(self) -> str:
         """Return a short table of what was added and what it means at run time."""
@@ -69,7 +69,7 @@ class SceneBody(RotorItems, ABC):
             f"  translations   {names[self.formulation.translation_count]}",
             f"  spin           {'unknown' if self.formulation.has_spin else 'prescribed'}",
             *self._report_of_coordinates(),
-            f"  locked         {', '.join(self.locked) or 'none'}",
+            f"  locked         {', '.join(self.locks.locked_names) or 'none'}",
             f"  constraints    {len(self.constraints)}",
             f"  supports       {'; '.join(map(str, self.supports)) or 'none added'}",
             *([f"  drives         {'; '.join(map(str, self.drives))}"] if self.drives else []),
@@ -109,7 +109,6 @@ class SceneBody(RotorItems, ABC):
         where: str | Sequence[int],
         offset: ArrayLike = (0.0, 0.0, 0.0),
         *,
-        weights: ArrayLike | None = None,
         kind: str = "rigid",
         name: str | None = None,
         show: bool = True,
@@ -124,11 +123,9 @@ class SceneBody(RotorItems, ABC):
         Parameters
         ----------
         where : str or sequence of int
-            Interface, with or without a marker yet, or mesh nodes.
+            Interface, with or without a marker yet, or mesh nodes, which count alike.
         offset : array_like, shape (3,)
             From the interface's reference point or the mean of the nodes, mesh axes [m].
-        weights : array_like, optional
-            Of the nodes, as Exudyn's `weightingFactors`; equal by default.
         kind : {'rigid', 'position'}
         name : str, optional
         show : bool
@@ -148,12 +145,10 @@ class SceneBody(RotorItems, ABC):
             if int(self.mbs.GetMarkerNumber(name)) != -1:
                 raise ValueError(f"name: this system already has a marker {name!r}; choose another")
         if not isinstance(where, str):
-            point = self._nodes_carrier(where, weights, kind)
-        elif weights is None:
+            point = self._nodes_carrier(where, kind)
+        else:
             known = tuple(self.selection.source.interfaces)
             point = self.interface_carrier(checks.choice(where, "where: interface", known))
-        else:
-            raise ValueError("weights: are for mesh nodes; an interface has its own")
         if np.any(shift):
             point = point.shifted(shift)
         return point.add_marker(self.mbs, kind, self.frame.B, name=name or "", show=show)
@@ -212,7 +207,7 @@ class RotorBody(SceneBody):
     >>> body = add_rotor(mbs, rotor.reduce(2), name="fan", spin=10.0, translation="none")
     >>> displacement = body.add_interface_sensor("top", exudyn.OutputVariableType.Displacement)
     >>> force = mbs.CreateForce(itemNumber=body.marker("top"), loadVector=[0.0, 0.0, 5.0])
-    >>> body.locked
+    >>> body.locks.locked_names
     ('x', 'y', 'z', 'tilt a', 'tilt b', 'spin')
     >>> body.uses_python
     False
@@ -226,7 +221,7 @@ class RotorBody(SceneBody):
         labels = self.selection.labels
         return [f"  modes          {len(labels)}: {', '.join(labels)}"]
 
-    def _nodes_carrier(self, where: Sequence[int], weights: ArrayLike | None, kind: str) -> Carrier:
+    def _nodes_carrier(self, where: Sequence[int], kind: str) -> Carrier:
         """Return what moves with the mean rigid motion of mesh nodes."""
         number, nodes = self.objects["marker_body"], tuple(self.nodes.values())
         count = self.mesh_node_count
@@ -236,7 +231,7 @@ class RotorBody(SceneBody):
                 f"has no mesh nodes here; name an interface, got {checks.shown(where)}"
             )
         points = np.reshape(self.mbs.GetObjectParameter(number, "referencePositions"), (-1, 3))
-        interface = interface_of_nodes(points[:count], where, weights, kind)
+        interface = interface_of_nodes(points[:count], where, kind)
         columns = self.mbs.GetObjectParameter(number, "modeBasis")[: 3 * count]
         motion = interface.mean_motion(count) @ columns
         return Carrier(number, interface.reference, motion, interface.radius, nodes)

@@ -44,17 +44,7 @@ _AT_MARKER = {
 def add_node_sensor(
     body: RotorItems, node: int, output: exudyn.OutputVariableType, **options: Any
 ) -> exudyn.SensorIndex:
-    """Add a ``SensorSuperElement`` at mesh node `node`, stored internally by default.
-
-    Exudyn takes stress (``StressLocal``), here and in its contour plots, from the modal coordinates
-    alone. The static centrifugal stress that the modes do not show is missing, which can be nearly
-    all of the stress; :class:`exudyn_rotor.StressField` adds it.
-
-    Warns
-    -----
-    UserWarning
-        For stress of a rotor that was reduced with a prestress and spins.
-    """
+    """Add a ``SensorSuperElement`` at mesh node `node`, stored internally by default."""
     marker_body, count = body.objects["marker_body"], body.mesh_node_count
     if checks.count(node, "node", least=-1) not in range(count):
         raise ValueError(
@@ -195,11 +185,7 @@ def _external_moment(body: RotorItems):
 
 
 def add_energy_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
-    """Add a sensor of the rotor's kinetic and elastic energy and the potential of its weight [J].
-
-    Their sum changes by the work of all other loads and of a prescribed motion, less what damping
-    takes.
-    """
+    """Add a sensor of kinetic and elastic energy and the potential of the weight [J]."""
 
     def energy(mbs, t, sensors, factors, configuration):
         q, q_t, _ = body.coordinates(configuration)

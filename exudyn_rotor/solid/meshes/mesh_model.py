@@ -11,8 +11,7 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.solid.elements import Block, SolidElements
 from exudyn_rotor.solid.meshes import abaqus, ansys, by_meshio, matrix_files, nastran
-from exudyn_rotor.solid.meshes.mesh_data import ElementGroup, MeshData, Refusals
-from exudyn_rotor.solid.meshes.skin import face_nodes, skin
+from exudyn_rotor.solid.meshes.mesh_data import ElementGroup, MeshData, Refusals, face_nodes, skin
 from exudyn_rotor.solid.model import FiniteElementModel, NodeSet, materials_by_region
 from exudyn_rotor.solid.shapes import KINDS
 from exudyn_rotor.solid.surface import area_weights, flat_triangles
