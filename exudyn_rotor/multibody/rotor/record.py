@@ -6,14 +6,13 @@ from dataclasses import dataclass
 
 import exudyn
 import numpy as np
-from exudyn.itemInterface import SensorNode
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.theory.formulation import start_values
 
 _KINDS = exudyn.OutputVariableType
-_RATES = (_KINDS.Coordinates, _KINDS.Coordinates_t, _KINDS.Coordinates_tt)
+RATES = (_KINDS.Coordinates, _KINDS.Coordinates_t, _KINDS.Coordinates_tt)
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,47 +39,6 @@ class Record:
     complete: bool
 
 
-def add_recording(body: RotorItems) -> None:
-    """Add native sensors of all coordinates."""
-    body.check_present()
-    if body.record_sensors:
-        return
-    if body.mbs.systemIsConsistent:
-        raise ValueError(
-            f"start_recording: the system of rotor {body.name!r} is assembled already; call this "
-            "before mbs.Assemble()"
-        )
-    for node in body.nodes.values():
-        for kind in _RATES:
-            item = SensorNode(
-                nodeNumber=node, outputVariableType=kind, storeInternal=True, writeToFile=False
-            )
-            body.record_sensors[int(node), kind] = body.mbs.AddSensor(item)
-
-
-def read_record(body: RotorItems) -> Record:
-    """Return what was recorded; the current state where that is nothing."""
-    body.check_assembled()
-    mbs, sensors = body.mbs, body.record_sensors
-    stored = {key: np.atleast_2d(mbs.GetSensorStoredData(one)) for key, one in sensors.items()}
-    complete = bool(stored) and len(next(iter(stored.values()))) > 1
-
-    def values(node: exudyn.NodeIndex, kind: exudyn.OutputVariableType) -> np.ndarray:
-        if complete:
-            return stored[int(node), kind][:, 1:]
-        return np.atleast_2d(mbs.GetNodeOutput(node, kind))
-
-    time = np.array([mbs.systemData.GetTime()])
-    if complete:
-        time = next(iter(stored.values()))[:, 0]
-    parts = [np.hstack([values(node, kind) for node in body.nodes.values()]) for kind in _RATES]
-    if body.formulation.has_spin:
-        speed = parts[1][:, body.locks.spin]
-    else:
-        speed = np.array([float(body.formulation.spin.rate(t)) for t in time])
-    return Record(time, *parts, speed, complete)
-
-
 def implicit_step(body: RotorItems) -> float | None:
     """Return the step [s] of the last dynamic solution; None before one, or of an explicit one."""
     settings = body.mbs.sys.get("simulationSettings")
@@ -92,7 +50,7 @@ def implicit_step(body: RotorItems) -> float | None:
 
 
 _VELOCITIES = ("initialVelocities", "initialCoordinates_t")  # by the kind of the node
-_SAME = 1e-9  # share of the speed, and rad, by which start and prescribed spin may differ
+SAME = 1e-9  # share of the speed, and rad, by which start and prescribed spin may differ
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,32 +103,7 @@ def spin_at_start(body: RotorItems) -> tuple[float, float]:
     return angle, speed
 
 
-def start_from(body: RotorItems, state: StartState) -> None:
-    """Make a state the initial state of the system, and of its nodes for a later assembly."""
-    checks.instance(state, "state", StartState, "steady_state(body).state() makes one")
-    body.check_assembled()
-    data = body.mbs.systemData
-    size = len(np.atleast_1d(data.GetODE2Coordinates()))
-    if len(state.q) != size:
-        raise ValueError(
-            f"state: has {len(state.q)} coordinates, this system has {size}; it belongs to "
-            "another system, or items were added since"
-        )
-    if not body.formulation.has_spin:
-        angle, speed = spin_at_start(body)
-        if abs(state.angle - angle) > _SAME or abs(state.speed - speed) > _SAME * abs(speed):
-            raise ValueError(
-                f"state: is one at {state.angle:g} rad and {state.speed:g} rad/s, the prescribed "
-                f"spin starts at {angle:g} rad and {speed:g} rad/s"
-            )
-    for configuration in (exudyn.ConfigurationType.Initial, exudyn.ConfigurationType.Current):
-        data.SetODE2Coordinates(state.q, configuration)
-        data.SetODE2Coordinates_t(state.q_t, configuration)
-    for number in range(data.NumberOfNodes()):
-        _keep(body.mbs, number, state)
-
-
-def _keep(mbs: exudyn.MainSystem, number: int, state: StartState) -> None:
+def keep_in_node(mbs: exudyn.MainSystem, number: int, state: StartState) -> None:
     """Write the state into a node, so that it outlives ``mbs.Assemble()``."""
     node = mbs.GetNode(number)
     velocities = next((name for name in _VELOCITIES if name in node), None)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import exudyn
 import numpy as np
+from exudyn.itemInterface import SensorMarker, SensorNode
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
@@ -16,13 +17,16 @@ from exudyn_rotor.multibody.rotor import sensors
 from exudyn_rotor.multibody.rotor.connections import ConnectionWarning, lost_connections
 from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS
 from exudyn_rotor.multibody.rotor.record import (
+    RATES,
+    SAME,
     Record,
     StartState,
-    add_recording,
-    read_record,
-    start_from,
+    keep_in_node,
+    spin_at_start,
 )
 from exudyn_rotor.multibody.rotor.rotor_items import Carrier, RotorItems, interface_of_nodes
+
+_KINDS = exudyn.OutputVariableType
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -155,11 +159,24 @@ class SceneBody(RotorItems, ABC):
 
     def add_interface_sensor(self, interface: str, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at an interface's marker; `options` go to ``SensorMarker``."""
-        return sensors.add_interface_sensor(self, interface, output, **options)
+        marker = self.marker(interface)
+        kind = self.plan.setup.markers[interface]
+        sensors.check_output(output, sensors.AT_MARKER[kind], f"at a {kind} marker")
+        settings = sensors.settings_of(self, options)
+        return self.mbs.AddSensor(
+            SensorMarker(markerNumber=marker, outputVariableType=output, **settings)
+        )
 
     def add_spin_sensor(self, **options):
         """Add a sensor of spin angle [rad] and spin speed [rad/s]."""
-        return sensors.add_spin_sensor(self, **options)
+        node, index = self.nodes["rigid"], self.locks.spin
+
+        def spin(mbs, t, sensors, factors, configuration):
+            angle = mbs.GetNodeOutput(node, _KINDS.Coordinates, configuration)[index]
+            speed = mbs.GetNodeOutput(node, _KINDS.Coordinates_t, configuration)[index]
+            return [float(angle), float(speed)]
+
+        return sensors.add_function_sensor(self, spin, options)
 
     def add_drive_torque_sensor(self, **options):
         """Add a sensor of the torque about e that a prescribed spin needs [N m]."""
@@ -173,7 +190,16 @@ class SceneBody(RotorItems, ABC):
         work of all other loads and of a prescribed motion (``add_drive_torque_sensor`` gives its
         torque), less what damping takes; a drift without these is the integrator's error.
         """
-        return sensors.add_energy_sensor(self, **options)
+
+        def energy(mbs, t, sensors, factors, configuration):
+            q, q_t, _ = self.coordinates(configuration)
+            gravity = self.plan.setup.gravity
+            if self.gravity_load is not None:  # a script may change it
+                gravity = mbs.GetLoadParameter(self.gravity_load, "loadVector")
+            energy = self.motion.energy(t, q, q_t, gravity)
+            return list(energy)
+
+        return sensors.add_function_sensor(self, energy, options)
 
     def start_recording(self) -> None:
         """Record all coordinates of the coming run, for :func:`exudyn_rotor.check_run`.
@@ -182,11 +208,42 @@ class SceneBody(RotorItems, ABC):
         ``solution.sensors.writePeriod`` says, which decides how much memory a full body takes; a
         step calls no Python for them.
         """
-        add_recording(self)
+        self.check_present()
+        if self.record_sensors:
+            return
+        if self.mbs.systemIsConsistent:
+            raise ValueError(
+                f"start_recording: the system of rotor {self.name!r} is assembled already; call "
+                "this before mbs.Assemble()"
+            )
+        for node in self.nodes.values():
+            for kind in RATES:
+                item = SensorNode(
+                    nodeNumber=node, outputVariableType=kind, storeInternal=True, writeToFile=False
+                )
+                self.record_sensors[int(node), kind] = self.mbs.AddSensor(item)
 
     def recorded(self) -> Record:
         """Return what :meth:`start_recording` recorded; without it the current state alone."""
-        return read_record(self)
+        self.check_assembled()
+        mbs, sensors = self.mbs, self.record_sensors
+        stored = {key: np.atleast_2d(mbs.GetSensorStoredData(one)) for key, one in sensors.items()}
+        complete = bool(stored) and len(next(iter(stored.values()))) > 1
+
+        def values(node: exudyn.NodeIndex, kind: exudyn.OutputVariableType) -> np.ndarray:
+            if complete:
+                return stored[int(node), kind][:, 1:]
+            return np.atleast_2d(mbs.GetNodeOutput(node, kind))
+
+        time = np.array([mbs.systemData.GetTime()])
+        if complete:
+            time = next(iter(stored.values()))[:, 0]
+        parts = [np.hstack([values(node, kind) for node in self.nodes.values()]) for kind in RATES]
+        if self.formulation.has_spin:
+            speed = parts[1][:, self.locks.spin]
+        else:
+            speed = np.array([float(self.formulation.spin.rate(t)) for t in time])
+        return Record(time, *parts, speed, complete)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -263,4 +320,24 @@ class RotorBody(SceneBody):
             For a system without a state yet, a state of another system, or one that does not agree
             with the rotor's prescribed spin.
         """
-        start_from(self, state)
+        checks.instance(state, "state", StartState, "steady_state(body).state() makes one")
+        self.check_assembled()
+        data = self.mbs.systemData
+        size = len(np.atleast_1d(data.GetODE2Coordinates()))
+        if len(state.q) != size:
+            raise ValueError(
+                f"state: has {len(state.q)} coordinates, this system has {size}; it belongs to "
+                "another system, or items were added since"
+            )
+        if not self.formulation.has_spin:
+            angle, speed = spin_at_start(self)
+            if abs(state.angle - angle) > SAME or abs(state.speed - speed) > SAME * abs(speed):
+                raise ValueError(
+                    f"state: is one at {state.angle:g} rad and {state.speed:g} rad/s, the "
+                    f"prescribed spin starts at {angle:g} rad and {speed:g} rad/s"
+                )
+        for configuration in (exudyn.ConfigurationType.Initial, exudyn.ConfigurationType.Current):
+            data.SetODE2Coordinates(state.q, configuration)
+            data.SetODE2Coordinates_t(state.q_t, configuration)
+        for number in range(data.NumberOfNodes()):
+            keep_in_node(self.mbs, number, state)
