@@ -130,13 +130,7 @@ class ConstantSpeed:
 def start_values(
     motion: PrescribedMotion | ConstantSpeed, name: str
 ) -> list[float] | list[np.ndarray]:
-    """Return value, rate and acceleration at t = 0 of what is 'spin' or 'translation'.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If they are no finite numbers, for a translation not three, or raise an error.
-    """
+    """Return value, rate and acceleration at t = 0 of what is 'spin' or 'translation'."""
     check, found = checks.number if name == "spin" else checks.vector, []
     for rate in _RATES:
         try:
@@ -156,23 +150,10 @@ def suited_translation(
 ) -> str | PrescribedMotion:
     """Return the translation that ``'auto'`` stands for; anything else as it was given.
 
-    ``'auto'`` is ``'free'``, but ``'none'`` for a rotor that its own stiffness matrix holds in its
-    frame (`grounded`): no other is possible there, and its spin must be prescribed.
-
-    All translations can represent the same displacements, where rigid motions that the frame does
-    not hold are modes, and yet only ``'free'`` cannot give another motion: loads on the frame's
-    node act, and what stands or moves slowly in space does not turn backwards in modes.
-    :func:`exudyn_rotor.propose` takes the supports, too, and weighs the others.
-
-    Raises
-    ------
-    TypeError, ValueError
-        For a word that is no translation.
-
-    Examples
-    --------
-    >>> suited_translation("auto", grounded=False), suited_translation("auto", grounded=True)
-    ('free', 'none')
+    All translations can represent the same displacements, and yet only ``'free'`` cannot give
+    another motion: loads on the frame's node act, and what stands or moves slowly in space does not
+    turn backwards in modes. A rotor that its own stiffness holds in its frame (`grounded`) has no
+    other than ``'none'``.
     """
     if isinstance(translation, PrescribedMotion):
         return translation

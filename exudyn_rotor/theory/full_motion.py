@@ -40,26 +40,10 @@ Factors = tuple[np.ndarray, np.ndarray]
 
 @dataclass(frozen=True, eq=False)
 class SumMatrix:
-    """A sparse matrix and low-rank terms, ``A + Σ VᵀWV``, for products with vectors.
+    """A sparse matrix and low-rank terms, ``A + Σ VᵀWV``, for products with vectors."""
 
-    Attributes
-    ----------
-    sparse : scipy.sparse.csr_array, shape (k, k)
-    factors : tuple of (ndarray (r, k), ndarray (r, r))
-        V and W of every term.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import scipy.sparse as sp
-    >>> from exudyn_rotor.theory.full_motion import SumMatrix
-    >>> ones = np.ones((1, 2))
-    >>> SumMatrix(sp.csr_array(np.eye(2)), ((ones, np.eye(1)),)) @ np.array([1.0, 2.0])
-    array([4., 5.])
-    """
-
-    sparse: sp.csr_array
-    factors: tuple[Factors, ...] = ()
+    sparse: sp.csr_array  # (k, k)
+    factors: tuple[Factors, ...] = ()  # V (r, k) and W (r, r) of every term
 
     def __matmul__(self, vector: np.ndarray) -> np.ndarray:
         """Return the product with a vector (k,)."""
@@ -85,13 +69,8 @@ def full_stiffening(
 ) -> FullStiffening:
     """Return the stiffening of a level; the full form of ``theory.stiffening.stiffening``.
 
-    Parameters
-    ----------
-    invariants : Invariants
-        Sparse, with the matrices of a prestress in K2, B and K4 at the level 'full'.
-    level : {'none', 'tilt', 'full'}
-    turns : ndarray, shape (2, 3), optional
-        Angular accelerations of the prestress's inertia relief, for 'full'.
+    At the level 'full' the sparse invariants have the matrices of a prestress in K2, B and K4, and
+    `turns` (2, 3) are the angular accelerations of its inertia relief.
     """
     zero, e = sp.csr_array(invariants.C.shape), skew(invariants.direction)
 
@@ -120,17 +99,10 @@ class Conditions:
 def conditions(
     invariants: Invariants, formulation: Formulation, grounded: bool, negligible: float
 ) -> Conditions:
-    """Return the conditions of a formulation.
+    """Return the conditions of a formulation, of sparse invariants about the frame's origin.
 
-    Parameters
-    ----------
-    invariants : Invariants
-        Sparse, about the frame's origin.
-    formulation : Formulation
-    grounded : bool
-        Whether the stiffness holds the rotor in its frame; there are no conditions then.
-    negligible : float
-        Share of their upper bound below which couplings are taken as zero.
+    There are none where the rotor is `grounded`, held in its frame by its stiffness. Couplings
+    below the share `negligible` of their upper bound are taken as zero.
     """
     e = invariants.direction
     held = np.zeros((3, 0))
@@ -181,14 +153,6 @@ class FullMotion(Motion):
 
     As :class:`Motion`, whose terms serve it, with matrices for products only where the centrifugal
     stiffening is of low rank. Translations that are unknowns have no coupling: their S is zero.
-
-    Parameters
-    ----------
-    invariants : Invariants
-        Of :class:`Conditions`.
-    second_order : FullStiffening
-    formulation, orientation, plane, gravity
-        As for :class:`Motion`.
     """
 
     def __init__(
@@ -289,17 +253,12 @@ class FullMotion(Motion):
             force[self.modes] = loads
         if self.has_body_force:
             self._add_body_force(c, self.body_acceleration(t, now.A), force)
-        if self.formulation.has_spin:
-            force[self._spin] += self._spin_torque(omega, c, rate)
+        if self.formulation.has_spin:  # (86)
+            frozen = self.formulation.has_frozen_spin
+            force[self._spin] -= (1.0 if frozen else 2.0) * omega * (self._centrifugal(c) @ rate)
+            if not frozen:
+                force[self._spin] -= rate @ (terms.B @ rate)
         return force
-
-    def _spin_torque(self, omega: float, c: np.ndarray, rate: np.ndarray) -> float:
-        """(86)."""
-        terms, frozen = self.spin_terms, self.formulation.has_frozen_spin
-        torque = -(1.0 if frozen else 2.0) * omega * (self._centrifugal(c) @ rate)
-        if not frozen:
-            torque -= rate @ (terms.B @ rate)
-        return float(torque)
 
     def varying_jacobian(
         self, t: float, q: np.ndarray, q_t: np.ndarray, factor_q: float, factor_v: float

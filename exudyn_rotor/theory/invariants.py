@@ -16,7 +16,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from exudyn_rotor import checks
-from exudyn_rotor.theory.axis import skew, turned
+from exudyn_rotor.theory.axis import skew, translations, turned
 
 Matrix = np.ndarray | sp.csr_array
 
@@ -176,8 +176,8 @@ class Invariants:
             mass=total,
             center=mass_x.sum(axis=0) / total,
             J=nodes.T @ mass_x,
-            S=np.vstack([_row_sum(momenta[a::3]) for a in range(3)]),
-            P=np.stack([_dense(mass_x.T @ basis[b::3]) for b in range(3)], axis=1),
+            S=translations(len(nodes)).T @ momenta,
+            P=np.stack([mass_x.T @ basis[b::3] for b in range(3)], axis=1),
             M=_mean(basis.T @ momenta),
             K=_mean(_projected(stiffness, basis)),
             D=_projected(damping, basis),
@@ -231,11 +231,6 @@ class Invariants:
         shift = checks.vector(origin, "origin", "m")
         J, P = moments_about(self, shift)
         return replace(self, center=self.center - shift, J=J, P=P)
-
-    @cached_property
-    def undamped(self) -> Invariants:
-        """The invariants without viscous and structural damping."""
-        return replace(self, D=0.0 * self.D, H=None)
 
     @property
     def loaded(self) -> Invariants:
@@ -292,11 +287,3 @@ def _check_definite(M: np.ndarray) -> None:
             "M: needs a positive definite mass matrix; columns of the basis depend on each other, "
             "or masses are negative"
         ) from error
-
-
-def _row_sum(block: Matrix) -> np.ndarray:
-    return np.asarray(block.sum(axis=0)).ravel()
-
-
-def _dense(array: Matrix) -> np.ndarray:
-    return array.toarray() if sp.issparse(array) else np.asarray(array)

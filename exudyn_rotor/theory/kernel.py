@@ -27,7 +27,7 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.theory.axis import skew
-from exudyn_rotor.theory.terms import Equations
+from exudyn_rotor.theory.frame import FloatingFrame
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +39,7 @@ class ConstantPart:
     force: np.ndarray  # (size,) Gravity on unknown translations and, at constant speed, ``ω²h``
 
 
-def constant_part(motion: Equations) -> ConstantPart:
+def constant_part(motion: FloatingFrame) -> ConstantPart:
     """Return the linear terms with constant coefficients of `motion`."""
     inv, modes = motion.invariants, motion.modes
     stiffness, damping = np.zeros((2, motion.size, motion.size))
@@ -79,7 +79,7 @@ class Kernel:
         Whether the constant part leaves out inertia forces on the modes, and any force at all.
     """
 
-    def __init__(self, motion: Equations, unknowns: Sequence[int], size: int) -> None:
+    def __init__(self, motion: FloatingFrame, unknowns: Sequence[int], size: int) -> None:
         inv, count = motion.invariants, motion.invariants.size
         if inv.is_sparse:
             raise ValueError("motion: needs dense invariants")
@@ -107,7 +107,7 @@ class Kernel:
         self._last: list | None = None
         self._time = math.nan
 
-    def _stack(self, motion: Equations) -> None:
+    def _stack(self, motion: FloatingFrame) -> None:
         """Arrange the invariants for the three rows of the docstring."""
         inv, terms, count = motion.invariants, motion.spin_terms, self._count
         e, S1, u = skew(inv.direction), motion.S1, motion.static_unbalance[:, None]
@@ -313,7 +313,7 @@ class _Turning:
         ``Sᵀa``, ``S*ᵀa`` and ``(mχ*)ᵀa`` of the body acceleration a in rotor axes.
     """
 
-    def __init__(self, motion: Equations) -> None:
+    def __init__(self, motion: FloatingFrame) -> None:
         inv, form = motion.invariants, motion.formulation
         self.e, self._count = skew(inv.direction), inv.size
         self.has_body_force = motion.has_body_force

@@ -25,7 +25,6 @@ Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
 
 from __future__ import annotations
 
-import math
 from functools import cached_property
 from typing import NamedTuple
 
@@ -33,12 +32,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.theory.axis import SpinAxis, skew
-from exudyn_rotor.theory.formulation import Formulation
-from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.frame import FloatingFrame, checked_time
 from exudyn_rotor.theory.kernel import ConstantPart, Kernel, constant_part
-from exudyn_rotor.theory.stiffening import SpinTerms, Stiffening
-from exudyn_rotor.theory.terms import Instant, Terms, terms_of
+from exudyn_rotor.theory.terms import Terms, terms_of
 
 
 class Energy(NamedTuple):
@@ -58,7 +54,7 @@ class Energy(NamedTuple):
     weight: float
 
 
-class Motion:
+class Motion(FloatingFrame):
     """Equations of motion ``M(q) q̈ = f(t, q, q̇)`` of one formulation.
 
     Methods take the time t [s], and the unknowns q and their rates q_t, shape (size,): translations
@@ -115,61 +111,6 @@ class Motion:
     [0. 2. 0. 0.] 2.0
     """
 
-    def __init__(
-        self,
-        invariants: Invariants,
-        formulation: Formulation,
-        second_order: Stiffening,
-        orientation: ArrayLike | None = None,
-        plane: ArrayLike | None = None,
-        gravity: ArrayLike | None = None,
-    ) -> None:
-        self.invariants = checks.instance(invariants, "invariants", Invariants)
-        self.formulation = checks.instance(formulation, "formulation", Formulation)
-        self.spin_terms = SpinTerms.of(invariants, second_order)
-        if second_order.K4 is not None and formulation.has_spin:
-            raise ValueError(
-                "spin: a free spin does not take the stiffness per ω⁴ of a static displacement; "
-                "prescribe the spin, or compute the prestress with initial_displacement=False"
-            )
-        self.orientation = np.eye(3)
-        if orientation is not None:
-            self.orientation = checks.rotation(orientation, "orientation")
-        self.gravity = checks.vector(np.zeros(3) if gravity is None else gravity, "gravity", "m/s²")
-        if plane is not None:
-            columns = 2 if formulation.translation_count == 2 else None
-            plane = checks.array(plane, "plane", shape=(3, columns))
-        self._e = skew(invariants.direction)
-        self._axis = SpinAxis(invariants.direction)
-        self.free_directions = self._free_directions(plane)
-        counts = (formulation.translation_count, int(formulation.has_spin), invariants.size)
-        ends = np.cumsum(counts)
-        self.translations, self._spin, self.modes = (
-            slice(end - count, end) for end, count in zip(ends, counts, strict=True)
-        )
-        self.size = int(ends[-1])
-        self.has_body_force = bool(
-            (formulation.moves_origin or np.any(self.gravity))
-            and (np.any(invariants.S) or np.any(self.static_unbalance))
-        )
-        self.weight = invariants.mass * (self.free_directions.T @ self.gravity)
-
-    def _free_directions(self, plane: np.ndarray | None) -> np.ndarray:
-        count = self.formulation.translation_count
-        if count != 2:
-            return np.eye(3)[:, :count]
-        return self.orientation @ self._axis.plane if plane is None else plane
-
-    @cached_property
-    def static_unbalance(self) -> np.ndarray:
-        """``mχ*`` (67) [kg m], a quarter turn ahead of the centre of mass, rotor axes."""
-        return self.invariants.mass * self._e @ self.invariants.center
-
-    @cached_property
-    def S1(self) -> np.ndarray:
-        """``S* = ẽS`` (69), shape (3, m)."""
-        return self._e @ self.invariants.S
-
     @cached_property
     def _kernel(self) -> Kernel:
         return Kernel(self, range(self.size), self.size)
@@ -189,23 +130,12 @@ class Motion:
             mass[self.modes, spin] = inv.g[:, None]
         return mass
 
-    @cached_property
-    def is_coupled(self) -> bool:
-        """True when ``mχ*`` or S couple unknown translations with the other coordinates."""
-        count = self.formulation.translation_count
-        seen = self.invariants.S if count == 3 else self.S1  # in the plane, S* is S turned
-        return bool(count and (np.any(self.static_unbalance) or np.any(seen)))
-
     @property
     def is_constant(self) -> bool:
         """True when all matrices and forces are constant: Eq. (109) and its uncoupled kin."""
         form = self.formulation
-        return (
-            form.is_constant_speed
-            and not self.is_coupled
-            and not form.moves_origin
-            and not self.has_body_force
-        )
+        varies = self.is_coupled or form.moves_origin or self.has_body_force
+        return form.is_constant_speed and not varies
 
     def mass_matrix(self, t: float, q: ArrayLike, q_t: ArrayLike | None = None) -> np.ndarray:
         """Return the mass matrix (65, 41–43, 84, 85), shape (size, size).
@@ -213,7 +143,7 @@ class Motion:
         It does not depend on the rates `q_t`.
         """
         kernel, mass = self._kernel, self._constant_mass.copy()
-        values = kernel.mass_entries(_time(t), self._coordinates(q, "q").tolist())
+        values = kernel.mass_entries(checked_time(t), self._checked(q, "q").tolist())
         mass[kernel.rows, kernel.columns] = mass[kernel.columns, kernel.rows] = values
         return mass
 
@@ -222,16 +152,20 @@ class Motion:
 
         (66), (86), (87), the prescribed accelerations of (108), and App. A.
         """
-        q, q_t = self._coordinates(q, "q"), self._coordinates(q_t, "q_t")
+        q, q_t = self._checked(q, "q"), self._checked(q_t, "q_t")
         fixed = self._constant_part
         constant = fixed.force - fixed.stiffness @ q - fixed.damping @ q_t
-        return constant + self._kernel.forces(_time(t), q.tolist(), q_t.tolist())
+        return constant + self._kernel.forces(checked_time(t), q.tolist(), q_t.tolist())
 
     def jacobian(self, t: float, q: ArrayLike, q_t: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
         """Return the derivatives of :meth:`forces` by q and by q̇, each (size, size)."""
-        q, q_t = self._coordinates(q, "q").tolist(), self._coordinates(q_t, "q_t").tolist()
-        by_q = -self._constant_part.stiffness - self._kernel.jacobian(_time(t), q, q_t, 1.0, 0.0)
-        by_v = -self._constant_part.damping - self._kernel.jacobian(_time(t), q, q_t, 0.0, 1.0)
+        q, q_t = self._checked(q, "q").tolist(), self._checked(q_t, "q_t").tolist()
+        by_q = -self._constant_part.stiffness - self._kernel.jacobian(
+            checked_time(t), q, q_t, 1.0, 0.0
+        )
+        by_v = -self._constant_part.damping - self._kernel.jacobian(
+            checked_time(t), q, q_t, 0.0, 1.0
+        )
         return by_q, by_v
 
     def energy(
@@ -304,22 +238,6 @@ class Motion:
         self._add_body_force(now.zeta, now.A.T @ acceleration, force)
         return force
 
-    def at(self, t: float, q: ArrayLike, q_t: ArrayLike) -> Instant:
-        """Return an instant, split into its parts."""
-        q, q_t = self._coordinates(q, "q"), self._coordinates(q_t, "q_t")
-        form, t = self.formulation, _time(t)
-        if form.has_spin:
-            theta, omega, omega_t = float(q[self._spin][0]), float(q_t[self._spin][0]), 0.0
-        else:
-            theta, omega = form.spin.value(t), form.spin.rate(t)
-            omega_t = form.spin.acceleration(t)
-        A = self.orientation @ self._axis.rotation(theta)
-        return Instant(omega, omega_t, q[self.modes], q_t[self.modes], A)
-
-    def unbalance(self, zeta: np.ndarray) -> np.ndarray:
-        """``mχ* + S*ζ``, the bracket of (65): the static unbalance of the deformed rotor."""
-        return self.static_unbalance + self.S1 @ zeta
-
     def _centrifugal(self, zeta: np.ndarray) -> np.ndarray:
         """``h + Ĉζ``, the centrifugal load per ω² of (87)."""
         return self.spin_terms.h + self.spin_terms.C_hat @ zeta
@@ -338,16 +256,3 @@ class Motion:
         force[self.modes] += self.invariants.S.T @ local
         if self.formulation.has_spin:
             force[self._spin] += self.unbalance(zeta) @ local
-
-    def _coordinates(self, values: ArrayLike, name: str) -> np.ndarray:
-        """Return one finite number per unknown; quick where there is nothing to refuse."""
-        right = type(values) is np.ndarray and values.shape == (self.size,)
-        if right and values.dtype == float and math.isfinite(values.dot(values)):
-            return values
-        return checks.vector(values, name, size=self.size)
-
-
-def _time(t: float) -> float:
-    if type(t) is not float or not math.isfinite(t):
-        t = checks.number(t, "t", "s")
-    return t

@@ -1,4 +1,4 @@
-"""Centrifugal stiffening, the work of the field on second-order displacements, and spin terms.
+"""Centrifugal stiffening: the work of the centrifugal field on second-order displacements.
 
 The paper's equations (84–87, 103–109) hold the softening ``−ω²C`` only. The centrifugal load
 ``ω² M x_⊥`` also does work on the second-order part u₂ of a displacement, a stiffness of the same
@@ -23,12 +23,6 @@ Derivation of ``'tilt'``: a displacement is split by mass-orthogonality into tra
 φ about the centre of mass and a flexible rest ψ; composing them gives
 ``u₂ = ½ φ × (φ × y) + φ × ψ`` with y from the centre of mass. The work of a nodal force field
 ``f = M F x`` on it is a quadratic form in (φ, ψ) that needs only the invariants J, S and P.
-
-With it, what a spin adds to the linear equations of the modal coordinates is
-
-    M ζ̈ + (D + 2ωG) ζ̇ + (K − ω²Ĉ + ω⁴K4 + ω̇W) ζ = f + ω²h − ω̇g        (105), (109)
-
-with ``Ĉ = C − K2`` and ``W = G + B``; the paper's equations are K2 = B = K4 = 0.
 """
 
 from __future__ import annotations
@@ -42,83 +36,6 @@ import scipy.sparse as sp
 from exudyn_rotor import checks
 from exudyn_rotor.theory.axis import skew
 from exudyn_rotor.theory.invariants import EPSILON, Invariants, Matrix, moments_about
-
-
-@dataclass(frozen=True, eq=False)
-class SpinTerms:
-    """Matrices and loads that a spin adds, in a basis of k columns.
-
-    Attributes
-    ----------
-    G : shape (k, k)
-        Gyroscopic matrix (80).
-    C_hat : shape (k, k)
-        Spin softening less stiffening per ω², ``Ĉ = C − K2``.
-    W, B : shape (k, k)
-        ``G + B``, and the stiffness of the Euler field per ω̇.
-    h, g : ndarray, shape (k,)
-        Centrifugal load per ω² (83), and mass moment of the Euler load per −ω̇ (82).
-    K4 : shape (k, k) or None
-        Stiffness per ω⁴ of a static displacement; None where it is left out.
-
-    Examples
-    --------
-    A unit mass at x = 2 in the plane of rotation, without stiffening:
-
-    >>> import numpy as np
-    >>> from exudyn_rotor import Invariants
-    >>>     >>> unit = np.eye(3)
-    >>> point = Invariants.of([[2.0, 0, 0]], unit, 9.0 * unit, None, unit, [0, 0, 1])
-    >>> terms = SpinTerms.of(point, stiffening(point, "none"))
-    >>> print(np.diag(terms.stiffness(10.0)), terms.load(10.0))
-    [-100. -100.   -0.] [200.   0.   0.]
-    """
-
-    G: Matrix
-    C_hat: Matrix
-    W: Matrix
-    B: Matrix
-    h: np.ndarray
-    g: np.ndarray
-    K4: Matrix | None = None
-
-    @classmethod
-    def of(cls, invariants: Invariants, second_order: Stiffening) -> SpinTerms:
-        """Return the terms of a basis with its second-order terms, origin on the spin axis.
-
-        Raises
-        ------
-        TypeError, ValueError
-            For other kinds of objects, or matrices of another size.
-        """
-        checks.instance(invariants, "invariants", Invariants)
-        checks.instance(second_order, "second_order", Stiffening, "stiffening(…) makes one")
-        K2 = checks.matrix(second_order.K2, "second_order: K2", shape=invariants.C.shape)
-        return cls(
-            G=invariants.G,
-            C_hat=invariants.C - K2,
-            W=invariants.G + second_order.B,
-            B=second_order.B,
-            h=invariants.h,
-            g=invariants.g,
-            K4=second_order.K4,
-        )
-
-    def damping(self, speed: float) -> Matrix:
-        """Return the Coriolis matrix ``2ωG`` at a spin speed [rad/s]."""
-        return 2.0 * speed * self.G
-
-    def stiffness(self, speed: float, acceleration: float = 0.0) -> Matrix:
-        """Return ``−ω²Ĉ + ω⁴K4 + ω̇W`` at a spin speed [rad/s] and acceleration [rad/s²]."""
-        centrifugal = -(speed**2) * self.C_hat
-        if self.K4 is not None:
-            centrifugal = centrifugal + speed**4 * self.K4
-        return centrifugal + acceleration * self.W if acceleration else centrifugal
-
-    def load(self, speed: float, acceleration: float = 0.0) -> np.ndarray:
-        """Return ``ω²h − ω̇g``, shape (k,), of the rotor's own eccentricity."""
-        return speed**2 * self.h - acceleration * self.g
-
 
 LEVELS = ("none", "tilt", "full")
 CHOICES = ("auto", *LEVELS)
@@ -158,7 +75,8 @@ class Stiffening:
     >>> import numpy as np
     >>> from exudyn_rotor import Invariants
     >>> from exudyn_rotor.theory.axis import rotations
-    >>>     >>> ring = [[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]]
+    >>> from exudyn_rotor.theory.stiffening import stiffening
+    >>> ring = [[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]]
     >>> tilts = rotations(ring, [0, 0, 0])[:, :2]
     >>> free = np.zeros((12, 12))
     >>> invariants = Invariants.of(ring, np.eye(12), free, None, tilts, [0, 0, 1])
@@ -178,6 +96,55 @@ class Stiffening:
                 object.__setattr__(self, name, matrix)
 
 
+@dataclass(frozen=True, eq=False)
+class SpinTerms:
+    """Matrices and loads that a spin adds to the linear equations; every term stands here once.
+
+        M ζ̈ + (D + 2ωG) ζ̇ + (K − ω²Ĉ + ω⁴K4 + ω̇W) ζ = f + ω²h − ω̇g        (105), (109)
+
+    The paper's equations are K2 = B = K4 = 0.
+    """
+
+    G: Matrix  # (k, k) Gyroscopic matrix (80)
+    C_hat: Matrix  # spin softening less stiffening per ω², ``C − K2``
+    W: Matrix  # ``G + B``
+    B: Matrix  # stiffness of the Euler field per ω̇
+    h: np.ndarray  # (k,) Centrifugal load per ω² (83)
+    g: np.ndarray  # (k,) Mass moment of the Euler load per −ω̇ (82)
+    K4: Matrix | None = None  # stiffness per ω⁴ of a static displacement
+
+    @classmethod
+    def of(cls, invariants: Invariants, second_order: Stiffening) -> SpinTerms:
+        """Return the terms of a basis with its second-order terms, origin on the spin axis."""
+        checks.instance(invariants, "invariants", Invariants)
+        checks.instance(second_order, "second_order", Stiffening, "stiffening(…) makes one")
+        K2 = checks.matrix(second_order.K2, "second_order: K2", shape=invariants.C.shape)
+        return cls(
+            G=invariants.G,
+            C_hat=invariants.C - K2,
+            W=invariants.G + second_order.B,
+            B=second_order.B,
+            h=invariants.h,
+            g=invariants.g,
+            K4=second_order.K4,
+        )
+
+    def damping(self, speed: float) -> Matrix:
+        """Return the Coriolis matrix ``2ωG`` at a spin speed [rad/s]."""
+        return 2.0 * speed * self.G
+
+    def stiffness(self, speed: float, acceleration: float = 0.0) -> Matrix:
+        """Return ``−ω²Ĉ + ω⁴K4 + ω̇W`` at a spin speed [rad/s] and acceleration [rad/s²]."""
+        centrifugal = -(speed**2) * self.C_hat
+        if self.K4 is not None:
+            centrifugal = centrifugal + speed**4 * self.K4
+        return centrifugal + acceleration * self.W if acceleration else centrifugal
+
+    def load(self, speed: float, acceleration: float = 0.0) -> np.ndarray:
+        """Return ``ω²h − ω̇g``, shape (k,), of the rotor's own eccentricity."""
+        return speed**2 * self.h - acceleration * self.g
+
+
 def chosen_level(choice: str, stress_is_known: bool) -> str:
     """Return the level of a choice, which may be ``'auto'``.
 
@@ -194,13 +161,8 @@ def chosen_level(choice: str, stress_is_known: bool) -> str:
 def warn_of_left_out(invariants: Invariants, speed: float, level: int) -> None:
     """Warn where ``'tilt'`` errs much at a spin speed [rad/s] by an estimate of the rest.
 
-    Parameters
-    ----------
-    invariants : Invariants
-        Of flexible modes at rest, beside rigid motions.
-    speed : float
-    level : int
-        Of the stack, whose caller is warned.
+    Invariants are of flexible modes at rest, beside rigid motions; `level` is that of the stack
+    whose caller is warned.
     """
     error = estimated_error(invariants, speed)
     if error > _WORTH_A_WARNING:
@@ -248,18 +210,13 @@ def stiffening(invariants: Invariants, level: str) -> Stiffening:
         shape = (invariants.size, invariants.size)
         zero = sp.csr_array(shape) if invariants.is_sparse else np.zeros(shape)
         return Stiffening(zero, zero)
-    if level == "full":
-        return _full(invariants)
     e = skew(invariants.direction)
-    return Stiffening(K2=-_work_hessian(invariants, -e @ e), B=_work_hessian(invariants, e))
-
-
-def _full(invariants: Invariants) -> Stiffening:
+    if level == "tilt":
+        return Stiffening(K2=-_work_hessian(invariants, -e @ e), B=_work_hessian(invariants, e))
     if invariants.K2 is None:
         raise ValueError(NO_PRESTRESS)
-    B = invariants.B
-    if B is None:  # of the Euler field only what rigid rotations feel
-        B = _work_hessian(invariants, skew(invariants.direction))
+    # of an unknown Euler field only what rigid rotations feel
+    B = _work_hessian(invariants, e) if invariants.B is None else invariants.B
     return Stiffening(invariants.K2, B, invariants.K4)
 
 
@@ -270,21 +227,11 @@ def with_prestress(
     relief: np.ndarray,
     K4: np.ndarray | None = None,
 ) -> Invariants:
-    """Return the invariants with the stiffness of a static prestress.
+    """Return dense invariants with the stiffness of a static prestress.
 
-    Parameters
-    ----------
-    invariants : Invariants
-        Dense.
-    K2 : ndarray, shape (k, k)
-        ``Ψᵀ(K_G + K_u)Ψ`` per ω².
-    B : ndarray or None, shape (k, k)
-        The same per ω̇.
-    relief : ndarray, shape (2, 3)
-        Angular accelerations per ω² and ω̇ whose inertia balanced the two loads. That part of a
-        load strains nothing, and does the work on rigid rotations that ``'tilt'`` gives it.
-    K4 : ndarray, shape (k, k), optional
-        ``ΨᵀK_uuΨ`` per ω⁴.
+    K2, B and K4 are ``Ψᵀ(K_G + K_u)Ψ`` per ω² and ω̇, and ``ΨᵀK_uuΨ`` per ω⁴. `relief` (2, 3) are
+    angular accelerations per ω² and ω̇ whose inertia balanced the two loads. That part of a load
+    strains nothing, and does the work on rigid rotations that ``'tilt'`` gives it.
     """
 
     def relieved(matrix: np.ndarray, turn: np.ndarray) -> np.ndarray:
@@ -301,14 +248,8 @@ def with_prestress(
 def work_factors(invariants: Invariants, field: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return V (6, k) and W (6, 6) of the Hessian ``VᵀWV`` of the work of ``M F x`` on u₂.
 
-    ``f·(φ×(φ×y)) = φᵀ(H − tr(H) I)φ`` with ``H = Σ f yᵀ``, and ``f·(φ×ψ) = −φ·Σ f×ψ``. The form for
-    full models, where the Hessian would be a dense matrix of the size of the model.
-
-    Parameters
-    ----------
-    invariants : Invariants
-    field : ndarray, shape (3, 3)
-        F: ``−ẽẽ`` of the centrifugal field, ``ẽ`` of the Euler field.
+    ``f·(φ×(φ×y)) = φᵀ(H − tr(H) I)φ`` with ``H = Σ f yᵀ``, and ``f·(φ×ψ) = −φ·Σ f×ψ``. The field F
+    (3, 3) is ``−ẽẽ`` for the centrifugal and ``ẽ`` for the Euler field.
     """
     (J, P), rotation = moments_about(invariants, invariants.center), invariants.mean_rotation
     P_flexible = P - np.einsum("cbd,ck,ad->abk", EPSILON, rotation, J)

@@ -10,73 +10,24 @@ Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol
+from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
 from exudyn_rotor.theory.axis import skew
-from exudyn_rotor.theory.formulation import Formulation
-from exudyn_rotor.theory.invariants import Invariants
-from exudyn_rotor.theory.stiffening import SpinTerms
+from exudyn_rotor.theory.frame import FloatingFrame, Instant
 
 
-class Instant(NamedTuple):
-    """One instant of a motion, split into its parts."""
+class Term(NamedTuple):
+    """A block of the equations of motion."""
 
-    omega: float  # spin speed, and its prescribed rate; zero for a free spin, whose rate is unknown
-    omega_t: float
-    zeta: np.ndarray  # (m,) Modal coordinates and their rates
-    zeta_t: np.ndarray
-    A: np.ndarray  # (3, 3) Rotor axes → inertial axes (55)
-
-
-class Equations(Protocol):
-    """What the blocks and the kernel read of a :class:`~exudyn_rotor.theory.motion.Motion`."""
-
-    invariants: Invariants
-    spin_terms: SpinTerms
-    formulation: Formulation
-    orientation: np.ndarray
-    gravity: np.ndarray
-    free_directions: np.ndarray
-    static_unbalance: np.ndarray
-    S1: np.ndarray
-    translations: slice
-    modes: slice
-    size: int
-    weight: np.ndarray
-    is_coupled: bool
-    has_body_force: bool
-
-    def at(self, t: float, q: ArrayLike, q_t: ArrayLike) -> Instant:
-        """Return an instant, split into its parts."""
-
-    def unbalance(self, zeta: np.ndarray) -> np.ndarray:
-        """``mχ* + S*ζ``, the bracket of (65)."""
-
-
-@dataclass(frozen=True, eq=False)
-class Term:
-    """A block of the equations of motion.
-
-    Attributes
-    ----------
-    name : str
-        Symbol: t, θ, ζ stand for translation, spin angle and modal coordinates.
-    equation : str
-        Numbers in the paper, e.g. ``'84'`` or ``'110–114'``; empty for what it does not have.
-    value : float, ndarray or sparse array
-        In SI units; A and what it turns in inertial axes, all else in rotor axes.
-    meaning : str
-    """
-
-    name: str
-    equation: str
-    value: Any
+    name: str  # symbol: t, θ, ζ stand for translation, spin angle and modal coordinates
+    equation: str  # numbers in the paper, e.g. '84' or '110–114'; empty for what it does not have
+    # in SI units; A and what it turns in inertial axes, all else in rotor axes
+    value: float | np.ndarray | sp.csr_array
     meaning: str
 
     @property
@@ -85,16 +36,9 @@ class Term:
         ends = (re.findall(r"\d+", part) for part in self.equation.split(","))
         return frozenset(n for end in ends if end for n in range(int(end[0]), int(end[-1]) + 1))
 
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Shape of the value; () for a number."""
-        return np.shape(self.value) if not sp.issparse(self.value) else self.value.shape
 
-
-class Terms(Mapping[str, Term]):
+class Terms(dict[str | int, Term]):
     """Blocks by their names, or by the number of an equation that only one of them has.
-
-    ``print`` shows all of them.
 
     Examples
     --------
@@ -103,48 +47,29 @@ class Terms(Mapping[str, Term]):
     >>> terms["M_θθ"].equation, terms[85].value
     ('75, 85', 4.0)
     >>> print(terms)
-    name  equation  shape  largest  meaning
-    M_θθ  75, 85    -      4        moment of inertia about the axis
+    M_θθ      75, 85        ()           moment of inertia about the axis
     """
 
     def __init__(self, terms: Iterable[Term]) -> None:
-        self._terms = {term.name: term for term in terms}
+        super().__init__({term.name: term for term in terms})
 
-    def __getitem__(self, key: str | int) -> Term:
-        if not isinstance(key, int) or isinstance(key, bool):
-            if key in self._terms:
-                return self._terms[key]
-            raise KeyError(f"no block {key!r}; there are: {', '.join(self._terms)}")
-        found = [term for term in self._terms.values() if key in term.numbers]
+    def __missing__(self, key: str | int) -> Term:
+        """Return the one block of an equation."""
+        found = [term for term in self.values() if key in term.numbers]
         if len(found) == 1:
             return found[0]
         names = ", ".join(term.name for term in found) or "no block"
-        raise KeyError(f"equation {key}: {names}; ask by a name out of {', '.join(self._terms)}")
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._terms)
-
-    def __len__(self) -> int:
-        return len(self._terms)
-
-    def __repr__(self) -> str:
-        return f"Terms({', '.join(self._terms)})"
+        raise KeyError(f"{key}: {names}; ask by a name out of {', '.join(self)}")
 
     def __str__(self) -> str:
-        return self.table()
-
-    def table(self) -> str:
-        """Return a line per block: name, equation, shape, largest entry, meaning."""
-        lines = [("name", "equation", "shape", "largest", "meaning")]
-        for term in self.values():
-            shape = " × ".join(map(str, term.shape)) or "-"
-            lines.append((term.name, term.equation, shape, _largest(term.value), term.meaning))
-        widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-        rows = ("  ".join(map(str.ljust, line, widths)).rstrip() for line in lines)
-        return "\n".join(rows)
+        """Return a line per block: name, equation, shape, meaning."""
+        return "\n".join(
+            f"{term.name:9} {term.equation:13} {np.shape(term.value)!s:12} {term.meaning}"
+            for term in self.values()
+        )
 
 
-def terms_of(motion: Equations, t: float, q: ArrayLike, q_t: ArrayLike) -> Terms:
+def terms_of(motion: FloatingFrame, t: float, q: ArrayLike, q_t: ArrayLike) -> Terms:
     """Return all blocks of a motion at an instant, those of coordinates that it prescribes, too.
 
     Parameters
@@ -167,7 +92,7 @@ def terms_of(motion: Equations, t: float, q: ArrayLike, q_t: ArrayLike) -> Terms
     return Terms(term for part in parts for term in part)
 
 
-def _invariants(motion: Equations) -> list[Term]:
+def _invariants(motion: FloatingFrame) -> list[Term]:
     inv, spin, turn = motion.invariants, motion.spin_terms, skew(motion.invariants.direction)
     terms = [
         Term("m", "31", inv.mass, "mass"),
@@ -191,7 +116,7 @@ def _invariants(motion: Equations) -> list[Term]:
     return terms if spin.K4 is None else [*terms, Term("K4", "", spin.K4, "stiffness per ω⁴")]
 
 
-def _translation(motion: Equations, now: Instant) -> list[Term]:
+def _translation(motion: FloatingFrame, now: Instant) -> list[Term]:
     inv = motion.invariants
     coupling, force = now.A @ motion.unbalance(now.zeta), now.A @ _inertia_force(motion, now)
     return [
@@ -203,7 +128,7 @@ def _translation(motion: Equations, now: Instant) -> list[Term]:
     ]
 
 
-def _in_plane(motion: Equations, now: Instant) -> list[Term]:
+def _in_plane(motion: FloatingFrame, now: Instant) -> list[Term]:
     if motion.formulation.translation_count != 2:
         return []
     inv, A = motion.invariants, motion.free_directions.T @ now.A
@@ -218,7 +143,7 @@ def _in_plane(motion: Equations, now: Instant) -> list[Term]:
     ]
 
 
-def _spin_and_modes(motion: Equations, now: Instant) -> list[Term]:
+def _spin_and_modes(motion: FloatingFrame, now: Instant) -> list[Term]:
     """(84–87), the same as (74–77) contracted beforehand."""
     inv, spin = motion.invariants, motion.spin_terms
     omega, zeta, rate = now.omega, now.zeta, now.zeta_t
@@ -239,7 +164,7 @@ def _spin_and_modes(motion: Equations, now: Instant) -> list[Term]:
     ]
 
 
-def _prescribed(motion: Equations, now: Instant, t: float) -> list[Term]:
+def _prescribed(motion: FloatingFrame, now: Instant, t: float) -> list[Term]:
     """(104), (105) of the full model, (108), (109) of component modes."""
     inv, spin, form = motion.invariants, motion.spin_terms, motion.formulation
     if form.has_spin:
@@ -258,7 +183,7 @@ def _prescribed(motion: Equations, now: Instant, t: float) -> list[Term]:
     ]
 
 
-def _gravity(motion: Equations, now: Instant) -> list[Term]:
+def _gravity(motion: FloatingFrame, now: Instant) -> list[Term]:
     inv, g = motion.invariants, motion.gravity
     local = now.A.T @ g
     terms = [
@@ -274,17 +199,12 @@ def _gravity(motion: Equations, now: Instant) -> list[Term]:
     return terms
 
 
-def _inertia_force(motion: Equations, now: Instant) -> np.ndarray:
+def _inertia_force(motion: FloatingFrame, now: Instant) -> np.ndarray:
     """Bracket of (66), its sign included, rotor axes."""
     centrifugal = skew(motion.invariants.direction) @ motion.unbalance(now.zeta)
     return -(now.omega**2) * centrifugal - 2.0 * now.omega * (motion.S1 @ now.zeta_t)
 
 
-def _number(motion: Equations, reduced: str, full: str = "58, 94, 100") -> str:
+def _number(motion: FloatingFrame, reduced: str, full: str = "58, 94, 100") -> str:
     """Numbers of a block; those of its full form come first for a full model."""
     return f"{full}, {reduced}" if motion.invariants.is_sparse else reduced
-
-
-def _largest(value: Any) -> str:
-    entries = value.data if sp.issparse(value) else np.ravel(value)
-    return f"{entries[np.argmax(np.abs(entries))]:.4g}" if np.size(entries) else "-"

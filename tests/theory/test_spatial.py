@@ -9,7 +9,7 @@ from exudyn.itemInterface import NodePoint, NodeRigidBodyEP, ObjectFFRF
 from exudyn.utilities import EulerParameters2GLocal, EulerParameters2RotationMatrix
 from point_rotors import random_arrays, random_invariants
 
-from exudyn_rotor.theory.spatial import SpatialFrame
+from validation.exudyn_3d.spatial_frame import SpatialFrame
 
 
 def cardan(angles: np.ndarray) -> np.ndarray:

@@ -164,10 +164,9 @@ def test_blocks_make_the_equations(rotor, translation, spin, coupling, level):
 def test_asking_for_a_block(rotor):
     terms = rotor.terms(Formulation("none", 1.3))
     assert terms[84] is terms["M_θζ"] is terms[74]
-    assert str(terms).count("\n") == len(terms)
-    assert repr(terms).startswith("Terms(m, χ, χ*")
+    assert str(terms).count("\n") == len(terms) - 1
     for key, said in ((105 if rotor.full else 109, r"D\(ω\), K\(ω\), f\(ω\)"), (91, "no block")):
         with pytest.raises(KeyError, match=said):
             terms[key]
-    with pytest.raises(KeyError, match=r"no block 'M_tr'; there are: m, χ"):
+    with pytest.raises(KeyError, match=r"M_tr: no block; ask by a name out of m, χ"):
         terms["M_tr"]

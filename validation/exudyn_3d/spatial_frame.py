@@ -3,7 +3,7 @@
 Here the rotation is any, with parameters θ whose local angular velocity is ``ω = G θ̇``. Invariants
 are formed as the paper prints them, with 3n × 3m tilde bases, and products as Kronecker's: plain to
 read, not fast, and not used by scenes. Contracted with a fixed axis they are the blocks of
-:mod:`exudyn_rotor.theory.terms`; with a prescribed ω(t) the equations are linear, (103) and (107).
+``Motion.terms``; with a prescribed ω(t) the equations are linear, (103) and (107).
 
 Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
 """
@@ -13,7 +13,6 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from exudyn_rotor import checks
 from exudyn_rotor.theory.axis import skew, tilde, tilde_basis, translations
 from exudyn_rotor.theory.terms import Term, Terms
 
@@ -22,62 +21,19 @@ Vector = np.ndarray
 
 
 class SpatialFrame:
-    """Equations of the floating frame in three dimensions, in a basis of m columns.
+    """Equations of the floating frame in three dimensions, in a basis Ψ (3n, m).
 
-    Blocks are :class:`~exudyn_rotor.theory.terms.Terms`, dense for component modes and sparse for
-    the full model (Ψ = I). In what follows A (3, 3) rotates frame axes into inertial axes, G (3, r)
-    gives the local angular velocity by the rates of the r rotation parameters (the unit matrix
-    gives the blocks for the angular velocity itself, 51), ζ (m,) are modal coordinates.
-
-    Parameters
-    ----------
-    nodes : array_like, shape (n, 3)
-        From the frame's origin [m].
-    mass, stiffness : array or sparse array, shape (3n, 3n)
-    damping : array or sparse array, shape (3n, 3n), or None
-    basis : array or sparse array, shape (3n, m)
-        Ψ.
-
-    Attributes
-    ----------
-    invariants : Terms
-        (31–40), and (19), (20).
-
-    Raises
-    ------
-    TypeError, ValueError
-        If shapes do not fit or an entry is not finite.
-
-    Examples
-    --------
-    A unit mass at x = 2 that can move in its three directions:
-
-    >>> import numpy as np
-    >>> from exudyn_rotor.theory.spatial import SpatialFrame
-    >>> unit = np.eye(3)
-    >>> point = SpatialFrame([[2.0, 0, 0]], unit, 9.0 * unit, None, unit)
-    >>> print(point.invariants["Θ_u"].value)
-    [[0. 0. 0.]
-     [0. 4. 0.]
-     [0. 0. 4.]]
+    Blocks are :class:`~exudyn_rotor.theory.terms.Terms`; `invariants` are (31–40), (19), (20).
+    In what follows A (3, 3) rotates frame axes into inertial axes, G (3, r) gives the local angular
+    velocity by the rates of the r rotation parameters (the unit matrix gives the blocks for the
+    angular velocity itself, 51), ζ (m,) are modal coordinates.
     """
 
     def __init__(
-        self,
-        nodes: np.ndarray,
-        mass: Matrix,
-        stiffness: Matrix,
-        damping: Matrix | None,
-        basis: Matrix,
+        self, nodes: Vector, mass: Matrix, stiffness: Matrix, damping: Matrix | None, basis: Matrix
     ) -> None:
-        nodes = checks.array(nodes, "nodes", "m", shape=(None, 3))
-        shape = (nodes.size, nodes.size)
-        M = checks.matrix(mass, "mass", "kg", shape=shape)
-        K = checks.matrix(stiffness, "stiffness", "N/m", shape=shape)
-        D = sp.csr_array(shape)
-        if damping is not None:
-            D = checks.matrix(damping, "damping", "N s/m", shape=shape)
-        psi = checks.matrix(basis, "basis", shape=(nodes.size, None))
+        M, K, psi = mass, stiffness, basis
+        D = sp.csr_array(M.shape) if damping is None else damping
         phi, x_tilde, psi_tilde = translations(len(nodes)), tilde(nodes), tilde_basis(psi)
         total = float(np.trace(phi.T @ (M @ phi)) / 3.0)
         self.size = psi.shape[1]
@@ -142,12 +98,8 @@ class SpatialFrame:
 
         ``M_ψψ ζ̈ + D(ω) ζ̇ + K(ω) ζ = f_ψ + f(ω)``; with a sparse basis Ψ = I, (103).
 
-        Parameters
-        ----------
-        omega, omega_t : ndarray, shape (3,)
-            Angular velocity [rad/s] and its rate [rad/s²], frame axes.
-        acceleration : ndarray, shape (3,)
-            ``Aᵀτ̈``, acceleration of the frame origin in frame axes [m/s²].
+        With `omega` [rad/s] and `omega_t` [rad/s²] in frame axes, and `acceleration` ``Aᵀτ̈`` of the
+        frame origin [m/s²].
         """
         along, along_t = self._along(omega), self._along(omega_t)
         M_tilde, both, X = (self._at(name) for name in ("M_ψ̃ψ", "M_ψ̃ψ̃", "M_x̃ψ"))
@@ -179,9 +131,8 @@ class SpatialFrame:
 
     def _spread(self, zeta: Vector) -> np.ndarray:
         """``ζ ⊗ I``, shape (3m, 3): with Ψ̃ it gives c̃_f (29)."""
-        return np.kron(checks.vector(zeta, "zeta", size=self.size)[:, None], np.eye(3))
+        return np.kron(zeta[:, None], np.eye(3))
 
     def _along(self, omega: Vector) -> sp.csr_array:
         """``I_ζ ⊗ ω``, shape (3m, m), of (28) and (78)."""
-        column = checks.vector(omega, "omega", "rad/s")[:, None]
-        return sp.csr_array(sp.kron(sp.eye_array(self.size), column))
+        return sp.csr_array(sp.kron(sp.eye_array(self.size), omega[:, None]))
