@@ -81,8 +81,8 @@ from exudyn_rotor.multibody.drives.add_drive import add_drive as add_drive
 from exudyn_rotor.multibody.drives.connect_rotors import connect_rotors as connect_rotors
 from exudyn_rotor.multibody.full.full_body import FullRotorBody as FullRotorBody
 from exudyn_rotor.multibody.rotor.connections import ConnectionWarning as ConnectionWarning
+from exudyn_rotor.multibody.rotor.record import StartState as StartState
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody as RotorBody
-from exudyn_rotor.multibody.rotor.start_state import StartState as StartState
 from exudyn_rotor.multibody.solver_settings import recommended_settings as recommended_settings
 from exudyn_rotor.multibody.supports.add_supports import add_supports as add_supports
 from exudyn_rotor.multibody.supports.base_motion import add_base_motion as add_base_motion
@@ -114,7 +114,7 @@ from exudyn_rotor.results import Result as Result
 from exudyn_rotor.results import load_result as load_result
 from exudyn_rotor.ross import from_ross as from_ross
 from exudyn_rotor.solid.carried_prestress import Prestress as Prestress
-from exudyn_rotor.solid.point_mass import PointMass as PointMass
+from exudyn_rotor.solid.rigid_disc import PointMass as PointMass
 from exudyn_rotor.solid.rigid_disc import RigidDisc as RigidDisc
 from exudyn_rotor.solid.rotor import Interface as Interface
 from exudyn_rotor.solid_rotor import SolidRotor as SolidRotor

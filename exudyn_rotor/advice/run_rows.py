@@ -19,7 +19,7 @@ from exudyn_rotor.multibody.rotor.connections import lost_items
 from exudyn_rotor.multibody.rotor.record import Record, implicit_step
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
-from exudyn_rotor.solid.tensor import von_mises
+from exudyn_rotor.solid.elements import von_mises
 from exudyn_rotor.theory.invariants import Invariants, inertia_tensor
 from exudyn_rotor.theory.stiffening import stiffening
 

@@ -11,8 +11,8 @@ from dataclasses import replace
 import numpy as np
 
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
+from exudyn_rotor.multibody.rotor.record import StartState
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.multibody.rotor.start_state import StartState
 from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation
 from exudyn_rotor.reduction.reduced_rotor import ModeKind
 from exudyn_rotor.theory.axis import skew

@@ -91,13 +91,6 @@ def _check_static_state(rotor: FiniteElementRotor, prestress: Prestress) -> None
         balanced = load - rotor.mass @ (free @ (free.T @ load))
     if prestress.load is not None and prestress.displacement is not None:
         _check_computed(rotor, prestress, load, balanced, size)
-    elif not prestress.balanced and rotor.rigid_motions:
-        raise ValueError(
-            "prestress: balanced=False says that held nodes take up the load, but the stiffness "
-            f"of this rotor leaves {rotor.rigid_motions} rigid motions free, which their forces "
-            "would resist falsely; hold them with rotor.clamped(...), or use a matrix computed "
-            "with inertia relief"
-        )
     elif not rotor.grounded:
         _check_rotations(rotor, prestress, balanced)
 

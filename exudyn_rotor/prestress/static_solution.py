@@ -44,8 +44,8 @@ from exudyn_rotor.prestress.given_loads import (
     support_forces,
 )
 from exudyn_rotor.solid.carried_prestress import Prestress
+from exudyn_rotor.solid.elements import von_mises
 from exudyn_rotor.solid.rotor import FiniteElementRotor, Interface, check_unstressed
-from exudyn_rotor.solid.tensor import von_mises
 from exudyn_rotor.solvers.inertia_relief import (
     InertiaRelief,
     Way,

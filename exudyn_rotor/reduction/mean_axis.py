@@ -76,11 +76,11 @@ def use_mean_axis_modes(fem: FEMinterface) -> tuple[int, ...]:
     rigid = rigid_columns(nodes, SpinAxis.of("z"), nodes.mean(axis=0))
     weighted = mass @ rigid
     flexible = modes - rigid @ (scipy.linalg.pinvh(rigid.T @ weighted) @ (weighted.T @ modes))
-    elastic = [
-        index
-        for index in gram_schmidt(flexible, mass)[2]
-        if _norm(flexible[:, index], mass) > NEW * _norm(modes[:, index], mass)
-    ]
+    left, whole = (
+        np.sqrt(np.maximum(np.einsum("ik,ik->k", columns, mass @ columns), 0.0))
+        for columns in (flexible, modes)
+    )
+    elastic = [k for k in gram_schmidt(flexible, mass)[2] if left[k] > NEW * whole[k]]
     if not elastic:
         raise ValueError("fem: its modes are rigid motions alone; no flexible mode would remain")
     fem.modeBasis = {**fem.modeBasis, "matrix": flexible[:, elastic]}
@@ -92,7 +92,3 @@ def use_mean_axis_modes(fem: FEMinterface) -> tuple[int, ...]:
             "matrix": np.asarray(stress)[:, columns],
         }
     return tuple(index for index in range(modes.shape[1]) if index not in elastic)
-
-
-def _norm(column: np.ndarray, mass) -> float:
-    return float(np.sqrt(max(column @ (mass @ column), 0.0)))

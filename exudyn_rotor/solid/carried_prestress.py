@@ -145,7 +145,6 @@ class Prestress:
         euler: Any = None,
         *,
         initial_displacement: tuple[Any, Any] | None = None,
-        balanced: bool = True,
     ) -> Prestress:
         """Take the geometric stiffness of an imported model.
 
@@ -161,9 +160,6 @@ class Prestress:
         initial_displacement : tuple of two such matrices, optional
             ``K_u`` and ``K_uu``, the parts of the tangent stiffness for 1 rad/s that are linear
             and quadratic in the static displacement [N s²/m, N s⁴/m].
-        balanced : bool, optional
-            False if the stress was computed with nodes held fixed, not with inertia relief; the
-            rotor must then be one that holds them, see :meth:`exudyn_rotor.SolidRotor.clamped`.
 
         Raises
         ------
@@ -172,9 +168,7 @@ class Prestress:
         ValueError
             If a shape does not fit, a matrix is not symmetric, or an entry is not finite.
         """
-        return cls(
-            matrix, nodes, euler, initial_displacement=initial_displacement, balanced=balanced
-        )
+        return cls(matrix, nodes, euler, initial_displacement=initial_displacement)
 
     def __repr__(self) -> str:
         names = ("euler", "constant", "by_loads", "initial_displacement")

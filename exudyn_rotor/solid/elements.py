@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
+from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.solid import matrices
@@ -339,3 +340,20 @@ def _hooke(lame: np.ndarray) -> np.ndarray:
     matrix[:, :3, :3] = lame[:, 0, None, None]
     matrix[:, np.arange(6), np.arange(6)] += lame[:, 1:] * [2, 2, 2, 1, 1, 1]
     return matrix
+
+
+# where the six components stand in the 3 × 3 tensor
+_PLACES = ((0, 5, 4), (5, 1, 3), (4, 3, 2))
+
+
+def von_mises(stress: ArrayLike) -> np.ndarray:
+    """Return the von Mises stress of components (…, 6), shape (…)."""
+    xx, yy, zz, yz, xz, xy = np.moveaxis(np.asarray(stress, dtype=float), -1, 0)
+    normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
+    return np.sqrt(normal / 2.0 + 3.0 * (yz**2 + xz**2 + xy**2))
+
+
+def principal(stress: ArrayLike) -> np.ndarray:
+    """Return the principal stresses of components (…, 6), largest first, shape (…, 3)."""
+    tensor = np.asarray(stress, dtype=float)[..., np.array(_PLACES)]
+    return np.linalg.eigvalsh(tensor)[..., ::-1]

@@ -252,19 +252,10 @@ def _is_free(nodes: np.ndarray, stiffness: sp.csr_array, part: np.ndarray) -> bo
     return bool(np.any((residuals < FREE_BELOW) & ~locally_held(residuals, typical)))
 
 
-def described_parts(
-    parts: list[np.ndarray],
-    nodes: np.ndarray,
-    mass: sp.csr_array,
-    elements: SolidElements | None,
-) -> list[str]:
-    """Return materials, number of nodes, mass, box and its middle of each part as text."""
-    return [_described(part, nodes, mass, elements) for part in parts]
-
-
-def _described(
+def described_part(
     part: np.ndarray, nodes: np.ndarray, mass: sp.csr_array, elements: SolidElements | None
 ) -> str:
+    """Return materials, number of nodes, mass, box and its middle of a part as text."""
     names = () if elements is None else elements.materials_at(part)
     weight = mass[3 * part].sum()
     lowest, highest = nodes[part].min(axis=0), nodes[part].max(axis=0)
@@ -293,7 +284,7 @@ def check_connected(
     how = "couple them by springs inside the stiffness matrix"
     if elements is not None:
         how = "make one solid of them before meshing, OCCGeometry(netgen.occ.Glue([a, b]))"
-    told = "; ".join(described_parts(parts[:_LISTED], nodes, mass, elements))
+    told = "; ".join(described_part(part, nodes, mass, elements) for part in parts[:_LISTED])
     raise ValueError(
         f"the model falls into {len(parts)} parts that nothing connects: "
         f"{told}{', …' if len(parts) > _LISTED else ''}. Parts that touch are not connected by "

@@ -15,8 +15,7 @@ from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.elements import SolidElements
 from exudyn_rotor.solid.model import FiniteElementModel, check_connected, check_model_units
-from exudyn_rotor.solid.point_mass import PointMass, add_nodal_mass
-from exudyn_rotor.solid.rigid_disc import STIFF, RigidDisc, as_tensor
+from exudyn_rotor.solid.rigid_disc import STIFF, PointMass, RigidDisc, add_nodal_mass, as_tensor
 from exudyn_rotor.solid.surface import outer_section
 from exudyn_rotor.solvers.inertia_relief import (
     SOLVERS,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.solid.model import described_parts, loose_parts
+from exudyn_rotor.solid.model import described_part, loose_parts
 from exudyn_rotor.solid.rotor import FiniteElementRotor, Interface
 from exudyn_rotor.theory.axis import SpinAxis
 
@@ -25,8 +25,11 @@ def summary(rotor: FiniteElementRotor) -> str:
     ]
     if loose:
         lines.append(f"loose parts      {len(loose)}: nothing connects them")
-    described = described_parts(parts, rotor.nodes, rotor.mass, rotor.elements)
-    lines += [f"part             {number}: {text}" for number, text in enumerate(described, 1)]
+    lines += [
+        f"part             {number}: "
+        + described_part(part, rotor.nodes, rotor.mass, rotor.elements)
+        for number, part in enumerate(parts, 1)
+    ]
     regions = () if rotor.elements is None else rotor.elements.described()
     lines += [
         f"material         {name}: {mass:.6g} kg, E {young:.5g} Pa, ν {ratio:.4g}, "

@@ -25,7 +25,7 @@ from exudyn_rotor.plotting import draw_surface
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import Selection
 from exudyn_rotor.results import Result, numbers, storable
-from exudyn_rotor.solid.tensor import von_mises
+from exudyn_rotor.solid.elements import von_mises
 from exudyn_rotor.units import Units
 from exudyn_rotor.vtk import write_surface
 

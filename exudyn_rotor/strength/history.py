@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.results import Result, numbers, storable
-from exudyn_rotor.solid.tensor import principal, von_mises
+from exudyn_rotor.solid.elements import principal, von_mises
 from exudyn_rotor.strength.field import StressField, check_triangles, warn_without_static
 from exudyn_rotor.units import Units
 

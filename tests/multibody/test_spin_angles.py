@@ -40,7 +40,7 @@ def test_added_markers_have_mesh_axes_and_their_offset(skew_scene):
     interface = solid.interfaces["a"]
     markers = [
         body.add_marker("a", OFFSET),
-        body.add_marker([0, 1, 2, 3], OFFSET, weights=interface.weights, name="own"),
+        body.add_marker([0, 1, 2, 3], OFFSET, name="own"),
         body.add_marker("a", OFFSET, kind="position"),
     ]
     expected = solid.nodes[:4].T @ interface.weights + OFFSET

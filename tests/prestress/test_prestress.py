@@ -10,7 +10,7 @@ from models import STEEL, block_beam, disc_rotor
 from netgen.occ import Cylinder, OCCGeometry, Pnt, Z
 
 from exudyn_rotor import Prestress, SolidRotor, SpinAxis, free_modes
-from exudyn_rotor.solid.tensor import von_mises
+from exudyn_rotor.solid.elements import von_mises
 from exudyn_rotor.theory.axis import rotations
 
 RADIUS, THICKNESS = 0.2, 0.008

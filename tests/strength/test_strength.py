@@ -16,7 +16,7 @@ from exudyn_rotor import (
     select_modes,
     stress_history,
 )
-from exudyn_rotor.solid.tensor import principal, von_mises
+from exudyn_rotor.solid.elements import principal, von_mises
 
 INNER, OUTER, SPEED = 0.05, 0.2, 1000.0
 KINDS = exu.OutputVariableType

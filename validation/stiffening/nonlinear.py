@@ -30,7 +30,7 @@ from netgen.occ import Axis, Box, Cylinder, OCCGeometry, Pnt, X, Z
 from tqdm import tqdm
 
 from exudyn_rotor import SolidRotor
-from exudyn_rotor.solid.tensor import von_mises
+from exudyn_rotor.solid.elements import von_mises
 from exudyn_rotor.solvers.factor import SparseCholesky
 from exudyn_rotor.theory.axis import block_diagonal
 from validation.rows import verdict

@@ -11,7 +11,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.linear.response.response import AtPlaces
 from exudyn_rotor.plotting import axes_or_new, draw_surface, legend_above
 from exudyn_rotor.results import numbers, storable, text_table, words
-from exudyn_rotor.solid.tensor import von_mises
+from exudyn_rotor.solid.elements import von_mises
 from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.units import Units
 

@@ -9,7 +9,6 @@ import exudyn
 import numpy as np
 import scipy.sparse as sp
 from exudyn.itemInterface import SensorSuperElement
-from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.full.ties import Ties, add_ties
@@ -68,18 +67,14 @@ class FullRotorBody(SceneBody):
         return self.selection.source.node_count
 
     @property
-    def condition_count(self) -> int:
-        """Number of conditions that keep the frame's motions out of the displacements."""
-        return len(self.selection.conditions.rows)
-
-    @property
     def _size_in_words(self) -> str:
         return f"{self.node_count} nodes"
 
     def _report_of_coordinates(self) -> list[str]:
+        held = len(self.selection.conditions.rows)
         return [
             f"  nodes          {self.node_count}, {3 * self.node_count} displacements",
-            f"  conditions     {self.condition_count} of the frame, in mass matrix and stiffness",
+            f"  conditions     {held} of the frame, in mass matrix and stiffness",
         ]
 
     def displacement(
@@ -133,10 +128,10 @@ class FullRotorBody(SceneBody):
             self.carriers[interface] = self._tied(known[interface])
         return self.carriers[interface]
 
-    def _nodes_carrier(self, where: Sequence[int], weights: ArrayLike | None, kind: str) -> Carrier:
+    def _nodes_carrier(self, where: Sequence[int], kind: str) -> Carrier:
         """Return what moves with the mean rigid motion of mesh nodes."""
         nodes = self.selection.source.nodes
-        return self._tied(interface_of_nodes(nodes, where, weights, kind))
+        return self._tied(interface_of_nodes(nodes, where, kind))
 
     def _tied(self, interface: Interface) -> Carrier:
         """Add a flexible body whose six coordinates are tied to the nodes of an interface."""
@@ -158,7 +153,7 @@ class FullRotorBody(SceneBody):
         self.check_present()
         checks.count(node, "node", most=self.node_count - 1)
         settings = sensors.settings_at_mesh_node(self, output, options)
-        point = self._nodes_carrier([node], None, "position")
+        point = self._nodes_carrier([node], "position")
         (number,) = append_nodes(self.mbs, point.body, *point.virtual_nodes("position"))
         return self.mbs.AddSensor(
             SensorSuperElement(

@@ -9,15 +9,24 @@ from dataclasses import dataclass
 
 import exudyn
 import numpy as np
+from exudyn.itemInterface import SensorMarker, SensorNode
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor import sensors
 from exudyn_rotor.multibody.rotor.connections import ConnectionWarning, lost_connections
 from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS
-from exudyn_rotor.multibody.rotor.record import Record, add_recording, read_record
+from exudyn_rotor.multibody.rotor.record import (
+    RATES,
+    SAME,
+    Record,
+    StartState,
+    keep_in_node,
+    spin_at_start,
+)
 from exudyn_rotor.multibody.rotor.rotor_items import Carrier, RotorItems, interface_of_nodes
-from exudyn_rotor.multibody.rotor.start_state import StartState, start_from
+
+_KINDS = exudyn.OutputVariableType
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -45,7 +54,7 @@ class SceneBody(RotorItems, ABC):
         """Return lines of :meth:`report` about modes or displacements."""
 
     @abstractmethod
-    def _nodes_carrier(self, where: Sequence[int], weights: ArrayLike | None, kind: str) -> Carrier:
+    def _nodes_carrier(self, where: Sequence[int], kind: str) -> Carrier:
         """Return what moves with the mean rigid motion of mesh nodes."""
 
     @property
@@ -54,11 +63,6 @@ class SceneBody(RotorItems, ABC):
         return not self.motion.is_constant or any(
             each.uses_python for each in (*self.supports, *self.drives)
         )
-
-    @property
-    def locked(self) -> tuple[str, ...]:
-        """Coordinates that exist only because the marker body's node has them."""
-        return self.locks.locked_names
 
     def report(self) -> str:
         """Return a short table of what was added and what it means at run time."""
@@ -69,7 +73,7 @@ class SceneBody(RotorItems, ABC):
             f"  translations   {names[self.formulation.translation_count]}",
             f"  spin           {'unknown' if self.formulation.has_spin else 'prescribed'}",
             *self._report_of_coordinates(),
-            f"  locked         {', '.join(self.locked) or 'none'}",
+            f"  locked         {', '.join(self.locks.locked_names) or 'none'}",
             f"  constraints    {len(self.constraints)}",
             f"  supports       {'; '.join(map(str, self.supports)) or 'none added'}",
             *([f"  drives         {'; '.join(map(str, self.drives))}"] if self.drives else []),
@@ -109,7 +113,6 @@ class SceneBody(RotorItems, ABC):
         where: str | Sequence[int],
         offset: ArrayLike = (0.0, 0.0, 0.0),
         *,
-        weights: ArrayLike | None = None,
         kind: str = "rigid",
         name: str | None = None,
         show: bool = True,
@@ -124,11 +127,9 @@ class SceneBody(RotorItems, ABC):
         Parameters
         ----------
         where : str or sequence of int
-            Interface, with or without a marker yet, or mesh nodes.
+            Interface, with or without a marker yet, or mesh nodes, which count alike.
         offset : array_like, shape (3,)
             From the interface's reference point or the mean of the nodes, mesh axes [m].
-        weights : array_like, optional
-            Of the nodes, as Exudyn's `weightingFactors`; equal by default.
         kind : {'rigid', 'position'}
         name : str, optional
         show : bool
@@ -148,23 +149,34 @@ class SceneBody(RotorItems, ABC):
             if int(self.mbs.GetMarkerNumber(name)) != -1:
                 raise ValueError(f"name: this system already has a marker {name!r}; choose another")
         if not isinstance(where, str):
-            point = self._nodes_carrier(where, weights, kind)
-        elif weights is None:
+            point = self._nodes_carrier(where, kind)
+        else:
             known = tuple(self.selection.source.interfaces)
             point = self.interface_carrier(checks.choice(where, "where: interface", known))
-        else:
-            raise ValueError("weights: are for mesh nodes; an interface has its own")
         if np.any(shift):
             point = point.shifted(shift)
         return point.add_marker(self.mbs, kind, self.frame.B, name=name or "", show=show)
 
     def add_interface_sensor(self, interface: str, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at an interface's marker; `options` go to ``SensorMarker``."""
-        return sensors.add_interface_sensor(self, interface, output, **options)
+        marker = self.marker(interface)
+        kind = self.plan.setup.markers[interface]
+        sensors.check_output(output, sensors.AT_MARKER[kind], f"at a {kind} marker")
+        settings = sensors.settings_of(self, options)
+        return self.mbs.AddSensor(
+            SensorMarker(markerNumber=marker, outputVariableType=output, **settings)
+        )
 
     def add_spin_sensor(self, **options):
         """Add a sensor of spin angle [rad] and spin speed [rad/s]."""
-        return sensors.add_spin_sensor(self, **options)
+        node, index = self.nodes["rigid"], self.locks.spin
+
+        def spin(mbs, t, sensors, factors, configuration):
+            angle = mbs.GetNodeOutput(node, _KINDS.Coordinates, configuration)[index]
+            speed = mbs.GetNodeOutput(node, _KINDS.Coordinates_t, configuration)[index]
+            return [float(angle), float(speed)]
+
+        return sensors.add_function_sensor(self, spin, options)
 
     def add_drive_torque_sensor(self, **options):
         """Add a sensor of the torque about e that a prescribed spin needs [N m]."""
@@ -178,7 +190,16 @@ class SceneBody(RotorItems, ABC):
         work of all other loads and of a prescribed motion (``add_drive_torque_sensor`` gives its
         torque), less what damping takes; a drift without these is the integrator's error.
         """
-        return sensors.add_energy_sensor(self, **options)
+
+        def energy(mbs, t, sensors, factors, configuration):
+            q, q_t, _ = self.coordinates(configuration)
+            gravity = self.plan.setup.gravity
+            if self.gravity_load is not None:  # a script may change it
+                gravity = mbs.GetLoadParameter(self.gravity_load, "loadVector")
+            energy = self.motion.energy(t, q, q_t, gravity)
+            return list(energy)
+
+        return sensors.add_function_sensor(self, energy, options)
 
     def start_recording(self) -> None:
         """Record all coordinates of the coming run, for :func:`exudyn_rotor.check_run`.
@@ -187,11 +208,42 @@ class SceneBody(RotorItems, ABC):
         ``solution.sensors.writePeriod`` says, which decides how much memory a full body takes; a
         step calls no Python for them.
         """
-        add_recording(self)
+        self.check_present()
+        if self.record_sensors:
+            return
+        if self.mbs.systemIsConsistent:
+            raise ValueError(
+                f"start_recording: the system of rotor {self.name!r} is assembled already; call "
+                "this before mbs.Assemble()"
+            )
+        for node in self.nodes.values():
+            for kind in RATES:
+                item = SensorNode(
+                    nodeNumber=node, outputVariableType=kind, storeInternal=True, writeToFile=False
+                )
+                self.record_sensors[int(node), kind] = self.mbs.AddSensor(item)
 
     def recorded(self) -> Record:
         """Return what :meth:`start_recording` recorded; without it the current state alone."""
-        return read_record(self)
+        self.check_assembled()
+        mbs, sensors = self.mbs, self.record_sensors
+        stored = {key: np.atleast_2d(mbs.GetSensorStoredData(one)) for key, one in sensors.items()}
+        complete = bool(stored) and len(next(iter(stored.values()))) > 1
+
+        def values(node: exudyn.NodeIndex, kind: exudyn.OutputVariableType) -> np.ndarray:
+            if complete:
+                return stored[int(node), kind][:, 1:]
+            return np.atleast_2d(mbs.GetNodeOutput(node, kind))
+
+        time = np.array([mbs.systemData.GetTime()])
+        if complete:
+            time = next(iter(stored.values()))[:, 0]
+        parts = [np.hstack([values(node, kind) for node in self.nodes.values()]) for kind in RATES]
+        if self.formulation.has_spin:
+            speed = parts[1][:, self.locks.spin]
+        else:
+            speed = np.array([float(self.formulation.spin.rate(t)) for t in time])
+        return Record(time, *parts, speed, complete)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -212,7 +264,7 @@ class RotorBody(SceneBody):
     >>> body = add_rotor(mbs, rotor.reduce(2), name="fan", spin=10.0, translation="none")
     >>> displacement = body.add_interface_sensor("top", exudyn.OutputVariableType.Displacement)
     >>> force = mbs.CreateForce(itemNumber=body.marker("top"), loadVector=[0.0, 0.0, 5.0])
-    >>> body.locked
+    >>> body.locks.locked_names
     ('x', 'y', 'z', 'tilt a', 'tilt b', 'spin')
     >>> body.uses_python
     False
@@ -226,7 +278,7 @@ class RotorBody(SceneBody):
         labels = self.selection.labels
         return [f"  modes          {len(labels)}: {', '.join(labels)}"]
 
-    def _nodes_carrier(self, where: Sequence[int], weights: ArrayLike | None, kind: str) -> Carrier:
+    def _nodes_carrier(self, where: Sequence[int], kind: str) -> Carrier:
         """Return what moves with the mean rigid motion of mesh nodes."""
         number, nodes = self.objects["marker_body"], tuple(self.nodes.values())
         count = self.mesh_node_count
@@ -236,7 +288,7 @@ class RotorBody(SceneBody):
                 f"has no mesh nodes here; name an interface, got {checks.shown(where)}"
             )
         points = np.reshape(self.mbs.GetObjectParameter(number, "referencePositions"), (-1, 3))
-        interface = interface_of_nodes(points[:count], where, weights, kind)
+        interface = interface_of_nodes(points[:count], where, kind)
         columns = self.mbs.GetObjectParameter(number, "modeBasis")[: 3 * count]
         motion = interface.mean_motion(count) @ columns
         return Carrier(number, interface.reference, motion, interface.radius, nodes)
@@ -268,4 +320,24 @@ class RotorBody(SceneBody):
             For a system without a state yet, a state of another system, or one that does not agree
             with the rotor's prescribed spin.
         """
-        start_from(self, state)
+        checks.instance(state, "state", StartState, "steady_state(body).state() makes one")
+        self.check_assembled()
+        data = self.mbs.systemData
+        size = len(np.atleast_1d(data.GetODE2Coordinates()))
+        if len(state.q) != size:
+            raise ValueError(
+                f"state: has {len(state.q)} coordinates, this system has {size}; it belongs to "
+                "another system, or items were added since"
+            )
+        if not self.formulation.has_spin:
+            angle, speed = spin_at_start(self)
+            if abs(state.angle - angle) > SAME or abs(state.speed - speed) > SAME * abs(speed):
+                raise ValueError(
+                    f"state: is one at {state.angle:g} rad and {state.speed:g} rad/s, the "
+                    f"prescribed spin starts at {angle:g} rad and {speed:g} rad/s"
+                )
+        for configuration in (exudyn.ConfigurationType.Initial, exudyn.ConfigurationType.Current):
+            data.SetODE2Coordinates(state.q, configuration)
+            data.SetODE2Coordinates_t(state.q_t, configuration)
+        for number in range(data.NumberOfNodes()):
+            keep_in_node(self.mbs, number, state)

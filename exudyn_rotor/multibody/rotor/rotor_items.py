@@ -25,7 +25,6 @@ from exudyn.itemInterface import (
     ObjectFFRFreducedOrder,
     VObjectFFRFreducedOrder,
 )
-from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody import ENTRY
@@ -188,15 +187,13 @@ def append_nodes(
     return list(range(first, first + len(positions)))
 
 
-def interface_of_nodes(
-    positions: np.ndarray, where: Sequence[int], weights: ArrayLike | None, kind: str
-) -> Interface:
+def interface_of_nodes(positions: np.ndarray, where: Sequence[int], kind: str) -> Interface:
     """Return mesh nodes among `positions` (n, 3) as an interface; rigid ones show a rotation."""
     described = "where: an interface, or mesh nodes"
     nodes = checks.whole_numbers(where, described, most=len(positions) - 1)
     if len(nodes) == 0 or len(set(nodes.tolist())) != len(nodes):
         raise ValueError(f"{described}: needs different nodes, got {checks.shown(where)}")
-    interface = Interface("nodes", nodes, weights, positions[nodes])
+    interface = Interface("nodes", nodes, None, positions[nodes])
     moments, _ = rotation_moments(interface.positions - interface.center, interface.weights)
     sizes = np.linalg.eigvalsh(moments)
     if kind == "rigid" and sizes[0] <= _FLAT * sizes[-1]:

@@ -9,7 +9,7 @@ from typing import Any
 
 import exudyn
 import numpy as np
-from exudyn.itemInterface import SensorMarker, SensorSuperElement, SensorUserFunction
+from exudyn.itemInterface import SensorSuperElement, SensorUserFunction
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor.frame import LOCKS, driving_force
@@ -26,7 +26,7 @@ _AT_MESH_NODE = (
     _KINDS.VelocityLocal,
     _KINDS.Acceleration,
 )
-_AT_MARKER = {
+AT_MARKER = {
     "position": (_KINDS.Position, _KINDS.Displacement, _KINDS.Velocity),
     "rigid": (
         _KINDS.Position,
@@ -44,17 +44,7 @@ _AT_MARKER = {
 def add_node_sensor(
     body: RotorItems, node: int, output: exudyn.OutputVariableType, **options: Any
 ) -> exudyn.SensorIndex:
-    """Add a ``SensorSuperElement`` at mesh node `node`, stored internally by default.
-
-    Exudyn takes stress (``StressLocal``), here and in its contour plots, from the modal coordinates
-    alone. The static centrifugal stress that the modes do not show is missing, which can be nearly
-    all of the stress; :class:`exudyn_rotor.StressField` adds it.
-
-    Warns
-    -----
-    UserWarning
-        For stress of a rotor that was reduced with a prestress and spins.
-    """
+    """Add a ``SensorSuperElement`` at mesh node `node`, stored internally by default."""
     marker_body, count = body.objects["marker_body"], body.mesh_node_count
     if checks.count(node, "node", least=-1) not in range(count):
         raise ValueError(
@@ -63,12 +53,12 @@ def add_node_sensor(
         )
     stress = body.mbs.GetObjectParameter(marker_body, "outputVariableModeBasis")
     with_stress = np.size(stress) > 0
-    _check_output(
+    check_output(
         output,
         (*_AT_MESH_NODE, _KINDS.StressLocal) if with_stress else _AT_MESH_NODE,
         "at a mesh node" + ("" if with_stress else ", of a rotor reduced without stress"),
     )
-    settings = _settings(body, options)
+    settings = settings_of(body, options)
     _warn_of_static_stress(body, output)
     return body.mbs.AddSensor(
         SensorSuperElement(
@@ -84,8 +74,8 @@ def settings_at_mesh_node(
     body: RotorItems, output: exudyn.OutputVariableType, options: Mapping[str, Any]
 ) -> dict[str, Any]:
     """Return the settings of a sensor at a mesh node of a full body; stress is none of them."""
-    _check_output(output, _AT_MESH_NODE, "at a mesh node of a full body (stress: body.stress())")
-    return _settings(body, options)
+    check_output(output, _AT_MESH_NODE, "at a mesh node of a full body (stress: body.stress())")
+    return settings_of(body, options)
 
 
 def _warn_of_static_stress(body: RotorItems, output: exudyn.OutputVariableType) -> None:
@@ -102,31 +92,6 @@ def _warn_of_static_stress(body: RotorItems, output: exudyn.OutputVariableType) 
         UserWarning,
         stacklevel=4,
     )
-
-
-def add_interface_sensor(
-    body: RotorItems, interface: str, output: exudyn.OutputVariableType, **options: Any
-) -> exudyn.SensorIndex:
-    """Add a ``SensorMarker`` at an interface, stored internally by default."""
-    marker = body.marker(interface)
-    kind = body.plan.setup.markers[interface]
-    _check_output(output, _AT_MARKER[kind], f"at a {kind} marker")
-    settings = _settings(body, options)
-    return body.mbs.AddSensor(
-        SensorMarker(markerNumber=marker, outputVariableType=output, **settings)
-    )
-
-
-def add_spin_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
-    """Add a sensor of θ [rad] and ω [rad/s]."""
-    node, index = body.nodes["rigid"], body.locks.spin
-
-    def spin(mbs, t, sensors, factors, configuration):
-        angle = mbs.GetNodeOutput(node, _KINDS.Coordinates, configuration)[index]
-        speed = mbs.GetNodeOutput(node, _KINDS.Coordinates_t, configuration)[index]
-        return [float(angle), float(speed)]
-
-    return add_function_sensor(body, spin, options)
 
 
 def add_drive_torque_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
@@ -194,33 +159,15 @@ def _external_moment(body: RotorItems):
     return moment
 
 
-def add_energy_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
-    """Add a sensor of the rotor's kinetic and elastic energy and the potential of its weight [J].
-
-    Their sum changes by the work of all other loads and of a prescribed motion, less what damping
-    takes.
-    """
-
-    def energy(mbs, t, sensors, factors, configuration):
-        q, q_t, _ = body.coordinates(configuration)
-        gravity = body.plan.setup.gravity
-        if body.gravity_load is not None:  # a script may change it
-            gravity = mbs.GetLoadParameter(body.gravity_load, "loadVector")
-        energy = body.motion.energy(t, q, q_t, gravity)
-        return list(energy)
-
-    return add_function_sensor(body, energy, options)
-
-
 def add_function_sensor(
     body: RotorItems, function: Callable, options: Mapping[str, Any]
 ) -> exudyn.SensorIndex:
     """Add a sensor of what a user function returns."""
-    settings = _settings(body, options)
+    settings = settings_of(body, options)
     return body.mbs.AddSensor(SensorUserFunction(sensorUserFunction=function, **settings))
 
 
-def _check_output(
+def check_output(
     output: exudyn.OutputVariableType, known: tuple[exudyn.OutputVariableType, ...], where: str
 ) -> None:
     """Refuse what Exudyn would refuse as late as in ``mbs.Assemble()``."""
@@ -232,7 +179,7 @@ def _check_output(
         raise ValueError(f"output: {output.name} is not available {where}; there are: {names}")
 
 
-def _settings(body: RotorItems, options: Mapping[str, Any]) -> dict[str, Any]:
+def settings_of(body: RotorItems, options: Mapping[str, Any]) -> dict[str, Any]:
     """Return the settings of a sensor, stored internally by default."""
     body.check_present()
     known = ("name", "storeInternal", "writeToFile", "fileName")

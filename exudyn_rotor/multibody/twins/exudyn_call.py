@@ -133,7 +133,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
 
     from exudyn_rotor import checks
     from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS, main_system, marker_name
-    from exudyn_rotor.multibody.twins.swapped_body import (
+    from exudyn_rotor.multibody.twins.exudyn_interface import (
         add_swapped_body,
         checked_options,
         numbers,

@@ -32,8 +32,8 @@ from exudyn_rotor.linear.model.scene.scene_checks import check_period, check_sce
 from exudyn_rotor.linear.model.scene.scene_coordinates import Motion, SceneCoordinates, nullspace
 from exudyn_rotor.linear.model.scene.steady_motion import steady_motion
 from exudyn_rotor.linear.model.turning import interface_motion
+from exudyn_rotor.multibody.rotor.record import spin_at_start
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.multibody.rotor.start_state import spin_at_start
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 from exudyn_rotor.multibody.supports.ends import BaseEnd
 from exudyn_rotor.reduction.reduced_rotor import ModeKind
