@@ -303,10 +303,10 @@ def _check_held(model: LinearModel) -> None:
     across = [name for name in free if name not in _NOT_ACROSS]
     # an eccentric rotor spins about its bearings, which is a combination of motions
     if across and len(free) > model.neutral_motions.shape[1]:
-        ends = _ends(model)
+        ends = f": all stand at {_ends(model)}" if _ends(model) else ""
         motion = "tilting" if any("tilt" in name for name in across) else "lateral motion"
         raise ValueError(
-            f"supports: nothing holds the rotor against {motion}: all stand at {ends}; add one at "
+            f"supports: nothing holds the rotor against {motion}{ends}; add one at "
             "another interface"
         )
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from bodies import SHAFT, rings
-from models import disc_rotor
+from models import disc_rotor, disc_with_craig_bampton_modes
 
-from exudyn_rotor import SolidRotor, Support, campbell
+from exudyn_rotor import ShortJournalBearing, SolidRotor, Support, bearing_loads, campbell
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
 
 
@@ -52,3 +52,18 @@ def test_motions_of_a_free_rotor_have_no_damping():
     assert not np.any(result.growth[free])
     assert not np.any(result.damping_ratio[free])
     assert not np.any(result.log_decrement[free])
+
+
+@pytest.mark.filterwarnings("ignore:the harmonics")  # of decays alone
+def test_what_ends_within_a_fraction_of_a_revolution_stands_behind_oscillations():
+    """A mesh in films has periodic equations, which give decays of 1e6 1/s multiples of Ω."""
+    reduced = disc_with_craig_bampton_modes()
+    ends = list(reduced.interfaces)
+    size = {"radius": 0.015, "length": 0.015, "clearance": 4e-5, "viscosity": 0.02}
+    loads = bearing_loads(reduced, ends, [0.0, -9.81, 0.0])
+    films = [
+        ShortJournalBearing(interface=end, load=load, **size)
+        for end, load in zip(ends, loads, strict=True)
+    ]
+    result = campbell(reduced, [300.0], supports=films, modes=7, accuracy=None)
+    assert np.all(result.growth > -1e4)
