@@ -74,7 +74,6 @@ class Balance:
     laws: Laws
     rest: Rest
     reach: tuple[int, int]  # K and N
-    damper: float = 0.0  # added to every law [N s/m]
 
     # ------------------------------------------------------------ harmonics and values
 
@@ -129,7 +128,6 @@ class Balance:
         motion = self.motion(c)
         f, slopes = self.laws.along(motion, *self.phases, self.rest.speed)
         k, d = (each.reshape(-1, 2) for each in (self.laws.springs, self.laws.dampers))
-        d = d - self.damper
         g = f + k * motion[..., :2] + d * motion[..., 2:]
         both = np.concatenate([k[:, :, None] * np.eye(2), d[:, :, None] * np.eye(2)], axis=-1)
         return g.reshape(len(g), -1), both - slopes
@@ -237,7 +235,7 @@ class Balance:
         g, slopes = self.forces(c)
         K, N = self.reach
         wide = tuple(max(2 * top, _FEWEST // 2 - 1) if top else 0 for top in (K, N))
-        beyond = Balance(self.laws, self.rest, wide, self.damper)
+        beyond = Balance(self.laws, self.rest, wide)
         k, n = beyond.orders.T
         out = (np.abs(k) > K) | (np.abs(n) > N)
         A, B = self.points

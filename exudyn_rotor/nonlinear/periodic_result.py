@@ -82,7 +82,7 @@ class PeriodicResponse(Result):
     coordinates : ndarray of complex, shape (p, c, k), optional
         Harmonics of the coordinates of the reduced rotor in its own axes, from which runs begin.
     beside : tuple of str, optional
-        Names of those after the reduced rotor's: of a foundation, controllers and pads.
+        Names of those after the reduced rotor's: of a foundation, of controllers.
 
     Examples
     --------
@@ -250,7 +250,7 @@ class PeriodicResponse(Result):
         Raises
         ------
         TypeError, ValueError
-            For another rotor, foundation or controllers, and a system that is not assembled.
+            For another rotor or foundation, controllers or pads, or a system not assembled.
         """
         reduced_body(body)
         angle = spin_at_start(body)[0] if angle is None else checks.number(angle, "angle", "rad")
@@ -263,7 +263,7 @@ class PeriodicResponse(Result):
         phases = angle * (rates / speed) if speed else 0.0 * rates
         turned = np.exp(1j * phases)[:, None] * self.coordinates[point]
         x, x_t = turned.sum(axis=0).real, (1j * rates[:, None] * turned).sum(axis=0).real
-        return state_in_scene(body, x, x_t, self.beside, angle, speed)
+        return state_in_scene(body, x, x_t, len(self.beside), angle, speed)
 
     def _point(self, point: int) -> int:
         return checks.count(point, "point", most=len(self.values) - 1)

@@ -31,8 +31,6 @@ from exudyn_rotor.theory.rotating_axes import axes_of, parts_across
 _DEPTH = 1e-3  # of the radius of the elements, at which a contact has the stiffness of k₀
 _INSIDE = 0.5  # of a clearance, where a film has that of k₀
 _SAME_PASS = 1e-9  # relative distance of ball pass frequencies that is rounding
-_DAMPING = (1.0, 0.1)  # of k₀ over the frequency, with which a search begins
-_SHARES = np.linspace(0.1, 1.0, 10)  # of the loads, by which they grow
 _MORE_UNBALANCE = 2.0 ** np.arange(6.0, -0.5, -0.5)
 _ROUGH = 1e-3
 _RESTS = 4  # speeds
@@ -164,23 +162,21 @@ class Problem:
         reach: tuple[int, int],
         *,
         unbalance: float = 1.0,
-        share: float = 1.0,
         more: float = 1.0,
         whirl: float | None = None,
-        damper: float = 0.0,
     ) -> Balance:
         """Return the equations at a speed.
 
-        With a factor of the unbalance, times `more`, with a share of all loads, and with a
-        frequency of the second phase other than that of the ball pass [rad/s].
+        With a factor of the unbalance, times `more`, and with a frequency of the second phase
+        other than that of the ball pass [rad/s].
         """
-        loads = {n: share * F for n, F in self.static.items()}
+        loads = dict(self.static)
         for n, F in self.unbalance.items():
-            loads[n] = loads.get(n, 0.0) + share * more * unbalance * speed**2 * F
+            loads[n] = loads.get(n, 0.0) + more * unbalance * speed**2 * F
         first = self.laws.passes * speed if whirl is None else whirl
         rates = first, speed / self.revolutions
         rest = Rest(self._unloaded(speed), rates, self.revolutions, loads)
-        return Balance(self.laws, rest, reach, damper)
+        return Balance(self.laws, rest, reach)
 
     def _unloaded(self, speed: float) -> Unloaded:
         """Return the rest at a speed, the last few of which are kept."""
@@ -192,14 +188,14 @@ class Problem:
 
     # ------------------------------------------------------------ where a search begins
 
-    def at_rest(self, speed: float, share: float = 1.0) -> tuple[Balance, np.ndarray]:
+    def at_rest(self, speed: float) -> tuple[Balance, np.ndarray]:
         """Return the mean place of the journals under static loads, c (1, d).
 
         Raises
         ------
         UnconvergedError
         """
-        balance = self.balance(speed, (0, 0), unbalance=0.0, share=share)
+        balance = self.balance(speed, (0, 0), unbalance=0.0)
         load = (self.laws.springs * balance.given[0].real).reshape(-1, 2)
         guess = [
             _resting(one, ratio * speed, f)
@@ -222,31 +218,11 @@ class Problem:
             yield balance, c
         except (UnconvergedError, np.linalg.LinAlgError):
             pass
-        for way in (self._by_more_loads, self._by_less_damping, self._by_less_unbalance):
-            try:
-                c = way(of)
-            except UnconvergedError:
-                continue
-            yield of(self.reach), c
-
-    def _by_more_loads(self, of: Callable[..., Balance]) -> np.ndarray:
-        c = 0.0 * of(self.reach).given
-        for share in _SHARES:
-            c = of(self.reach, share=share).solved(c, _ROUGH)
-        return c
-
-    def _by_less_damping(self, of: Callable[..., Balance]) -> np.ndarray:
-        balance = of(self.reach)
-        c, fastest = self._pressed(balance), max(np.abs(balance.nu).max(), 1.0)
-        for part in _DAMPING:
-            more = part * self.laws.springs.max() / fastest
-            c = of(self.reach, damper=more).solved(c, _ROUGH)
-        return c
+        if self.unbalance:
+            yield of(self.reach), self._by_less_unbalance(of)
 
     def _by_less_unbalance(self, of: Callable[..., Balance]) -> np.ndarray:
         """Return the whirl that a larger one becomes: of rotors that unbalance alone presses."""
-        if not self.unbalance:
-            raise UnconvergedError("no unbalance")
         c = None
         for more in _MORE_UNBALANCE:
             balance = of(self.reach, more=more)
