@@ -206,10 +206,6 @@ class Balance:
                 return c
         raise UnconvergedError("no steady motion of these frequencies was found")
 
-    def padded(self, c: np.ndarray, reach: tuple[int, int]) -> np.ndarray:
-        """Return harmonics (h, d) of another reach with these."""
-        return padded(c, reach, self.reach)
-
     def coordinates(self, c: np.ndarray) -> dict[tuple[int, int], np.ndarray]:
         """Return the harmonics (k,) of all coordinates of the rest, of both signs."""
         g = self.spectrum(self.forces(c)[0])[self._places]

@@ -26,7 +26,7 @@ from exudyn_rotor.linear.model.build import Target
 from exudyn_rotor.linear.response.loads import At, HarmonicForce, checked_places
 from exudyn_rotor.linear.stability.thresholds import StabilityThresholds
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.nonlinear.balance import Balance, orders_of
+from exudyn_rotor.nonlinear.balance import Balance, orders_of, padded
 from exudyn_rotor.nonlinear.beside import Beside
 from exudyn_rotor.nonlinear.collect import collected
 from exudyn_rotor.nonlinear.continuation import Family, Point
@@ -166,7 +166,7 @@ def _hopf(
     def at(p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         mean = problem.at_rest(float(p[1]))[1]
         balance = problem.balance(float(p[1]), (1, 0), whirl=float(p[0]))
-        J = balance.linearised(balance.padded(mean, (0, 0)))[1]
+        J = balance.linearised(padded(mean, (0, 0), (1, 0)))[1]
         d = mean.size
         return mean[0], J[2 * d :, 2 * d :]  # of the harmonic 1
 

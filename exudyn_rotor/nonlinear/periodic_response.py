@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -159,19 +159,13 @@ def periodic_response(
     given = as_lists(target, body, given_supports(supports), foundation, gravity, loads, stiffening)
     if callable(over) and given.supports:
         raise ValueError("supports: come from over=…, a function; leave them out")
-    make = partial(
-        Problem.of, unbalances=unbalances, own=own, revolutions=revolutions,
-    )  # fmt: skip
+    make = partial(Problem.of, unbalances=unbalances, own=own, revolutions=revolutions)
     if callable(over):
-        known: dict[float, Problem] = {}
 
+        @lru_cache(maxsize=4)
         def problem_at(value: float) -> Problem:
-            if value not in known:
-                if len(known) > 3:
-                    known.pop(next(iter(known)))
-                one = given._replace(supports=given_supports(over(value)))
-                known[value] = make(one, speed=speed, highest=speed)
-            return known[value]
+            one = given._replace(supports=given_supports(over(value)))
+            return make(one, speed=speed, highest=speed)
     else:
         highest = values[-1] if over == "speed" else speed
         lowest = next(iter(values[values > 0.0]), 0.0) if over == "speed" else speed

@@ -22,7 +22,7 @@ from exudyn_rotor.linear.response.loads import (
     total,
     unbalance_load,
 )
-from exudyn_rotor.nonlinear.balance import Balance, Laws, real_part_of
+from exudyn_rotor.nonlinear.balance import Balance, Laws, padded, real_part_of
 from exudyn_rotor.nonlinear.rest import Rest, Unloaded, of_both_signs
 from exudyn_rotor.nonlinear.scene import Listed
 from exudyn_rotor.reduction.reduced_rotor import ModeKind
@@ -202,7 +202,12 @@ class Problem:
             for one, ratio, f in zip(self.laws.bearings, self.laws.ratios, load, strict=True)
         ]
         tried = [np.ravel(guess)[None] + 0j, np.zeros_like(balance.given), balance.given]
-        return balance, _first_of(balance, tried)
+        for c in tried:
+            try:
+                return balance, balance.solved(c)
+            except UnconvergedError as failed:
+                lost = failed
+        raise lost
 
     def starts(self, of: Callable[..., Balance]) -> Iterator[tuple[Balance, np.ndarray]]:
         """Yield equations and harmonics, each nearer by more work, from which a search may lead.
@@ -212,7 +217,7 @@ class Problem:
         balance = of(self.reach)
         try:
             _, mean = self.at_rest(balance.rest.speed)
-            c = balance.padded(mean, (0, 0))
+            c = padded(mean, (0, 0), balance.reach)
             left, J = balance.linearised(c, mean=True)
             yield balance, c - real_part_of(np.linalg.solve(J, left.ravel()).reshape(c.shape))
             yield balance, c
@@ -241,15 +246,6 @@ class Problem:
         k, n = balance.orders.T
         A, B = balance.points
         return balance.spectrum(places.reshape(len(places), -1))[k % A, n % B]
-
-
-def _first_of(balance: Balance, tried: Sequence[np.ndarray]) -> np.ndarray:
-    for c in tried:
-        try:
-            return balance.solved(c)
-        except UnconvergedError as failed:
-            lost = failed
-    raise lost
 
 
 def _resting(one: Bearing, speed: float, load: np.ndarray) -> np.ndarray:

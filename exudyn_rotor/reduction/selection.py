@@ -15,7 +15,9 @@ from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.invariants import Invariants
 
-NEGLIGIBLE = 1e-10  # see `negligible` of select_modes
+# share of their upper bound, by Cauchy and Schwarz, below which couplings and moments of mass are
+# round-off, and are not evaluated in a time step; a real unbalance is far above
+NEGLIGIBLE = 1e-10
 _SAME = 1e-6  # share of the largest entry below which a difference of bases is round-off
 
 
@@ -69,9 +71,7 @@ class Selection:
         return f"Selection({len(self.labels)} of the {self.T.shape[0]} columns of {self.source!r})"
 
 
-def select_modes(
-    reduced: ReducedRotor, formulation: Formulation, negligible: float = NEGLIGIBLE
-) -> Selection:
+def select_modes(reduced: ReducedRotor, formulation: Formulation) -> Selection:
     """Pick the columns of `reduced` for `formulation`.
 
     Rigid motions held by the frame leave the basis. What remains is orthogonal to the frame's
@@ -83,15 +83,11 @@ def select_modes(
     ----------
     reduced : ReducedRotor
     formulation : Formulation
-    negligible : float
-        Couplings and moments of mass below this share of their upper bound, which Cauchy and
-        Schwarz give, are taken as zero, and what belongs to them is not evaluated in a time step.
-        A real unbalance is such a moment: leave this at the level of round-off to keep it.
 
     Raises
     ------
     TypeError, ValueError
-        When the rotor cannot be used in this formulation, or `negligible` is not in [0, 1).
+        When the rotor cannot be used in this formulation.
 
     Examples
     --------
@@ -105,7 +101,6 @@ def select_modes(
     """
     checks.instance(reduced, "reduced", ReducedRotor, "SolidRotor.reduce(…) makes one")
     checks.instance(formulation, "formulation", Formulation)
-    negligible = checks.number(negligible, "negligible", least=0.0, below=1.0)
     _check_possible(reduced, formulation)
     if formulation.translation_count:
         origin = reduced.center_of_mass
@@ -118,18 +113,18 @@ def select_modes(
         origin=checks.read_only(origin),
         kinds=tuple(reduced.kinds[i] for i in columns),
         labels=tuple(reduced.labels[i] for i in columns),
-        invariants=_without_noise(invariants, negligible),
+        invariants=_without_noise(invariants),
         source=reduced.without_shapes(),
     )
 
 
-def _without_noise(invariants: Invariants, negligible: float) -> Invariants:
+def _without_noise(invariants: Invariants) -> Invariants:
     """Put zeros for what is negligible; the columns are mass-orthonormal."""
     size = np.sqrt(invariants.mass)
     spread = np.sqrt(np.diag(invariants.J))[:, None, None]
 
     def cut(values: np.ndarray, bound: float | np.ndarray) -> np.ndarray:
-        return np.where(np.abs(values) < negligible * bound, 0.0, values)
+        return np.where(np.abs(values) < NEGLIGIBLE * bound, 0.0, values)
 
     return replace(
         invariants,

@@ -266,11 +266,6 @@ class FiniteElementRotor:
         """Euler nodal load ``−M ẽx`` per ω̇, shape (3n,) [N s²]."""
         return -self.mass @ np.cross(self.axis.direction, self.nodes - self.axis.point).ravel()
 
-    @property
-    def mass_kind(self) -> str:
-        """'lumped' if the mass matrix is diagonal, else 'consistent'."""
-        return "lumped" if self.mass.nnz == np.count_nonzero(self.mass.diagonal()) else "consistent"
-
     def with_solver(self: Rotor, solver: str) -> Rotor:
         """Return the rotor with another solver, 'auto', 'direct' or 'iterative'.
 

@@ -12,12 +12,13 @@ from exudyn_rotor.theory.axis import SpinAxis
 def summary(rotor: FiniteElementRotor) -> str:
     """Return what `rotor` consists of and is held by, as lines of text."""
     axis, e = rotor.axis, rotor.axis.direction
+    kind = "lumped" if rotor.mass.nnz == np.count_nonzero(rotor.mass.diagonal()) else "consistent"
     support = "grounded" if rotor.grounded else "not supported"
     loose = loose_parts(rotor.nodes, rotor.stiffness)
     parts = loose or [np.arange(rotor.node_count)]
     lines = [
         f"nodes            {rotor.node_count}",
-        f"mass             {rotor.total_mass:.6g} kg ({rotor.mass_kind} mass matrix)",
+        f"mass             {rotor.total_mass:.6g} kg ({kind} mass matrix)",
         f"centre of mass   {_vector(rotor.center_of_mass)} m",
         f"spin axis        direction {_vector(e)}, point {_vector(axis.point)} m",
         f"across the axis  {directions(axis)}",

@@ -108,16 +108,9 @@ def test_recommended_settings_follow_the_accuracy():
     assert recommended_settings(0.1, 1e-3).timeIntegration.numberOfSteps == 100
 
 
-def test_negligible_decides_what_is_evaluated():
-    """A slight unbalance stays by default, and goes where the caller takes it for nothing."""
+def test_a_slight_unbalance_is_no_rounding():
+    """The mass m at radius r shifts the centre by m r / M, 4.5e-6 of the radius of gyration."""
     rotor = ring_rotor(0.1, 0.2, 5.0).add_point_mass([0.1, 0.0, 0.2], 1e-5)
-    reduced, fixed = rotor.reduce(0), Formulation("none", 10.0)
-    kept = select_modes(reduced, fixed).invariants
-    gone = select_modes(reduced, fixed, negligible=1e-4).invariants
-    # the mass m at radius r shifts the centre by m r / M, 4.5e-6 of the radius of gyration
+    kept = select_modes(rotor.reduce(0), Formulation("none", 10.0)).invariants
     assert np.linalg.norm(kept.center) == pytest.approx(1e-6 / 5.0, rel=1e-5)
     assert np.any(kept.h)
-    assert not np.any(gone.center)
-    assert not np.any(gone.h)
-    with pytest.raises(ValueError, match="negligible: needs"):
-        select_modes(reduced, fixed, negligible=1.0)
