@@ -322,8 +322,10 @@ def load_result(path: str | PathLike) -> Result:
     >>> import tempfile
     >>> from pathlib import Path
     >>> from exudyn_rotor import StabilityMap, load_result
+    >>> motion = {"frequencies_inertial": [[60.0, 70.0]], "log_decrement": [[0.05, -0.04]]}
+    >>> motion |= {"whirl_codes": [[0, 0]], "nodal_diameters": [[1, 1]], "labels": ("Ω", "d")}
     >>> growth, stable = [[-0.1, 0.2]], [[True, False]]
-    >>> result = StabilityMap([100.0], [0.0, 50.0], growth, stable, ("Ω [rad/s]", "d [N s/m]"))
+    >>> result = StabilityMap([100.0], [0.0, 50.0], growth, stable, **motion)
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     result.save(Path(folder, "map.npz"))
     ...     load_result(Path(folder, "map.npz"))
