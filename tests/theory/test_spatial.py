@@ -8,8 +8,7 @@ from exudyn.FEM import FEMinterface, ObjectFFRFreducedOrderInterface
 from exudyn.itemInterface import NodePoint, NodeRigidBodyEP, ObjectFFRF
 from exudyn.utilities import EulerParameters2GLocal, EulerParameters2RotationMatrix
 from point_rotors import random_arrays, random_invariants
-
-from validation.exudyn_3d.spatial_frame import SpatialFrame
+from spatial_frame import SpatialFrame
 
 
 def cardan(angles: np.ndarray) -> np.ndarray:

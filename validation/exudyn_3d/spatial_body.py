@@ -6,7 +6,7 @@ conditions keep the rigid motions, which the frame describes, out of them:
     ΦᵀM c_f = 0,   x̃ᵀM c_f = 0
 
 Zwölfer, Rasmussen, Santos, SSRN 4830498, Sect. 2.1 and
-:mod:`validation.exudyn_3d.spatial_frame`, whose mass matrix and forces are those of the body to
+``tests/theory/spatial_frame.py``, whose mass matrix and forces are those of the body to
 round-off. Exudyn computes its nonlinear terms densely, and their derivatives by differences of all
 coordinates: 0.15 s a step with 257 nodes.
 """
