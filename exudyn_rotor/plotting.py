@@ -171,7 +171,8 @@ def draw_surface(
     low, high = points.min(axis=0), points.max(axis=0)
     around = 0.5 * np.maximum(0.2 * np.max(high - low) - (high - low), 0.0)  # of a slender body
     for name, start, end in zip("xyz", low - around, high + around, strict=True):
-        ax.set(**{f"{name}lim": (start, end), f"{name}label": f"{name} [m]"})
+        ax.set(**{f"{name}lim": (start, end)})
+        getattr(ax, f"set_{name}label")(f"{name} [m]", labelpad=12.0)
         getattr(ax, f"{name}axis").set_major_locator(MaxNLocator(3))
     ax.set_aspect("equal")
     ax.figure.colorbar(mapped, ax=ax, label=label, pad=0.15, shrink=0.8)

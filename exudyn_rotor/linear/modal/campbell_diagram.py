@@ -179,7 +179,7 @@ def draw_campbell(
     """
     from matplotlib.lines import Line2D
 
-    marker = {"marker": "o", "ms": 4} if len(speeds) == 1 else {}
+    marker, seen = {"marker": "o", "ms": 4} if len(speeds) == 1 else {}, set()
     for column in range(values.shape[1]):
         code, joined = codes[:, column], continued[:, column]
         # the way to a speed takes its style: at rest the sense is not yet settled
@@ -188,12 +188,14 @@ def draw_campbell(
         for start, stop in itertools.pairwise([*starts, len(speeds)]):
             first = max(start - 1, 0) if joined[start] else start
             color, line = _STYLES[style[start]]
-            part, label = slice(first, stop), f"_{whirl.WHIRLS[style[start]]}"
-            given = {"ls": line, "color": color, "lw": 1.3, "label": label, **marker}
-            ax.plot(speeds[part], values[part, column], **given)
+            part = slice(first, stop)
+            ax.plot(speeds[part], values[part, column], ls=line, color=color, lw=1.3, **marker)
+            if np.any(np.isfinite(values[part, column])):
+                seen.add(int(style[start]))
     handles = [
         Line2D([], [], color=color, ls=line, label=whirl.WHIRLS[code])
         for code, (color, line) in _STYLES.items()
+        if code in seen
     ]
     if np.any(unstable):
         at = np.broadcast_to(speeds[:, None], unstable.shape)[unstable]
