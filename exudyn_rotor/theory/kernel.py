@@ -27,7 +27,7 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.theory.axis import skew
-from exudyn_rotor.theory.frame import FloatingFrame
+from exudyn_rotor.theory.formulation import FloatingFrame
 
 
 @dataclass(frozen=True, eq=False)

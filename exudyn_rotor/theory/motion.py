@@ -32,7 +32,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.theory.frame import FloatingFrame, checked_time
+from exudyn_rotor.theory.formulation import FloatingFrame, checked_time
 from exudyn_rotor.theory.kernel import ConstantPart, Kernel, constant_part
 from exudyn_rotor.theory.terms import Terms, terms_of
 

@@ -18,7 +18,7 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
 from exudyn_rotor.theory.axis import skew
-from exudyn_rotor.theory.frame import FloatingFrame, Instant
+from exudyn_rotor.theory.formulation import FloatingFrame, Instant
 
 
 class Term(NamedTuple):
