@@ -45,7 +45,7 @@ _STATIC = 1e-7  # share of the speed: a frequency seen from outside that is roun
 _SAME = 1e-8  # relative distance of λ of repeated motions
 _NO_OSCILLATION = 1e-6  # share of |λ| below which a frequency is that of critical damping
 _GONE = 100.0  # decay over Ω of a motion that is over before the rotor turns
-_GONE_FREQUENCY = 1e-2  # share of such a decay: a frequency below it is an arbitrary multiple of Ω
+_GONE_FREQUENCY = 1e-2  # share of such a decay: of periodic equations below it a multiple of Ω
 _DIGITS = 9  # of energies, and of what is sorted: beyond them numbers are equal
 _NO_ENERGY = 1e-12  # share of the energy of a unit motion that is none
 _SAMPLES = 8000  # nodes of the mesh
@@ -339,7 +339,8 @@ def _still(found: Named) -> Named:
     moves = oscillates(growth, found.inertial, bounds)
     # what is over before the rotor turns has no frequency of its own
     gone = -growth > _GONE * np.abs(found.motions.speeds[:, None])
-    moves &= (found.rotor > _GONE_FREQUENCY * np.abs(growth)) | ~gone
+    least = _GONE_FREQUENCY if len(found.motions.orders) > 1 else _NO_OSCILLATION
+    moves &= (found.rotor > least * np.abs(growth)) | ~gone
     lateral = np.isin(found.codes, (FORWARD, BACKWARD, MIXED, STATIC))
     overdamped = np.where(growth < -bounds, OVERDAMPED, STATIC)
     codes = np.where(lateral & ~moves, overdamped, found.codes)
