@@ -168,8 +168,3 @@ def table_lines(columns: Mapping[str, np.ndarray], *left_out: str) -> list[str]:
         left_out += ("basis error",)
     shown = {name: each for name, each in columns.items() if name not in left_out}
     return text_table({{"nodal diameters": "n"}.get(name, name): shown[name] for name in shown})
-
-
-def in_table(error: float, digits: int = 1) -> str:
-    """Return an error as tables show it: '-' where it was not estimated."""
-    return "-" if np.isnan(error) else f"{error:.{digits}e}"

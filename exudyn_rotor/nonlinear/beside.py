@@ -56,8 +56,7 @@ class Beside:
     @cached_property
     def _places(self) -> np.ndarray:
         """Orthonormal motions (p, r) that laws act on."""
-        rows = np.vstack([np.vstack([C.real, C.imag]) for C in self._rest.journals.values()])
-        _, sizes, V = np.linalg.svd(rows, full_matrices=False)
+        _, sizes, V = np.linalg.svd(self._rest.rows, full_matrices=False)
         return V[sizes > _DEPENDENT * sizes[0]]
 
     def _changes(self, phi: np.ndarray, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

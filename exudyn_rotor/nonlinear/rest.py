@@ -86,8 +86,7 @@ class Unloaded:
         M, _, K = self.system.matrices()
         squares, shapes = eigh(0.5 * (K + K.T), 0.5 * (M + M.T))
         fast = squares > frequency**2
-        felt = np.vstack([np.vstack([C.real, C.imag]) for C in self.journals.values()])
-        yields = shapes[:, fast] @ ((felt @ shapes[:, fast]) / squares[fast]).T
+        yields = shapes[:, fast] @ ((self.rows @ shapes[:, fast]) / squares[fast]).T
         static = orth(yields, rcond=_DEPENDENT) if np.any(yields) else yields[:, :0]
         if static.shape[1] >= np.sum(fast):
             return self
@@ -109,6 +108,11 @@ class Unloaded:
         """C (d, r)."""
         found = _journals(self.model, tuple(self.names), bool(self.speed))
         return found if self.within is None else {n: C @ self.within for n, C in found.items()}
+
+    @cached_property
+    def rows(self) -> np.ndarray:
+        """All parts of C as real rows: what laws feel of the motions."""
+        return np.vstack([np.vstack([C.real, C.imag]) for C in self.journals.values()])
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,7 +16,6 @@ from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
 _SAME = 1e-9  # relative slip of gears that is rounding
-_OF_DISTANCE = 1e-3  # of the centre distance of gears
 
 
 @dataclass(frozen=True, eq=False)

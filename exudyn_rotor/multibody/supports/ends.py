@@ -30,7 +30,6 @@ _REFERENCE = exudyn.ConfigurationType.Reference
 _ROUNDING = 1e-12  # of the coordinates of a place
 # bodies for which Exudyn has a rotation matrix, but no rigid marker
 _POINTS = ("MassPoint", "MassPoint2D", "Mass1D")
-_HIDDEN = {"show": False, "showMarkerNodes": False}
 Base = exudyn.MarkerIndex | exudyn.ObjectIndex | SceneFoundation
 
 
