@@ -24,7 +24,7 @@ from exudyn_rotor.multibody.rotor.rotor_items import (
 from exudyn_rotor.solid.rotor import Interface
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class FullRotorBody(SceneBody):
     """A full fixed-axis rotor inside an ``mbs``; :func:`exudyn_rotor.add_rotor` makes it.
 
@@ -58,7 +58,7 @@ class FullRotorBody(SceneBody):
     True
     """
 
-    ties: exudyn.ObjectIndex | None = None
+    ties: exudyn.ObjectIndex
     carriers: dict = field(default_factory=dict, init=False, repr=False)
 
     @property
@@ -135,13 +135,13 @@ class FullRotorBody(SceneBody):
 
     def _tied(self, interface: Interface) -> Carrier:
         """Add a flexible body whose six coordinates are tied to the nodes of an interface."""
-        inv, size = self.motion.invariants, self.motion.invariants.size
+        size = self.motion.invariants.size
         rows, none = sp.csr_array(interface.mean_motion(size // 3)), np.zeros((0, size))
         ties = Ties(rows, none, none)
-        tied, _ = add_ties(self.mbs, self.nodes["fields"], ties, inv, self.plan.start)
+        tied, _ = add_ties(self.mbs, self.nodes["fields"], ties, self)
         nodes = self.nodes["rigid"], tied
         return Carrier(
-            self.mbs.AddObject(flexible_body(self.plan, nodes, np.zeros((3, 6)))),
+            self.mbs.AddObject(flexible_body(self, nodes, np.zeros((3, 6)))),
             self.frame.points(interface.reference),
             np.kron(np.eye(2), self.frame.B),
             interface.radius,

@@ -7,6 +7,7 @@ Exudyn factorises the Jacobian of an implicit step by Eigen's ``SparseLU``, orde
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
@@ -119,16 +120,11 @@ def make_full_plan(rotor: SolidRotor, setup: Setup) -> Plan:
     inv = replace(held.invariants, K2=None, B=None, K4=None)
     fields = NodalFields(checks.read_only(origin), inv, rotor, held)
 
-    def motion(
-        formulation: Formulation, plane: np.ndarray | None, gravity: np.ndarray | None
-    ) -> FullMotion:
-        return FullMotion(inv, formulation, second, setup.placement.rotation, plane, gravity)
-
-    start = (
-        _start(setup.modal_coordinates, "modal_coordinates", held),
-        _start(setup.modal_velocities, "modal_velocities", held),
-    )
-    return laid_out(setup, fields, motion, start)
+    start = {
+        name: _start(getattr(setup, name), name, held)
+        for name in ("modal_coordinates", "modal_velocities")
+    }
+    return laid_out(replace(setup, **start), fields, partial(FullMotion, inv), second)
 
 
 def _invariants(rotor: SolidRotor, origin: np.ndarray) -> Invariants:

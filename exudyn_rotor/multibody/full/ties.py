@@ -30,7 +30,7 @@ import numpy as np
 import scipy.sparse as sp
 from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 
-from exudyn_rotor.multibody.rotor.plan import generic_node
+from exudyn_rotor.multibody.rotor.plan import Plan, generic_node
 from exudyn_rotor.theory.invariants import Invariants
 
 _SCALE = 1e-3  # of rows over mass matrix
@@ -104,16 +104,13 @@ def add_ties(
     mbs: exudyn.MainSystem,
     fields: exudyn.NodeIndex,
     ties: Ties,
-    invariants: Invariants,
-    start: tuple[np.ndarray, np.ndarray],
+    plan: Plan,
 ) -> tuple[exudyn.NodeIndex, exudyn.ObjectIndex]:
-    """Add the coordinates z and the ties to the node of the displacements; return their node.
-
-    `start` holds displacements and velocities (3n,) at the start.
-    """
-    tied = mbs.AddNode(generic_node(*(ties.rows @ values for values in start)))
-    T = ties.matrix(invariants)
-    width, size = invariants.size, T.shape[0]
+    """Add the coordinates z and the ties to the node of the displacements; return their node."""
+    start = (ties.rows @ plan.modal_coordinates, ties.rows @ plan.modal_velocities)
+    tied = mbs.AddNode(generic_node(*start))
+    T = ties.matrix(plan.motion.invariants)
+    width, size = plan.motion.invariants.size, T.shape[0]
     multipliers = generic_node(*np.zeros((2, size - width - ties.count)))
     stiffness = RATE**2 * T
     if ties.stiffness is not None:

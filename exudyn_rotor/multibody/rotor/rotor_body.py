@@ -160,7 +160,7 @@ class SceneBody(RotorItems, ABC):
     def add_interface_sensor(self, interface: str, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at an interface's marker; `options` go to ``SensorMarker``."""
         marker = self.marker(interface)
-        kind = self.plan.setup.markers[interface]
+        kind = self.marker_kinds[interface]
         sensors.check_output(output, sensors.AT_MARKER[kind], f"at a {kind} marker")
         settings = sensors.settings_of(self, options)
         return self.mbs.AddSensor(
@@ -193,7 +193,7 @@ class SceneBody(RotorItems, ABC):
 
         def energy(mbs, t, sensors, factors, configuration):
             q, q_t, _ = self.coordinates(configuration)
-            gravity = self.plan.setup.gravity
+            gravity = self.gravity
             if self.gravity_load is not None:  # a script may change it
                 gravity = mbs.GetLoadParameter(self.gravity_load, "loadVector")
             energy = self.motion.energy(t, q, q_t, gravity)

@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import exudyn
 import numpy as np
@@ -29,14 +30,11 @@ from exudyn.itemInterface import (
 from exudyn_rotor import checks
 from exudyn_rotor.multibody import ENTRY
 from exudyn_rotor.multibody.evaluation import STATES
-from exudyn_rotor.multibody.rotor.frame import BodyFrame, Layout, Locks
+from exudyn_rotor.multibody.rotor.frame import add_constraints
 from exudyn_rotor.multibody.rotor.plan import Plan, marker_name
 from exudyn_rotor.reduction.reduced_rotor import ModeShapes
-from exudyn_rotor.reduction.selection import Selection
 from exudyn_rotor.solid.rotor import Interface, rotation_moments
 from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.formulation import Formulation
-from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.rotating_axes import axes_of
 
 _FLAT = 1e-6  # smallest second moment of nodes over the largest for which they show a rotation
@@ -82,7 +80,7 @@ def flexible_body(
         mPhitTPsi=frame.B @ S,
         **stress,
         visualization=VObjectFFRFreducedOrder(
-            triangleMesh=triangles, color=plan.setup.color, showNodes=False
+            triangleMesh=triangles, color=plan.color, showNodes=False
         ),
     )
 
@@ -95,6 +93,15 @@ def add_weight(
         return None
     marker = mbs.AddMarker(MarkerBodyMass(bodyNumber=body))
     return mbs.AddLoad(LoadMassProportional(markerNumber=marker, loadVector=gravity))
+
+
+def add_locks_and_weight(
+    mbs: exudyn.MainSystem, plan: Plan, rigid: exudyn.NodeIndex, body: exudyn.ObjectIndex
+) -> dict[str, Any]:
+    """Hold the frame's node by constraints, and add the weight that the equations do not hold."""
+    held = {} if plan.locking == "mass" else add_constraints(mbs, plan.locks, rigid)
+    load = add_weight(mbs, body, plan.gravity - plan.motion.gravity)
+    return {"constraints": held, "gravity_load": load}
 
 
 @dataclass(frozen=True, eq=False)
@@ -235,15 +242,15 @@ class ScriptMarkers:
     frame_shares: np.ndarray | None = None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class RotorItems:
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class RotorItems(Plan):
     """A rotor's items in an ``mbs``.
+
+    The attributes are those of :class:`~exudyn_rotor.multibody.rotor.Plan`, and these:
 
     Attributes
     ----------
     mbs : exudyn.MainSystem
-    plan : Plan
-        How the rotor was laid out; ``plan.setup`` is what was asked for.
     nodes : mapping of str
         ``'rigid'`` (frame), and ``'modes'`` (modal coordinates) or ``'fields'`` (displacements).
     objects : mapping of str
@@ -265,11 +272,10 @@ class RotorItems:
     """
 
     mbs: exudyn.MainSystem
-    plan: Plan
     nodes: Mapping[str, exudyn.NodeIndex]
     objects: Mapping[str, exudyn.ObjectIndex]
-    constraints: Mapping[str, exudyn.ObjectIndex] = field(default_factory=dict)
-    gravity_load: exudyn.LoadIndex | None = None
+    constraints: Mapping[str, exudyn.ObjectIndex]
+    gravity_load: exudyn.LoadIndex | None
     mesh_node_count: int = 0
     markers: dict = field(default_factory=dict, init=False)
     supports: list = field(default_factory=list, init=False)
@@ -279,15 +285,9 @@ class RotorItems:
     script: ScriptMarkers = field(default_factory=ScriptMarkers, init=False)
 
     def __post_init__(self) -> None:
-        checks.instance(self.plan, "plan", Plan, "add_rotor makes one")
         known = copy(self)
         object.__setattr__(known, "mbs", None)
         entry(self.mbs).setdefault(_ROTORS, {})[int(self.nodes["rigid"])] = known
-
-    @property
-    def name(self) -> str | None:
-        """Name of the rotor."""
-        return self.plan.setup.name
 
     @property
     def axis(self) -> SpinAxis:
@@ -297,46 +297,7 @@ class RotorItems:
     @property
     def standing_axes(self) -> np.ndarray:
         """(n1, n2, e) as columns (3, 3) in inertial axes, where the spin angle is zero."""
-        return self.plan.setup.placement.rotation @ axes_of(self.axis)
-
-    @property
-    def formulation(self) -> Formulation:
-        """Which coordinates the rotor has."""
-        return self.plan.setup.formulation
-
-    @property
-    def stiffening(self) -> str:
-        """Level of the centrifugal stiffening."""
-        return self.plan.setup.stiffening
-
-    @property
-    def selection(self) -> Selection:
-        """The component modes in use; ``selection.labels`` names the modal coordinates."""
-        return self.plan.selection
-
-    @property
-    def motion(self) -> Motion:
-        """Equations of motion, inertial and mesh axes.
-
-        In a plane of rotation that is skew to the inertial axes they have three translations, and
-        a constraint holds the plane.
-        """
-        return self.plan.motion
-
-    @property
-    def frame(self) -> BodyFrame:
-        """Where mesh, marker body and scene stand to each other."""
-        return self.plan.frame
-
-    @property
-    def layout(self) -> Layout:
-        """Where the unknowns stand among the coordinates of the nodes."""
-        return self.plan.layout
-
-    @property
-    def locks(self) -> Locks:
-        """What happens to the six rigid coordinates of the marker body."""
-        return self.plan.locks
+        return self.placement.rotation @ axes_of(self.axis)
 
     def coordinates(
         self, configuration: exudyn.ConfigurationType = exudyn.ConfigurationType.Current
@@ -411,7 +372,7 @@ class RotorItems:
 
 def add_interface_markers(body: RotorItems) -> None:
     """Add the markers that ``add_rotor`` was asked for, with the axes of the mesh."""
-    for interface, kind in body.plan.setup.markers.items():
+    for interface, kind in body.marker_kinds.items():
         body.markers[interface] = body.interface_carrier(interface).add_marker(
             body.mbs, kind, body.frame.B, name=marker_name(body.name, interface), show=True
         )

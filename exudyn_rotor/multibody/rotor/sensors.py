@@ -12,7 +12,7 @@ import numpy as np
 from exudyn.itemInterface import SensorSuperElement, SensorUserFunction
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor.frame import LOCKS, driving_force
+from exudyn_rotor.multibody.rotor.frame import LOCKS
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.formulation import ConstantSpeed
@@ -142,7 +142,7 @@ def _deflected_weight(body: RotorItems, t: float, zeta: np.ndarray) -> float:
 def _external_moment(body: RotorItems):
     """Return a function that reads the external moment about e from the locked spin."""
     node, mbs, spin = body.nodes["rigid"], body.mbs, body.locks.spin
-    mass, drive = body.layout.lock_mass, driving_force(body.locks, body.layout.lock_mass)
+    mass, guide = body.layout.lock_mass, body.guide
     own = "spin" in body.constraints
     constraint = body.constraints.get("spin", body.constraints.get(LOCKS))
     share = np.ones(1) if own else body.locks.rows[0][:, spin]
@@ -152,8 +152,8 @@ def _external_moment(body: RotorItems):
         reaction = mass[spin] * float(acceleration)
         if constraint is not None:
             reaction += float(share @ np.ravel(mbs.GetObjectOutput(constraint, _KINDS.Force)))
-        if drive is not None and constraint is None:
-            reaction -= drive(t)[spin]
+        if guide is not None:
+            reaction -= guide(t)[spin]
         return reaction
 
     return moment

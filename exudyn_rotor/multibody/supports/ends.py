@@ -53,7 +53,7 @@ class Seat:
     @classmethod
     def of(cls, body: RotorItems, name: str, base: Base | Mapping[str, Base] | None) -> Seat:
         """Return the place of an interface on its base."""
-        setup = body.plan.setup.placement
+        setup = body.placement
         interface = body.selection.source.interfaces[name]
         on_axis = body.axis.project(interface.reference)
         place = setup.position + setup.rotation @ on_axis
@@ -222,7 +222,7 @@ class RotorEnd:
         unit = np.eye(self.size)
         self._read = np.kron(np.eye(2), np.vstack([unit[spin], rows]))
         self._pull = np.vstack([unit[[spin, *body.locks.tilts]], rows]).T
-        self._start = body.plan.setup.placement.angle
+        self._start = body.placement.angle
 
     def read(self, q: list[float], q_t: list[float]) -> None:
         """Take the motion from coordinates and their rates."""
