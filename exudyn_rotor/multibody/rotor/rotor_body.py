@@ -24,7 +24,13 @@ from exudyn_rotor.multibody.rotor.record import (
     keep_in_node,
     spin_at_start,
 )
-from exudyn_rotor.multibody.rotor.rotor_items import Carrier, RotorItems, interface_of_nodes
+from exudyn_rotor.multibody.rotor.rotor_items import (
+    Carrier,
+    RotorItems,
+    carrier_of,
+    interface_of_nodes,
+    nodes_of,
+)
 
 _KINDS = exudyn.OutputVariableType
 
@@ -280,18 +286,14 @@ class RotorBody(SceneBody):
 
     def _nodes_carrier(self, where: Sequence[int], kind: str) -> Carrier:
         """Return what moves with the mean rigid motion of mesh nodes."""
-        number, nodes = self.objects["marker_body"], tuple(self.nodes.values())
-        count = self.mesh_node_count
+        count, body = self.mesh_node_count, self.objects["marker_body"]
         if not count:
             raise ValueError(
                 f"where: rotor {self.name!r} was reduced without shapes (keep_shapes=False) and "
                 f"has no mesh nodes here; name an interface, got {checks.shown(where)}"
             )
-        points = np.reshape(self.mbs.GetObjectParameter(number, "referencePositions"), (-1, 3))
-        interface = interface_of_nodes(points[:count], where, kind)
-        columns = self.mbs.GetObjectParameter(number, "modeBasis")[: 3 * count]
-        motion = interface.mean_motion(count) @ columns
-        return Carrier(number, interface.reference, motion, interface.radius, nodes)
+        interface = interface_of_nodes(nodes_of(self.mbs, body)[:count], where, kind)
+        return carrier_of(self.mbs, body, interface, tuple(self.nodes.values()))
 
     def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``.

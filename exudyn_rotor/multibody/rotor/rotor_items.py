@@ -201,14 +201,48 @@ def interface_of_nodes(positions: np.ndarray, where: Sequence[int], kind: str) -
     if len(nodes) == 0 or len(set(nodes.tolist())) != len(nodes):
         raise ValueError(f"{described}: needs different nodes, got {checks.shown(where)}")
     interface = Interface("nodes", nodes, None, positions[nodes])
-    moments, _ = rotation_moments(interface.positions - interface.center, interface.weights)
-    sizes = np.linalg.eigvalsh(moments)
-    if kind == "rigid" and sizes[0] <= _FLAT * sizes[-1]:
+    if kind == "rigid" and not shows_rotation(interface):
         raise ValueError(
             f"where: the nodes {checks.shown(nodes.tolist())} lie on a line or in a point and show "
             "no rotation; give more nodes, an interface, or kind='position'"
         )
     return interface
+
+
+def shows_rotation(interface: Interface) -> bool:
+    """Return whether the nodes of an interface do not lie on a line or in a point."""
+    arms = interface.positions - interface.center
+    sizes = np.linalg.eigvalsh(rotation_moments(arms, interface.weights)[0])
+    return bool(sizes[0] > _FLAT * sizes[-1])
+
+
+def nodes_of(mbs: exudyn.MainSystem, body: exudyn.ObjectIndex) -> np.ndarray:
+    """Return the nodes (n, 3) of a flexible body, virtual ones too, in its axes [m]."""
+    return np.reshape(mbs.GetObjectParameter(body, "referencePositions"), (-1, 3))
+
+
+def carrier_of(
+    mbs: exudyn.MainSystem,
+    body: exudyn.ObjectIndex,
+    interface: Interface,
+    nodes: tuple[exudyn.NodeIndex, ...] = (),
+) -> Carrier:
+    """Return what moves with the mean motion of nodes of a flexible body."""
+    columns = np.asarray(mbs.GetObjectParameter(body, "modeBasis"))
+    motion = interface.mean_motion(len(columns) // 3) @ columns
+    return Carrier(body, interface.reference, motion, interface.radius, nodes)
+
+
+def marker_interface(mbs: exudyn.MainSystem, marker: dict) -> Interface:
+    """Return the nodes of a super-element marker, axes of its body."""
+    numbers = np.asarray(marker["meshNodeNumbers"])
+    points = nodes_of(mbs, marker["bodyNumber"])[numbers]
+    return Interface("marker", numbers, marker["weightingFactors"], points)
+
+
+def marker_carrier(mbs: exudyn.MainSystem, marker: dict) -> Carrier:
+    """Return what moves with the mean motion of the nodes of a super-element marker."""
+    return carrier_of(mbs, marker["bodyNumber"], marker_interface(mbs, marker))
 
 
 _ROTORS = "rotors"
