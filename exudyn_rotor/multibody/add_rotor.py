@@ -119,9 +119,8 @@ def add_rotor(
         How coordinates of the marker body's node that the formulation does not have are held.
         ``'constraints'``, which ``'auto'`` is, serves all solvers, and Exudyn's analyses of the
         scene. Where the spin or a translation is prescribed, explicit solvers (RK44, DOPRI5, …) end
-        with an error, "contains constraints that cannot be solved", about an object whose name says
-        what to do. They need ``'mass'``, which static solvers do not take; see
-        :mod:`exudyn_rotor.multibody.rotor.frame`.
+        with an error that says so: they need ``'mass'``, huge masses that are driven along the
+        motion, which static solvers do not take.
     color : sequence of 4 floats
         RGBA.
 

@@ -152,7 +152,9 @@ class FullRotorBody(SceneBody):
         """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``."""
         self.check_present()
         checks.count(node, "node", most=self.node_count - 1)
-        settings = sensors.settings_at_mesh_node(self, output, options)
+        where = "at a mesh node of a full body (stress: body.stress())"
+        sensors.check_output(output, sensors.AT_MESH_NODE, where)
+        settings = sensors.settings_of(self, options)
         point = self._nodes_carrier([node], "position")
         (number,) = append_nodes(self.mbs, point.body, *point.virtual_nodes("position"))
         return self.mbs.AddSensor(

@@ -119,7 +119,8 @@ def _used(
     if kind == "NodeRotationCoordinate":
         axis = np.eye(3)[int(marker["rotationCoordinate"])]
         along = abs(axis @ body.standing_axes[:, 2]) > 1.0 - _ALONG
-        return [locks.spin if along and body.frame.has_mesh_axes else locks.tilts[0]]
+        with_mesh_axes = np.array_equal(body.frame.B, np.eye(3))
+        return [locks.spin if along and with_mesh_axes else locks.tilts[0]]
     rows = np.atleast_2d(item.get(f"scalingMarker{place}", np.zeros((0, 0))))
     return np.flatnonzero(np.any(rows != 0.0, axis=0)).tolist() if rows.size else []
 

@@ -27,6 +27,7 @@ from exudyn.itemInterface import (
     MarkerNodeCoordinates,
     NodePointGround,
     ObjectConnectorCoordinateVector,
+    SensorUserFunction,
     VCoordinateConstraint,
 )
 from scipy.spatial.transform import Rotation
@@ -81,11 +82,6 @@ class BodyFrame:
             angles_and_spin = _tait_bryan(rotation @ B.T), THIRD
         return cls(origin, B, rotation, position + rotation @ origin, *angles_and_spin)
 
-    @property
-    def has_mesh_axes(self) -> bool:
-        """True where the axes of the marker body are those of the mesh."""
-        return np.array_equal(self.B, np.eye(3))
-
     def axes_of_angles(self) -> np.ndarray:
         """Return the inertial axes (3, 3), in rows, that the node's angles turn about at rest."""
         a, b, _ = self.angles
@@ -139,9 +135,6 @@ LOCKINGS = ("auto", "mass", "constraints")
 MODES = 6  # the first coordinate after those of the rigid-body node
 LOCKS = "locks"  # name of the constraint of all that stand still or turn at constant speed
 
-# Exudyn's error of explicit solvers tells the number of the object, and mbs.GetObject its name
-CONSTRAINT = "constraint {} of a rotor's frame; explicit solvers need locking='mass'"
-
 LOCK_RATIO = 1e18  # of the rotor's own inertia
 # beside a constraint that explicit solvers eliminate: of what moves within one of their steps
 ELIMINATED_RATIO = 1e9
@@ -192,19 +185,20 @@ class Locks:
             unknown = (*unknown, spin)
         else:
             prescribed[spin] = formulation.spin
-        return cls(unknown, (*rest, *_tilts(spin)), prescribed, spin, plane, normal)
+        tilts = [i for i in range(3, MODES) if i != spin]
+        return cls(unknown, (*rest, *tilts), prescribed, spin, plane, normal)
 
     @property
     def tilts(self) -> tuple[int, int]:
         """The two coordinates that tilt the frame, always locked."""
-        return _tilts(self.spin)
+        return self.fixed[-2:]
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def names(self) -> list[str]:
         """Names of the six coordinates."""
-        names = dict(enumerate(("x", "y", "z"))) | {self.spin: "spin"}
-        names |= dict(zip(self.tilts, ("tilt a", "tilt b"), strict=True))
-        return tuple(names[i] for i in range(MODES))
+        names = ["x", "y", "z", "tilt a", "tilt b"]
+        names.insert(self.spin, "spin")
+        return names
 
     @property
     def varying(self) -> dict[int, PrescribedMotion]:
@@ -237,10 +231,6 @@ class Locks:
             rows = np.vstack([rows, np.append(self.normal, np.zeros(3))])
             rates = np.append(rates, 0.0)
         return rows, rates
-
-
-def _tilts(spin: int) -> tuple[int, int]:
-    return tuple(i for i in range(3, MODES) if i != spin)
 
 
 def _unknown_translations(
@@ -342,7 +332,6 @@ def add_constraints(
     rows, rates = locks.rows
     # at velocity level: drift is round-off, and a constant speed needs no function of time
     held = ObjectConnectorCoordinateVector(
-        name=CONSTRAINT.format(mbs.systemData.NumberOfObjects()),
         markerNumbers=ends,
         scalingMarker0=np.zeros((len(rates), 0)),
         scalingMarker1=rows,
@@ -352,13 +341,30 @@ def add_constraints(
     )
     constraints = {LOCKS: mbs.AddObject(held)}
     for index, motion in locks.varying.items():
-        constraints[locks.names[index]] = one(index, **_offset(motion))
+        # index-2 solvers need the velocity beside the position
+        constraints[locks.names[index]] = one(
+            index,
+            offsetUserFunction=lambda mbs, t, item, offset, motion=motion: motion.value(t),
+            offsetUserFunction_t=lambda mbs, t, item, offset, motion=motion: motion.rate(t),
+        )
     return constraints
 
 
-def _offset(motion: PrescribedMotion) -> dict:
-    """Return the constraint's functions; index-2 solvers need the velocity beside the position."""
-    return {
-        "offsetUserFunction": lambda mbs, t, item, offset: motion.value(t),
-        "offsetUserFunction_t": lambda mbs, t, item, offset: motion.rate(t),
-    }
+def refuse_explicit_solvers(mbs: exudyn.MainSystem, locks: Locks, name: str | None) -> None:
+    """Let explicit solvers end with an error where they cannot take the constraints.
+
+    By a sensor: solvers evaluate these before they look at constraints.
+    """
+    instead = "translation='free'" if locks.normal is not None else "locking='mass'"
+
+    def refuse(mbs, t, sensors, factors, configuration):
+        if isinstance(mbs.sys.get("dynamicSolver"), exudyn.MainSolverExplicit):
+            del mbs.sys["dynamicSolver"]  # or the next static solution would be refused
+            raise ValueError(
+                f"locking: rotor {name!r} is held by constraints, which explicit solvers do not "
+                f"take; use add_rotor(…, {instead}) or an implicit solver"
+            )
+        return [0.0]
+
+    item = SensorUserFunction(sensorUserFunction=refuse, storeInternal=False, writeToFile=False)
+    mbs.AddSensor(item)

@@ -184,9 +184,7 @@ class SceneBody(RotorItems, ABC):
 
         return sensors.add_function_sensor(self, spin, options)
 
-    def add_drive_torque_sensor(self, **options):
-        """Add a sensor of the torque about e that a prescribed spin needs [N m]."""
-        return sensors.add_drive_torque_sensor(self, **options)
+    add_drive_torque_sensor = sensors.add_drive_torque_sensor
 
     def add_energy_sensor(self, **options):
         """Add a sensor of kinetic energy, elastic energy and the potential of the weight [J].
@@ -295,14 +293,7 @@ class RotorBody(SceneBody):
         interface = interface_of_nodes(nodes_of(self.mbs, body)[:count], where, kind)
         return carrier_of(self.mbs, body, interface, tuple(self.nodes.values()))
 
-    def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
-        """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``.
-
-        Stress in Exudyn, here and in contour plots, is that of the modal coordinates alone, without
-        the static centrifugal stress that the modes do not show; for a rotor with a prestress that
-        warns. :class:`exudyn_rotor.StressField` gives the whole.
-        """
-        return sensors.add_node_sensor(self, node, output, **options)
+    add_node_sensor = sensors.add_node_sensor
 
     def start_from(self, state: StartState) -> None:
         """Make a state of the whole scene the initial state of the coming runs.

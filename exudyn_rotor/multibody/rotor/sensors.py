@@ -18,7 +18,7 @@ from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.formulation import ConstantSpeed
 
 _KINDS = exudyn.OutputVariableType
-_AT_MESH_NODE = (
+AT_MESH_NODE = (
     _KINDS.Position,
     _KINDS.Displacement,
     _KINDS.DisplacementLocal,
@@ -44,7 +44,12 @@ AT_MARKER = {
 def add_node_sensor(
     body: RotorItems, node: int, output: exudyn.OutputVariableType, **options: Any
 ) -> exudyn.SensorIndex:
-    """Add a ``SensorSuperElement`` at mesh node `node`, stored internally by default."""
+    """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``.
+
+    Stress in Exudyn, here and in contour plots, is that of the modal coordinates alone, without the
+    static centrifugal stress that the modes do not show; for a rotor with a prestress that warns.
+    :class:`exudyn_rotor.StressField` gives the whole.
+    """
     marker_body, count = body.objects["marker_body"], body.mesh_node_count
     if checks.count(node, "node", least=-1) not in range(count):
         raise ValueError(
@@ -55,7 +60,7 @@ def add_node_sensor(
     with_stress = np.size(stress) > 0
     check_output(
         output,
-        (*_AT_MESH_NODE, _KINDS.StressLocal) if with_stress else _AT_MESH_NODE,
+        (*AT_MESH_NODE, _KINDS.StressLocal) if with_stress else AT_MESH_NODE,
         "at a mesh node" + ("" if with_stress else ", of a rotor reduced without stress"),
     )
     settings = settings_of(body, options)
@@ -68,14 +73,6 @@ def add_node_sensor(
             **settings,
         )
     )
-
-
-def settings_at_mesh_node(
-    body: RotorItems, output: exudyn.OutputVariableType, options: Mapping[str, Any]
-) -> dict[str, Any]:
-    """Return the settings of a sensor at a mesh node of a full body; stress is none of them."""
-    check_output(output, _AT_MESH_NODE, "at a mesh node of a full body (stress: body.stress())")
-    return settings_of(body, options)
 
 
 def _warn_of_static_stress(body: RotorItems, output: exudyn.OutputVariableType) -> None:
@@ -107,13 +104,12 @@ def add_drive_torque_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIn
         raise ValueError(
             f"rotor {body.name!r} spins freely and has no drive; a prescribed spin has one"
         )
-    external = _external_moment(body)
 
     def torque(mbs, t, sensors, factors, configuration):
         q, q_t, q_tt = body.coordinates(configuration)
-        modes = slice(body.motion.formulation.translation_count, None)
-        needed = body.motion.drive_torque(t, q, q_t, q_tt[modes])
-        given = external(t, configuration) + _deflected_weight(body, t, q[modes])
+        zeta, zeta_tt = q[body.motion.modes], q_tt[body.motion.modes]
+        needed = body.motion.drive_torque(t, q, q_t, zeta_tt)
+        given = _external_moment(body, t, configuration) + _deflected_weight(body, t, zeta)
         return [needed - given - _friction(body, configuration)]
 
     return add_function_sensor(body, torque, options)
@@ -139,23 +135,18 @@ def _deflected_weight(body: RotorItems, t: float, zeta: np.ndarray) -> float:
     return float(turn @ axis.skew @ (motion.invariants.S @ zeta) @ gravity)
 
 
-def _external_moment(body: RotorItems):
-    """Return a function that reads the external moment about e from the locked spin."""
+def _external_moment(body: RotorItems, t: float, configuration: exudyn.ConfigurationType) -> float:
+    """Return the external moment about e, which the locked spin collects [N m]."""
     node, mbs, spin = body.nodes["rigid"], body.mbs, body.locks.spin
-    mass, guide = body.layout.lock_mass, body.guide
-    own = "spin" in body.constraints
-    constraint = body.constraints.get("spin", body.constraints.get(LOCKS))
-    share = np.ones(1) if own else body.locks.rows[0][:, spin]
-
-    def moment(t, configuration) -> float:
-        acceleration = mbs.GetNodeOutput(node, _KINDS.Coordinates_tt, configuration)[spin]
-        reaction = mass[spin] * float(acceleration)
-        if constraint is not None:
-            reaction += float(share @ np.ravel(mbs.GetObjectOutput(constraint, _KINDS.Force)))
-        if guide is not None:
-            reaction -= guide(t)[spin]
-        return reaction
-
+    acceleration = mbs.GetNodeOutput(node, _KINDS.Coordinates_tt, configuration)[spin]
+    moment = body.layout.lock_mass[spin] * float(acceleration)
+    if body.guide is not None:
+        moment -= body.guide(t)[spin]
+    if "spin" in body.constraints:
+        moment += float(np.ravel(mbs.GetObjectOutput(body.constraints["spin"], _KINDS.Force))[0])
+    elif body.constraints:
+        share = body.locks.rows[0][:, spin]
+        moment += float(share @ mbs.GetObjectOutput(body.constraints[LOCKS], _KINDS.Force))
     return moment
 
 
