@@ -18,21 +18,12 @@ _SAME = 1e-6  # of the motion of an interface, by which a marker there may diffe
 
 @dataclass(frozen=True, eq=False)
 class LoadPlace:
-    """A place of a rotor where forces act, and perhaps moments.
+    """A place of a rotor where forces act, and perhaps moments."""
 
-    Attributes
-    ----------
-    point : ndarray, shape (3,)
-        Mesh coordinates [m].
-    motion : ndarray, shape (3, m) or (6, m)
-        Displacement of the point, and rotation where moments act, by modal coordinates, mesh axes.
-    interface : str or None
-        The interface whose mean motion this is.
-    """
-
-    point: np.ndarray
+    point: np.ndarray  # (3,) Mesh coordinates [m]
+    # (3, m) or (6, m) Displacement, and rotation where moments act, by modal coordinates, mesh axes
     motion: np.ndarray
-    interface: str | None
+    interface: str | None  # whose mean motion this is
 
 
 def load_places(body: RotorItems) -> tuple[LoadPlace, ...]:

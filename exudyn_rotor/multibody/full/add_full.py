@@ -72,7 +72,7 @@ def _frame_ties(plan: Plan) -> tuple[Ties, np.ndarray]:
         stiffness = np.append(stiffness, motion.formulation.spin.speed**2 * values)
     local = sp.csr_array((0 if len(rows) else 1, inv.size))  # the flexible body needs a coordinate
     ties = Ties(local, rows, held.rows, np.diag(stiffness) if len(rows) else None)
-    weight = np.zeros((3, ties.count))
+    weight = np.zeros((3, ties.rows.shape[0]))
     weight[:, : free.shape[1]] = inv.mass * free
     return ties, weight
 

@@ -33,29 +33,16 @@ MARKER_KINDS = ("rigid", "position")
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """Where the rotor stands and how it starts.
+    """Where the rotor stands and how it starts."""
 
-    Attributes
-    ----------
-    position : ndarray, shape (3,)
-        Place of the mesh origin, inertial axes [m].
-    rotation : ndarray, shape (3, 3)
-        Mesh axes → inertial axes at θ = 0.
-    translation : ndarray, shape (3,)
-        Initial translation of the frame origin, inertial axes [m]; a plan adds by how much
-        the initial angle moves it.
-    velocity : ndarray, shape (3,)
-        Initial velocity of the frame origin, inertial axes [m/s].
-    angle, speed : float
-        Initial spin angle [rad] and speed [rad/s].
-    """
-
-    position: np.ndarray
-    rotation: np.ndarray
+    position: np.ndarray  # (3,) Of the mesh origin, inertial axes [m]
+    rotation: np.ndarray  # (3, 3) Mesh axes → inertial axes at θ = 0
+    # (3,) Initial translation of the frame origin, inertial axes [m]; a plan adds by how much the
+    # initial angle moves it
     translation: np.ndarray
-    velocity: np.ndarray
-    angle: float
-    speed: float
+    velocity: np.ndarray  # (3,) Initial one of the frame origin, inertial axes [m/s]
+    angle: float  # of the spin at the start [rad]
+    speed: float  # of the spin at the start [rad/s]
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,12 +97,11 @@ def placement(
         angle = checks.number(angle, "initial_angle", "rad")
         speed = checks.number(speed, "initial_speed", "rad/s")
         return Placement(place, turn, start, velocity, angle, speed)
-    for name, value in (("initial_angle", initial_angle), ("initial_speed", initial_speed)):
-        if value is not None:
-            raise ValueError(
-                f"spin given twice: {name}={checks.shown(value)} and a prescribed spin; leave "
-                f"{name} out"
-            )
+    if initial_angle is not None or initial_speed is not None:
+        raise ValueError(
+            "spin given twice: by a prescribed spin, and by initial_angle or initial_speed; leave "
+            "these out"
+        )
     angle, speed, _ = start_values(formulation.spin, "spin")
     return Placement(place, turn, start, velocity, angle, speed)
 
@@ -320,15 +306,8 @@ def _layout(setup: Setup, locks: Locks, motion: Motion) -> Layout:
 def turned_origin(selection: Selection, rotation: np.ndarray, angle: float) -> np.ndarray:
     """Return by how much the frame origin moves where the rotor turns about its axis [m].
 
-    The origin is the centre of mass, which may be off the axis, where the translation is free.
-
-    Parameters
-    ----------
-    selection : Selection
-    rotation : ndarray, shape (3, 3)
-        Mesh axes → axes of the result, at θ = 0.
-    angle : float
-        θ [rad].
+    The origin is the centre of mass, which may be off the axis, where the translation is free. The
+    `rotation` takes mesh axes to axes of the result at θ = 0.
     """
     axis = selection.source.axis
     off = axis.radial(selection.origin)

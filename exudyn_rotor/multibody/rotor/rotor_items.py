@@ -110,27 +110,13 @@ def add_locks_and_weight(
 
 @dataclass(frozen=True, eq=False)
 class Carrier:
-    """A point of a flexible body with a mean rigid motion, to which markers can be added.
+    """A point of a flexible body with a mean rigid motion, to which markers can be added."""
 
-    Attributes
-    ----------
-    body : ObjectIndex
-        The flexible body.
-    point : ndarray, shape (3,)
-        Axes of the body [m].
-    motion : ndarray, shape (6, m)
-        Displacement and rotation of the point by its coordinates, axes of the body.
-    radius : float
-        Of the nodes that a rotation is read from [m].
-    nodes : tuple of NodeIndex
-        Of a rotor: that of the frame, and that of the body's coordinates.
-    """
-
-    body: exudyn.ObjectIndex
-    point: np.ndarray
-    motion: np.ndarray
-    radius: float
-    nodes: tuple[exudyn.NodeIndex, ...] = ()
+    body: exudyn.ObjectIndex  # the flexible body
+    point: np.ndarray  # (3,) Axes of the body [m]
+    motion: np.ndarray  # (6, m) Displacement and rotation by coordinates, axes of the body
+    radius: float  # of the nodes that a rotation is read from [m]
+    nodes: tuple[exudyn.NodeIndex, ...] = ()  # of the frame, and of the body's coordinates
 
     def shifted(self, arm: np.ndarray) -> Carrier:
         """Return the point at an arm (3,), axes of the body, that turns with the rotation."""
@@ -259,24 +245,14 @@ def entry(mbs: exudyn.MainSystem) -> dict:
 
 @dataclass(eq=False)
 class ScriptMarkers:
-    """What ``mbs.Assemble()`` has done with a script's own markers on a rotor.
+    """What ``mbs.Assemble()`` has done with a script's own markers on a rotor."""
 
-    Attributes
-    ----------
-    carriers : dict
-        Markers that carry tilts, by those of a script at the node.
-    turned : set of int
-        Markers that have been given mesh axes.
-    told : set of str
-        Warnings that have been given.
-    frame_shares : ndarray, shape (r, k − r), or None
-        Motion of the frame of Exudyn's own body by the elastic columns of the reduced rotor, in
-        shares of its r rigid ones.
-    """
-
+    # markers that carry tilts, by those of a script at the node
     carriers: dict[int, int] = field(default_factory=dict)
-    turned: set[int] = field(default_factory=set)
-    told: set[str] = field(default_factory=set)
+    turned: set[int] = field(default_factory=set)  # markers that have been given mesh axes
+    told: set[str] = field(default_factory=set)  # warnings that have been given
+    # (r, k − r) Motion of the frame of Exudyn's own body by the elastic columns of the reduced
+    # rotor, in shares of its r rigid ones
     frame_shares: np.ndarray | None = None
 
 
