@@ -19,6 +19,7 @@ from exudyn_rotor.multibody.rotor.frame import LOCKINGS, LockedForce
 from exudyn_rotor.multibody.rotor.plan import (
     Plan,
     Setup,
+    add_nodes,
     check_free_names,
     color_of,
     main_system,
@@ -241,7 +242,7 @@ def _add_reduced(mbs: exudyn.MainSystem, reduced: ReducedRotor, setup: Setup) ->
         warn_of_left_out(reduced.invariants, setup.placement.speed, 4)
     if reduced.invariants.H is not None:
         warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=3)
-    rigid, modes = plan.add_nodes(mbs)
+    rigid, modes = add_nodes(mbs, plan)
     # first of all objects, as in scripts that know it by its number
     item = flexible_body(
         plan, [rigid, modes], plan.motion.invariants.S, reduced.shapes, setup.name or ""

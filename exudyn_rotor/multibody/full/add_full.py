@@ -18,7 +18,7 @@ from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.full.ties import Ties, add_ties, container, no_jacobian
 from exudyn_rotor.multibody.rotor.frame import Layout, LockedForce
-from exudyn_rotor.multibody.rotor.plan import Plan
+from exudyn_rotor.multibody.rotor.plan import Plan, add_nodes
 from exudyn_rotor.multibody.rotor.rotor_items import (
     add_interface_markers,
     add_locks_and_weight,
@@ -30,7 +30,7 @@ from exudyn_rotor.theory.full_motion import FullMotion, principal
 
 def add_full(mbs: exudyn.MainSystem, plan: Plan) -> FullRotorBody:
     """Add the frame's node, that of the displacements, the equations, ties and markers."""
-    rigid, fields = plan.add_nodes(mbs)
+    rigid, fields = add_nodes(mbs, plan)
     motion = plan.motion
     ties, weight = _frame_ties(plan)
     tied, ties_object = add_ties(mbs, fields, ties, plan)

@@ -87,6 +87,7 @@ class FullRotorBody(SceneBody):
         of : exudyn.ConfigurationType or Record
             Shape (n, 3) of a configuration, (s, n, 3) of what :meth:`recorded` returns.
         """
+        checks.instance(of, "of", (exudyn.ConfigurationType, Record))
         if isinstance(of, Record):
             fields = self.layout.unknowns[self.motion.modes]
             return of.q[:, fields].reshape(len(of.q), -1, 3)

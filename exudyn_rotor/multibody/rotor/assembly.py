@@ -27,6 +27,7 @@ from dataclasses import replace
 
 import exudyn
 import numpy as np
+from exudyn.itemInterface import SensorUserFunction
 
 from exudyn_rotor.multibody.rotor.connections import (
     NODE_MARKERS,
@@ -46,12 +47,15 @@ from exudyn_rotor.multibody.rotor.rotor_items import (
 from exudyn_rotor.theory.axis import skew
 
 _NEEDED = {"SuperElementPosition": 1, "SuperElementRigid": 3}  # nodes of a condensed marker
+_DENSE = (exudyn.LinearSolverType.EXUdense, exudyn.LinearSolverType.EigenDense)
+_DENSE_MOST = 400  # coordinates whose dense factor costs less than a tenth of a second
 _UNIT_SUM = 1e-12  # error of a sum of weights that is one
 
 
 def prepare(mbs: exudyn.MainSystem) -> None:
     """Condense a script's markers on rotors, and let those at their nodes carry tilts."""
     for body in known_rotors(mbs):
+        _watch_solvers(body)
         if body.motion.invariants.is_sparse:  # a full body has no mesh here, and no modes
             continue
         _refuse_foreign_stress(body)
@@ -62,6 +66,47 @@ def prepare(mbs: exudyn.MainSystem) -> None:
                 _give_mesh_axes(body, number, marker)
                 _condense(body, number, mbs.GetMarker(number))
         _carry(body)
+
+
+def _watch_solvers(body: RotorItems) -> None:
+    """Let a run begin with what its solver lacks: explicit solvers take no constraints of motions.
+
+    By a sensor, the last of them: solvers evaluate sensors before anything else.
+    """
+    name, locks, size, told = body.name, body.locks, body.layout.size, body.script.told
+    held = bool(body.constraints) and not locks.stand_still
+    is_large = body.motion.invariants.is_sparse and size > _DENSE_MOST
+    if body.script.is_watched or not (held or is_large):
+        return
+    body.script.is_watched = True
+    instead = "translation='free'" if locks.normal is not None else "locking='mass'"
+
+    def watch(mbs, t, sensors, factors, configuration):
+        solver, settings = (mbs.sys.get(key) for key in ("dynamicSolver", "simulationSettings"))
+        if held and isinstance(solver, exudyn.MainSolverExplicit):
+            del mbs.sys["dynamicSolver"]  # or the next static solution would be refused
+            raise ValueError(
+                f"locking: rotor {name!r} is held by constraints, which explicit solvers do not "
+                f"take; use add_rotor(…, {instead}) or an implicit solver"
+            )
+        if is_large and settings and settings.linearSolver.solverType in _DENSE:
+            _tell_of_dense_solver(name, size, told)
+        return [0.0]
+
+    item = SensorUserFunction(sensorUserFunction=watch, storeInternal=False, writeToFile=False)
+    body.mbs.AddSensor(item)
+
+
+def _tell_of_dense_solver(name: str | None, size: int, told: set[str]) -> None:
+    """Warn once of what makes runs of full bodies slow."""
+    message = (
+        f"rotor {name!r}: the linear solver of this run is a dense one, which factorises a full "
+        f"body's {size} coordinates slowly; use recommended_settings(…, body=body), which takes "
+        "LinearSolverType.EigenSparse"
+    )
+    if message not in told:
+        told.add(message)
+        warnings.warn(message, UserWarning, stacklevel=5)
 
 
 def warn_of_lost_connections(mbs: exudyn.MainSystem, stacklevel: int) -> None:

@@ -27,7 +27,6 @@ from exudyn.itemInterface import (
     MarkerNodeCoordinates,
     NodePointGround,
     ObjectConnectorCoordinateVector,
-    SensorUserFunction,
     VCoordinateConstraint,
 )
 from scipy.spatial.transform import Rotation
@@ -298,23 +297,3 @@ def add_constraints(
             offsetUserFunction_t=lambda mbs, t, item, offset, motion=motion: motion.rate(t),
         )
     return constraints
-
-
-def refuse_explicit_solvers(mbs: exudyn.MainSystem, locks: Locks, name: str | None) -> None:
-    """Let explicit solvers end with an error where they cannot take the constraints.
-
-    By a sensor: solvers evaluate these before they look at constraints.
-    """
-    instead = "translation='free'" if locks.normal is not None else "locking='mass'"
-
-    def refuse(mbs, t, sensors, factors, configuration):
-        if isinstance(mbs.sys.get("dynamicSolver"), exudyn.MainSolverExplicit):
-            del mbs.sys["dynamicSolver"]  # or the next static solution would be refused
-            raise ValueError(
-                f"locking: rotor {name!r} is held by constraints, which explicit solvers do not "
-                f"take; use add_rotor(…, {instead}) or an implicit solver"
-            )
-        return [0.0]
-
-    item = SensorUserFunction(sensorUserFunction=refuse, storeInternal=False, writeToFile=False)
-    mbs.AddSensor(item)

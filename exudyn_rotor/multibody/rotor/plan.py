@@ -228,22 +228,23 @@ class Plan(Setup):
         by_mass = self.locking == "mass"
         return driving_force(self.locks, self.layout.lock_mass) if by_mass else None
 
-    def add_nodes(self, mbs: exudyn.MainSystem) -> tuple[exudyn.NodeIndex, exudyn.NodeIndex]:
-        """Add the node of the frame, and that of modes or displacements, as they start."""
-        values, rates = np.zeros(MODES), np.zeros(MODES)
-        start, spin = self.placement, self.locks.spin
-        values[:3], rates[:3] = start.translation, start.velocity
-        values[spin], rates[spin] = start.angle, start.speed
-        rigid = NodeRigidBodyRxyz(
-            name=item_name("NodeRigidBody:", self.name),
-            referenceCoordinates=[*self.frame.position, *self.frame.angles],
-            initialCoordinates=values,
-            initialVelocities=rates,
-            visualization=VNodeRigidBodyRxyz(show=False),
-        )
-        name = item_name("NodeGeneric:", self.name)
-        modes = generic_node(self.modal_coordinates, self.modal_velocities, name)
-        return mbs.AddNode(rigid), mbs.AddNode(modes)
+
+def add_nodes(mbs: exudyn.MainSystem, plan: Plan) -> tuple[exudyn.NodeIndex, exudyn.NodeIndex]:
+    """Add the node of the frame, and that of modes or displacements, as they start."""
+    values, rates = np.zeros(MODES), np.zeros(MODES)
+    start, spin = plan.placement, plan.locks.spin
+    values[:3], rates[:3] = start.translation, start.velocity
+    values[spin], rates[spin] = start.angle, start.speed
+    rigid = NodeRigidBodyRxyz(
+        name=item_name("NodeRigidBody:", plan.name),
+        referenceCoordinates=[*plan.frame.position, *plan.frame.angles],
+        initialCoordinates=values,
+        initialVelocities=rates,
+        visualization=VNodeRigidBodyRxyz(show=False),
+    )
+    name = item_name("NodeGeneric:", plan.name)
+    modes = generic_node(plan.modal_coordinates, plan.modal_velocities, name)
+    return mbs.AddNode(rigid), mbs.AddNode(modes)
 
 
 def make_plan(reduced: ReducedRotor, setup: Setup) -> Plan:

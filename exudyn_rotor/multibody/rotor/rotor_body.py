@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import exudyn
 import numpy as np
-from exudyn.itemInterface import SensorMarker, SensorNode
+from exudyn.itemInterface import SensorMarker, SensorNode, SensorSuperElement
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
@@ -184,7 +184,30 @@ class SceneBody(RotorItems, ABC):
 
         return sensors.add_function_sensor(self, spin, options)
 
-    add_drive_torque_sensor = sensors.add_drive_torque_sensor
+    def add_drive_torque_sensor(self, **options):
+        """Add a sensor of the torque about e that a prescribed spin needs [N m].
+
+        The torque is the rotor's own share (the row of θ in (84–86)) minus the moment of all
+        external forces, which the locked coordinate of the flexible body collects, and minus the
+        friction of bearings and stops, which the motion of a prescribed spin does not feel. Not in
+        static solutions: Exudyn's static solver returns multipliers with the opposite sign.
+        Explicit solvers have no accelerations at the first instant, so the first value is wrong
+        with them.
+        """
+        if self.formulation.has_spin:
+            raise ValueError(
+                f"rotor {self.name!r} spins freely and has no drive; a prescribed spin has one"
+            )
+
+        def torque(mbs, t, given, factors, configuration):
+            q, q_t, q_tt = self.coordinates(configuration)
+            zeta, zeta_tt = q[self.motion.modes], q_tt[self.motion.modes]
+            needed = self.motion.drive_torque(t, q, q_t, zeta_tt)
+            needed -= sensors.external_moment(self, t, configuration)
+            needed -= sensors.deflected_weight(self, t, zeta)
+            return [needed - sensors.friction(self, configuration)]
+
+        return sensors.add_function_sensor(self, torque, options)
 
     def add_energy_sensor(self, **options):
         """Add a sensor of kinetic energy, elastic energy and the potential of the weight [J].
@@ -293,7 +316,31 @@ class RotorBody(SceneBody):
         interface = interface_of_nodes(nodes_of(self.mbs, body)[:count], where, kind)
         return carrier_of(self.mbs, body, interface, tuple(self.nodes.values()))
 
-    add_node_sensor = sensors.add_node_sensor
+    def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
+        """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``.
+
+        Stress in Exudyn, here and in contour plots, is that of the modal coordinates alone, without
+        the static centrifugal stress that the modes do not show; for a rotor with a prestress that
+        warns. :class:`exudyn_rotor.StressField` gives the whole.
+        """
+        marker_body, count = self.objects["marker_body"], self.mesh_node_count
+        if checks.count(node, "node", least=-1) not in range(count):
+            raise ValueError(
+                f"node: rotor {self.name!r} has mesh nodes 0 … {count - 1}, not {node}"
+                + ("" if count else "; it was reduced without shapes (keep_shapes=False)")
+            )
+        known, where = sensors.AT_MESH_NODE, "at a mesh node"
+        if np.size(self.mbs.GetObjectParameter(marker_body, "outputVariableModeBasis")):
+            known = (*known, _KINDS.StressLocal)
+        else:
+            where += ", of a rotor reduced without stress"
+        sensors.check_output(output, known, where)
+        settings = sensors.settings_of(self, options)
+        sensors.warn_of_static_stress(self, output)
+        item = SensorSuperElement(
+            bodyNumber=marker_body, meshNodeNumber=int(node), outputVariableType=output, **settings
+        )
+        return self.mbs.AddSensor(item)
 
     def start_from(self, state: StartState) -> None:
         """Make a state of the whole scene the initial state of the coming runs.

@@ -30,7 +30,7 @@ from exudyn.itemInterface import (
 from exudyn_rotor import checks
 from exudyn_rotor.multibody import ENTRY
 from exudyn_rotor.multibody.evaluation import STATES
-from exudyn_rotor.multibody.rotor.frame import add_constraints, refuse_explicit_solvers
+from exudyn_rotor.multibody.rotor.frame import add_constraints
 from exudyn_rotor.multibody.rotor.plan import Plan, marker_name
 from exudyn_rotor.reduction.reduced_rotor import ModeShapes
 from exudyn_rotor.solid.rotor import Interface, rotation_moments
@@ -99,11 +99,7 @@ def add_locks_and_weight(
     mbs: exudyn.MainSystem, plan: Plan, rigid: exudyn.NodeIndex, body: exudyn.ObjectIndex
 ) -> dict[str, Any]:
     """Hold the frame's node by constraints, and add the weight that the equations do not hold."""
-    held = {}
-    if plan.locking != "mass":
-        held = add_constraints(mbs, plan.locks, rigid)
-        if not plan.locks.stand_still:
-            refuse_explicit_solvers(mbs, plan.locks, plan.name)
+    held = {} if plan.locking == "mass" else add_constraints(mbs, plan.locks, rigid)
     load = add_weight(mbs, body, plan.gravity - plan.motion.gravity)
     return {"constraints": held, "gravity_load": load}
 
@@ -251,6 +247,7 @@ class ScriptMarkers:
     carriers: dict[int, int] = field(default_factory=dict)
     turned: set[int] = field(default_factory=set)  # markers that have been given mesh axes
     told: set[str] = field(default_factory=set)  # warnings that have been given
+    is_watched: bool = False  # by a sensor that sees the solver
     # (r, k − r) Motion of the frame of Exudyn's own body by the elastic columns of the reduced
     # rotor, in shares of its r rigid ones
     frame_shares: np.ndarray | None = None

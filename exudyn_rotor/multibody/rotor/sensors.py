@@ -9,7 +9,7 @@ from typing import Any
 
 import exudyn
 import numpy as np
-from exudyn.itemInterface import SensorSuperElement, SensorUserFunction
+from exudyn.itemInterface import SensorUserFunction
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor.frame import LOCKS
@@ -41,41 +41,7 @@ AT_MARKER = {
 }
 
 
-def add_node_sensor(
-    body: RotorItems, node: int, output: exudyn.OutputVariableType, **options: Any
-) -> exudyn.SensorIndex:
-    """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``.
-
-    Stress in Exudyn, here and in contour plots, is that of the modal coordinates alone, without the
-    static centrifugal stress that the modes do not show; for a rotor with a prestress that warns.
-    :class:`exudyn_rotor.StressField` gives the whole.
-    """
-    marker_body, count = body.objects["marker_body"], body.mesh_node_count
-    if checks.count(node, "node", least=-1) not in range(count):
-        raise ValueError(
-            f"node: rotor {body.name!r} has mesh nodes 0 … {count - 1}, not {node}"
-            + ("" if count else "; it was reduced without shapes (keep_shapes=False)")
-        )
-    stress = body.mbs.GetObjectParameter(marker_body, "outputVariableModeBasis")
-    with_stress = np.size(stress) > 0
-    check_output(
-        output,
-        (*AT_MESH_NODE, _KINDS.StressLocal) if with_stress else AT_MESH_NODE,
-        "at a mesh node" + ("" if with_stress else ", of a rotor reduced without stress"),
-    )
-    settings = settings_of(body, options)
-    _warn_of_static_stress(body, output)
-    return body.mbs.AddSensor(
-        SensorSuperElement(
-            bodyNumber=marker_body,
-            meshNodeNumber=int(node),
-            outputVariableType=output,
-            **settings,
-        )
-    )
-
-
-def _warn_of_static_stress(body: RotorItems, output: exudyn.OutputVariableType) -> None:
+def warn_of_static_stress(body: RotorItems, output: exudyn.OutputVariableType) -> None:
     """Warn where a native stress sensor leaves out a static stress that the rotor was given."""
     spin = body.formulation.spin
     at_rest = isinstance(spin, ConstantSpeed) and spin.speed == 0.0
@@ -87,35 +53,11 @@ def _warn_of_static_stress(body: RotorItems, output: exudyn.OutputVariableType) 
         "the static centrifugal stress that they do not hold; record the modal coordinates and use "
         "StressField.of(reduced, body) with stress_history",
         UserWarning,
-        stacklevel=4,
+        stacklevel=3,
     )
 
 
-def add_drive_torque_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
-    """Add a sensor of the drive torque about e [N m].
-
-    The torque is the rotor's own share (the row of θ in (84–86)) minus the moment of all external
-    forces, which the locked coordinate of the marker body collects, and minus the friction of
-    bearings and stops, which the motion of a prescribed spin does not feel. Not in static
-    solutions: Exudyn's static solver returns multipliers with the opposite sign. Explicit solvers
-    have no accelerations at the first instant, so the first value is wrong with them.
-    """
-    if body.formulation.has_spin:
-        raise ValueError(
-            f"rotor {body.name!r} spins freely and has no drive; a prescribed spin has one"
-        )
-
-    def torque(mbs, t, sensors, factors, configuration):
-        q, q_t, q_tt = body.coordinates(configuration)
-        zeta, zeta_tt = q[body.motion.modes], q_tt[body.motion.modes]
-        needed = body.motion.drive_torque(t, q, q_t, zeta_tt)
-        given = _external_moment(body, t, configuration) + _deflected_weight(body, t, zeta)
-        return [needed - given - _friction(body, configuration)]
-
-    return add_function_sensor(body, torque, options)
-
-
-def _friction(body: RotorItems, configuration: exudyn.ConfigurationType) -> float:
+def friction(body: RotorItems, configuration: exudyn.ConfigurationType) -> float:
     """Return the torque of bearings and stops on a rotor that does not feel it [N m]."""
     total = 0.0
     for made in (one.connector for one in body.supports):
@@ -124,7 +66,7 @@ def _friction(body: RotorItems, configuration: exudyn.ConfigurationType) -> floa
     return total
 
 
-def _deflected_weight(body: RotorItems, t: float, zeta: np.ndarray) -> float:
+def deflected_weight(body: RotorItems, t: float, zeta: np.ndarray) -> float:
     """Return the moment about e of gravity by the deflection Sζ, which Exudyn's load leaves out."""
     if body.gravity_load is None:
         return 0.0
@@ -135,7 +77,7 @@ def _deflected_weight(body: RotorItems, t: float, zeta: np.ndarray) -> float:
     return float(turn @ axis.skew @ (motion.invariants.S @ zeta) @ gravity)
 
 
-def _external_moment(body: RotorItems, t: float, configuration: exudyn.ConfigurationType) -> float:
+def external_moment(body: RotorItems, t: float, configuration: exudyn.ConfigurationType) -> float:
     """Return the external moment about e, which the locked spin collects [N m]."""
     node, mbs, spin = body.nodes["rigid"], body.mbs, body.locks.spin
     acceleration = mbs.GetNodeOutput(node, _KINDS.Coordinates_tt, configuration)[spin]
