@@ -25,6 +25,7 @@ from scipy.optimize import brentq
 
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.nonlinear.balance import Balance, orders_of, padded, real_part_of
+from exudyn_rotor.nonlinear.beside import Beside
 
 _MOST_ITERATIONS = 9
 _CONVERGED = 1e-6  # scaled last step, whose square is the error
@@ -39,11 +40,12 @@ _ASIDE = (0.02, 0.05, 0.005)  # scaled steps from a crossing onto the other bran
 _NEW = 1e-6  # share of a motion in harmonics that it does not have
 _SMOOTH = 1e-3  # step below which a branch may have a corner, where contacts begin
 _LEAST = 0.1  # of the wanted size, as which a motion counts at least
-Row = tuple[np.ndarray, np.ndarray]
 _MOST_POINTS = 1000
 _MOST_UNKNOWNS = 1500
 _SAME, _UNLIKE = 1e-3, 10.0  # share of a motion, and of what is left out, that two may differ by
 _IN_PARAMETER = 1e-7  # of a step, to which a change on a branch is found
+FAILS = (UnconvergedError, ValueError, ArithmeticError, np.linalg.LinAlgError)
+Row = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,11 +76,15 @@ class Family:
     balance: Callable[[np.ndarray, tuple[int, int]], Balance]
     spans: np.ndarray  # (e,) p₀: what counts as one of each parameter
     size: float  # of a motion that matters [m]
-    measure: Callable[[Point], Point]  # takes a point, gives one with growth and multiplier
     tolerance: float  # largest share of the motion in harmonics that are left out
     most: tuple[int, int]  # harmonics up to which more are added
     phase: tuple[np.ndarray, tuple[int, int]] | None = None  # (h, d) φ of (1), with its reach
     lost: list[str] = field(default_factory=list)
+
+    def measure(self, point: Point) -> Point:
+        """Return a point with what motions beside it do, less the shift in time of a cycle."""
+        growth, multiplier = Beside(point.balance, point.c).growth(self.phase is not None)
+        return replace(point, growth=growth, multiplier=multiplier)
 
     # ------------------------------------------------------------ Newton's method
 
@@ -108,10 +114,6 @@ class Family:
         """Return the solution near a start at right angles to a row, and after how many steps.
 
         With its tangent, in the sense of the row.
-
-        Raises
-        ------
-        UnconvergedError
         """
         point, last, by = start, np.inf, None
         flat = np.r_[row[0].conj().ravel(), row[1]]
@@ -247,7 +249,7 @@ class Family:
                 )
                 is_far = self._length(after.c - c, after.p - p, point.c) > _BESIDE * step
                 after = self.refined(after)
-            except (UnconvergedError, np.linalg.LinAlgError, ArithmeticError, ValueError):
+            except FAILS:
                 step *= 0.5
                 continue
             like = self.widened(point, after.balance.reach).tangent
@@ -326,7 +328,7 @@ class Family:
         try:
             share = brentq(at, 0.0, 1.0, xtol=_IN_PARAMETER)
             found = self.measure(self._between(first, second, share))
-        except (UnconvergedError, ValueError, ArithmeticError, np.linalg.LinAlgError):
+        except FAILS:
             return []
         return [replace(found, kind=kind, error=second.error)]
 
@@ -339,7 +341,7 @@ class Family:
                 near = self._chord(first, second, (value - a) / (b - a))[0]
                 found = self.refined(self.at_value(near, value, np.sign(b - a))[0])
                 found = self.measure(replace(found, kind="value"))
-            except (UnconvergedError, ValueError, ArithmeticError, np.linalg.LinAlgError):
+            except FAILS:
                 continue
             yield found
 
