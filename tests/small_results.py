@@ -46,14 +46,11 @@ def rotor(attached: bool) -> ReducedRotor:
         invariants=replace(
             made.invariants,
             K2=square + square.T,
-            B=square @ square.T,
             H=0.1 * made.invariants.K,
             K0=square + square.T,
         ),
         shapes=replace(made.shapes, stress=RNG.normal(size=(count, 6, size))),
-        centrifugal=Centrifugal(
-            RNG.normal(size=3 * count), RNG.normal(size=(count, 6)), 3e8, np.ones((count, 6))
-        ),
+        centrifugal=Centrifugal(RNG.normal(size=3 * count), RNG.normal(size=(count, 6)), 3e8),
         dropped=("column 7",),
         attached=made.attached if attached else None,
     )
@@ -99,7 +96,7 @@ def results() -> list:
         Sensitivity(("left, 1", "left, 2"), speeds, table.T + 1j, 90.0),
         Spectra(speeds, speeds, speeds[:2], table),
         StressField(RNG.normal(size=(4, 3)), np.array(TRIANGLES), RNG.normal(size=(4, 6, 2)),
-                    RNG.normal(size=(4, 6)), True, np.zeros((4, 6))),
+                    RNG.normal(size=(4, 6)), True),
         StressHistory(speeds, speeds, np.array([2, 0]), RNG.normal(size=(3, 2, 6)), np.ones(4),
                       np.ones(4), RNG.normal(size=(4, 3)), np.array(TRIANGLES)),
     ]  # fmt: skip

@@ -186,9 +186,11 @@ class Problem:
         Raises
         ------
         ValueError, ArithmeticError
-            Where something acts on a motion that nothing holds, or a film does not carry.
+            Where something acts on a motion that nothing holds, a film does not carry, or the
+            rotor buckles.
         """
         journals = list(self.journals.values())
+        self._check_buckling(journals)
         y, forces = equilibrium(self.stiffness, load, journals, self.model.free_spins)
         if y is None:
             free = " or ".join(self.model.free_motions) or "a combination of rigid motions"
@@ -197,6 +199,17 @@ class Problem:
                 "3 × 3 stiffness acts along the axis, too)"
             )
         return y, forces
+
+    def _check_buckling(self, journals: Sequence[Journal]) -> None:
+        """Refuse a rotor at rest whose supports do not hold it under the loads of its prestress."""
+        loaded = any(one.invariants.K0 is not None for one in self.model.rotors.values())
+        if loaded and not self.speed and not journals:
+            values = np.linalg.eigvalsh(0.5 * (self.stiffness + self.stiffness.T))
+            if values[0] < -_ROUNDING * values[-1]:
+                raise ValueError(
+                    "supports: the rotor buckles on them under the loads of its prestress; "
+                    "rotor.prestress(loads=…, supports=…) with them finds the buckling load"
+                )
 
     def seen(self, y: np.ndarray, forces: np.ndarray, at: Sequence[At] | None) -> dict[str, object]:
         """Return the fields of a result that are known of coordinates and forces of bearings."""

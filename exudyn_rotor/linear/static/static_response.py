@@ -18,7 +18,7 @@ from exudyn_rotor.linear.model.rotor_train import RotorTrain
 from exudyn_rotor.linear.response.loads import At, checked_places
 from exudyn_rotor.linear.static.problem import Problem, with_supports
 from exudyn_rotor.linear.static.static_result import StaticResponse
-from exudyn_rotor.reduction.reduce import reduce_rotor, reduced_for_loads
+from exudyn_rotor.reduction.reduce import reduce, reduced_for_loads
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.rotating_axes import FRAMES
@@ -226,7 +226,7 @@ def bearing_loads(
     ]
     if isinstance(rotor, SolidRotor):
         if len(given) <= 2 and len(names) == len(given):
-            rotor = reduce_rotor(rotor, 0, prestress=False)
+            rotor = reduce(rotor, 0, prestress=False)
         else:
             rotor = reduced_for_loads(rotor, (), spins=speed != 0.0, stress=False)
     e = rotor.axis.direction
