@@ -310,8 +310,8 @@ class RotorBody(SceneBody):
         count, body = self.mesh_node_count, self.objects["marker_body"]
         if not count:
             raise ValueError(
-                f"where: rotor {self.name!r} was reduced without shapes (keep_shapes=False) and "
-                f"has no mesh nodes here; name an interface, got {checks.shown(where)}"
+                f"where: rotor {self.name!r} has no shapes (without_shapes), "
+                f"so no mesh nodes; name an interface, got {checks.shown(where)}"
             )
         interface = interface_of_nodes(nodes_of(self.mbs, body)[:count], where, kind)
         return carrier_of(self.mbs, body, interface, tuple(self.nodes.values()))
@@ -327,7 +327,7 @@ class RotorBody(SceneBody):
         if checks.count(node, "node", least=-1) not in range(count):
             raise ValueError(
                 f"node: rotor {self.name!r} has mesh nodes 0 … {count - 1}, not {node}"
-                + ("" if count else "; it was reduced without shapes (keep_shapes=False)")
+                + ("" if count else "; it has no shapes (without_shapes)")
             )
         known, where = sensors.AT_MESH_NODE, "at a mesh node"
         if np.size(self.mbs.GetObjectParameter(marker_body, "outputVariableModeBasis")):
