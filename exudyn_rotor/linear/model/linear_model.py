@@ -507,7 +507,7 @@ class LinearModel:
         """Warn of motions [rad/s] beyond a table over the frequency, which keeps its end there."""
         for element in () if self.is_richer else self._elements[0]:
             table, used = element.table_frequencies, np.asarray(frequencies)
-            if table.size and not element.held_beyond:
+            if table.size and not element.law.extrapolate:
                 slack = _HELD * table.max()
                 used = used[(used < table.min() - slack) | (used > table.max() + slack)]
                 if used.size:
