@@ -8,11 +8,10 @@ coordinates of the bodies, ``u = U(θ) y``, is all that depends on the axes of t
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 
 import numpy as np
-import scipy.linalg as la
 
 from exudyn_rotor.bearings.controlled_support import (
     Controlled,
@@ -252,16 +251,15 @@ def support_element(
 
 
 def own_elements(
-    one: Controlled, end: End, bases: Mapping[str, End], rate: float, own: OwnBody
+    one: Controlled, end: End, base: Callable[[str], End | None], rate: float, own: OwnBody
 ) -> list[Element]:
-    """Return the elements of a support with coordinates of its own."""
-    base = bases.get(one.interface)
+    """Return the elements of a support with coordinates of its own, on the `base` of a place."""
     if isinstance(one, SeriesSupport):
-        return _series_elements(one, end, base, rate, own)
-    ends, ports = (end,), [_relative(end, base, 3)]
+        return _series_elements(one, end, base(one.interface), rate, own)
+    ends, ports = (end,), [_relative(end, base(one.interface), 3)]
     if isinstance(one, ControlledSupport):
         ends = end, (end[0], one.sensor)
-        ports.append(_relative(ends[1], bases.get(one.sensor), 3))
+        ports.append(_relative(ends[1], base(one.sensor), 3))
     lifted = np.kron(np.eye(len(ports) + own.size // 2), ACROSS)
 
     def matrices(speed: float, *_: float) -> tuple[np.ndarray, np.ndarray]:
@@ -302,17 +300,16 @@ def elements_of(
     supports: Mapping[str, Sequence],
     ratios: Mapping[str, float],
     links: Sequence[Link],
-    bases: Mapping[str, End],
+    base: Callable[[int, str], End | None],
     turns: int,
     kind: str = "full",
-    begun: int = 0,
 ) -> tuple[list[Element], list[OwnBody]]:
     """Return the elements of a model, and the coordinates that some of them bring.
 
-    What carries a support is in `bases` by its interface, the ground where there is nothing. Pairs
-    of own coordinates turn with `turns` times Ω; `begun` bodies of them there are already. Of the
-    kind 'static' elements have their static stiffness in the place of own coordinates; 'undamped'
-    ones are also without damping and the skew part of their stiffness, and keep rings.
+    What carries a support tells `base` by the support's number and an interface. Pairs of own
+    coordinates turn with `turns` times Ω. Of the kind 'static' elements have their static stiffness
+    in the place of own coordinates; 'undamped' ones are also without damping and the skew part of
+    their stiffness, and keep rings.
 
     Raises
     ------
@@ -321,21 +318,21 @@ def elements_of(
     """
     elements, own = [], []
     for name, given in supports.items():
-        plain, controlled = linear_supports(given)
-        if kind != "full":
-            rings = [c for c in controlled if isinstance(c, SeriesSupport) and kind == "undamped"]
-            others = (c for c in controlled if c not in rings)
-            plain = [*plain, *(Support(c.interface, c.static_stiffness) for c in others)]
-            controlled = [ring.undamped() for ring in rings]
-        if kind == "undamped":
-            plain = [one.undamped() for one in plain]
         ratio = ratios[name]
-        for one in plain:
-            base = bases.get(one.interface)
-            elements.append(support_element(one, (name, one.interface), base, ratio, ratio))
-        for one in sorted(controlled, key=lambda each: list(WORDS).index(type(each))):
-            own.append(own_body(one, begun + len(own) + 1, turns))
-            elements += own_elements(one, (name, one.interface), bases, ratio, own[-1])
+        for number, each in enumerate(given):
+            [one] = [law for laws in linear_supports([each]) for law in laws]
+            end = name, one.interface
+            is_ring = isinstance(one, SeriesSupport) and kind == "undamped"
+            if kind != "full" and not isinstance(one, Support) and not is_ring:
+                one = Support(one.interface, one.static_stiffness)
+            if kind == "undamped":
+                one = one.undamped()
+            if isinstance(one, Support):
+                below = base(number, one.interface)
+                elements.append(support_element(one, end, below, ratio, ratio))
+            else:
+                own.append(own_body(one, len(own) + 1, turns))
+                elements += own_elements(one, end, partial(base, number), ratio, own[-1])
     for link in links:
         first, second = link.ends
         if isinstance(link.connection, GearMesh):
@@ -379,6 +376,11 @@ class Assembly:
     def M(self) -> np.ndarray:
         """Mass matrix of what does not vary, shape (k, k)."""
         return self._steady["M", 0, 0]
+
+    @property
+    def K(self) -> np.ndarray:
+        """Stiffness at rest of what does not vary, shape (k, k)."""
+        return self._steady["K", 0, 0]
 
     def square(self, X: np.ndarray, place: slice) -> np.ndarray:
         """Return a matrix of one body as a matrix of all coordinates."""
@@ -442,10 +444,15 @@ class Assembly:
         )
         return other
 
-    def system(self, speed: float, frequency: float | None = None) -> PeriodicSystem:
-        """Return the equations at a spin speed, and a frequency of motions [rad/s]."""
+    def system(
+        self, speed: float, frequency: float | None = None, more: Powers | None = None
+    ) -> PeriodicSystem:
+        """Return the equations at a spin speed, and a frequency of motions [rad/s].
+
+        With `more` forces that hold at this speed.
+        """
         given = [one.coefficients(speed, frequency) for one in self._varying]
-        return self._system(float(speed), given)
+        return self._system(float(speed), given, more)
 
     def systems(
         self, speeds: np.ndarray, frequencies: np.ndarray | None = None
@@ -478,13 +485,15 @@ class Assembly:
     def _varying(self) -> list[Element]:
         return [element for element in self.elements if element.varies]
 
-    def _system(self, speed: float | np.ndarray, coefficients: Sequence) -> PeriodicSystem:
+    def _system(
+        self, speed: float | np.ndarray, coefficients: Sequence, more: Powers | None = None
+    ) -> PeriodicSystem:
         """Return the equations at a speed, or a stack, by the `coefficients` of what varies."""
         rest, factor, k = iter(coefficients), speed, self._steady["M", 0, 0].shape[0]
         if np.ndim(speed):
             factor = speed[:, None, None]
         found = {"M": {}, "D": {}, "K": {}}
-        parts = [self._steady]
+        parts = [self._steady, more or {}]
         for element, U in zip(self.elements, self.motions, strict=True):
             if element.varies:
                 parts.append(element.powers(next(rest), U, self.turns))
