@@ -51,12 +51,6 @@ def small_rotor_in_millimetres(beam):
     SolidRotor.from_matrices(mass * np.eye(24), np.zeros((24, 24)), corners, "z", allow_parts=True)
 
 
-def stress_out_of_balance(beam):
-    stress = np.zeros((beam.node_count, 6))
-    stress[:, 0] = 1e8 * np.cos(20.0 * beam.nodes[:, 0])
-    beam.prestress(stress=stress)
-
-
 def mass_on_balls(speed, tolerance=1e-2, **bearing):
     mass = SolidRotor.from_matrices(20.0 * np.eye(3), np.zeros((3, 3)), [[0.0, 0.0, 0.0]], "z")
     balls = RollingBearing(
@@ -146,8 +140,6 @@ PLACES = {
     "bearings/annular_seal.py:__post_init__": (
         lambda _: AnnularSeal(interface="a", **LAMINAR),
         UserWarning, "may be laminar"),
-    "prestress/static_solution.py:_in_equilibrium": (
-        stress_out_of_balance, UserWarning, "not in equilibrium"),
     "multibody/rotor/sensors.py:_warn_of_static_stress": (
         native_stress_of_a_prestressed_rotor, UserWarning, "stress of the modes alone"),
     "reduction/component.py:lowest_with_pairs": (
@@ -185,7 +177,6 @@ ELSEWHERE = {
     "evaluation/separation.py:_warn_of_speeds_left_out": "count, and the response is known from",
     "linear/model/build.py:warn_of_structural_damping": "campbell finds modes without it",
     "multibody/add_rotor.py:_add_reduced": "A scene runs without it",
-    "prestress/static_solution.py:_warn_of_yield": "above yield_stress",
     "solvers/factor.py:_tell_of_mkl": "exudyn-rotor\\[mkl\\]",
     "solid/meshes/mesh_data.py:warn": "taken as",
     "theory/stiffening.py:warn_of_left_out": "beyond 'tilt' is left out",

@@ -97,8 +97,7 @@ class FullRotorBody(SceneBody):
     ) -> np.ndarray:
         """Return the stress at all nodes [Pa]: xx, yy, zz, yz, xz, xy in mesh axes.
 
-        That of the displacements, the static one by the spin among them. A stress at rest, of
-        ``prestress(stress=…)``, is not in it.
+        That of the displacements, the static one by the spin among them.
 
         Parameters
         ----------

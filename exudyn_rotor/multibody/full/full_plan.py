@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor.plan import Plan, Setup, laid_out
-from exudyn_rotor.prestress.static_solution import relief_rotations
+from exudyn_rotor.prestress.static_solution import relief_rotation
 from exudyn_rotor.reduction.selection import NEGLIGIBLE
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.solvers.factor import TooLittleMemoryError, available_memory, factor_entries
@@ -104,19 +104,19 @@ def make_full_plan(rotor: SolidRotor, setup: Setup) -> Plan:
     origin = rotor.center_of_mass
     if not setup.formulation.translation_count:
         origin = rotor.axis.project(origin)
-    carried, turns = rotor.carried_prestress, None
+    carried, turn = rotor.carried_prestress, None
     whole = _invariants(rotor, origin)
     if setup.stiffening != "none" and getattr(carried, "by_loads", None) is not None:
         whole = replace(whole, K0=carried.by_loads).loaded
     if setup.stiffening == "full":
         if carried is None:
             raise ValueError(NO_PRESTRESS)
-        turns = relief_rotations(rotor)
-        turns = np.where(np.abs(turns) > _ROUNDING, turns, 0.0)
-        whole = replace(whole, K2=carried.per_square, B=carried.euler, K4=carried.per_fourth_power)
-    second = full_stiffening(whole, setup.stiffening, turns)
+        turn = relief_rotation(rotor)
+        turn = np.where(np.abs(turn) > _ROUNDING, turn, 0.0)
+        whole = replace(whole, K2=carried.per_square, K4=carried.per_fourth_power)
+    second = full_stiffening(whole, setup.stiffening, turn)
     held = conditions(whole, setup.formulation, rotor.grounded, NEGLIGIBLE)
-    inv = replace(held.invariants, K2=None, B=None, K4=None)
+    inv = replace(held.invariants, K2=None, K4=None)
     fields = NodalFields(checks.read_only(origin), inv, rotor, held)
 
     def motion(

@@ -284,8 +284,8 @@ class RotorBody(SceneBody):
         count = self.mesh_node_count
         if not count:
             raise ValueError(
-                f"where: rotor {self.name!r} was reduced without shapes (keep_shapes=False) and "
-                f"has no mesh nodes here; name an interface, got {checks.shown(where)}"
+                f"where: rotor {self.name!r} has no shapes (without_shapes), "
+                f"so no mesh nodes; name an interface, got {checks.shown(where)}"
             )
         points = np.reshape(self.mbs.GetObjectParameter(number, "referencePositions"), (-1, 3))
         interface = interface_of_nodes(points[:count], where, kind)

@@ -49,7 +49,7 @@ def add_node_sensor(
     if checks.count(node, "node", least=-1) not in range(count):
         raise ValueError(
             f"node: rotor {body.name!r} has mesh nodes 0 … {count - 1}, not {node}"
-            + ("" if count else "; it was reduced without shapes (keep_shapes=False)")
+            + ("" if count else "; it has no shapes (without_shapes)")
         )
     stress = body.mbs.GetObjectParameter(marker_body, "outputVariableModeBasis")
     with_stress = np.size(stress) > 0
