@@ -77,8 +77,8 @@ from exudyn_rotor.linear.static.static_response import bearing_loads as bearing_
 from exudyn_rotor.linear.static.static_response import static_response as static_response
 from exudyn_rotor.linear.static.static_result import StaticResponse as StaticResponse
 from exudyn_rotor.multibody.add_rotor import add_rotor as add_rotor
-from exudyn_rotor.multibody.drives.add_drive import add_drive as add_drive
-from exudyn_rotor.multibody.drives.connect_rotors import connect_rotors as connect_rotors
+from exudyn_rotor.multibody.drives import add_drive as add_drive
+from exudyn_rotor.multibody.drives import connect_rotors as connect_rotors
 from exudyn_rotor.multibody.full.full_body import FullRotorBody as FullRotorBody
 from exudyn_rotor.multibody.rotor.connections import ConnectionWarning as ConnectionWarning
 from exudyn_rotor.multibody.rotor.record import StartState as StartState
