@@ -13,8 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_rotor.multibody.rotor.connections import load_places
-from exudyn_rotor.multibody.rotor.record import Record
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import Record, RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.axis import SpinAxis, skew
 
@@ -33,7 +32,7 @@ def external_load(body: RotorBody, record: Record, index: int) -> np.ndarray:
     motion, place = body.motion, body.layout
     t = float(record.time[index])
     q, q_t, q_tt = (rows[index][place.unknowns] for rows in (record.q, record.q_t, record.q_tt))
-    return motion.mass_matrix(t, q, q_t) @ q_tt - motion.forces(t, q, q_t)
+    return motion.mass_matrix(t, q) @ q_tt - motion.forces(t, q, q_t)
 
 
 def interface_loads(

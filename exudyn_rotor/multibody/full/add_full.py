@@ -27,6 +27,7 @@ from exudyn_rotor.multibody.full.ties import Ties, add_ties, container, no_jacob
 from exudyn_rotor.multibody.rotor.frame import Layout, LockedForce
 from exudyn_rotor.multibody.rotor.plan import Plan, Setup, add_nodes, laid_out
 from exudyn_rotor.multibody.rotor.rotor_items import finished, flexible_body
+from exudyn_rotor.prestress.static_solution import relief_rotation
 from exudyn_rotor.reduction.selection import NEGLIGIBLE
 from exudyn_rotor.solid.surface import flat_triangles
 from exudyn_rotor.solid_rotor import SolidRotor

@@ -211,9 +211,8 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
             position="positionRef",
             rotation="rotationMatrixRef",
         )
-        self.rotorBody, made = body, numbers(body)
-        self.nRigidBody, self.nGenericODE2 = made["nRigidBody"], made["nGenericODE2"]
-        self.oFFRFreducedOrder, self.loadGravity = made["oFFRFreducedOrder"], made["loadGravity"]
+        made = numbers(body)
+        vars(self).update(made)
         return made
 
 

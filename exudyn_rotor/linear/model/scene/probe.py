@@ -19,7 +19,7 @@ import numpy as np
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating, without_forces
-from exudyn_rotor.multibody.rotor.record import spin_at_start
+from exudyn_rotor.multibody.rotor.rotor_body import spin_at_start
 from exudyn_rotor.multibody.supports.connector import BearingConnector, Connector, FilmPoint, Force
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
