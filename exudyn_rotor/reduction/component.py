@@ -127,7 +127,7 @@ def free_modes(rotor: FiniteElementRotor, count: int) -> ModeBasis:
     >>> from exudyn_rotor import SolidRotor, free_modes
     >>> spring = 1e6 * np.kron([[1, -1], [-1, 1]], np.diag([0, 0, 1]))
     >>> ends = [[0, 0, 0], [0, 0, 1]]
-    >>> rotor = SolidRotor.from_matrices(np.eye(6), spring, ends, "z", grounded=False)
+    >>> rotor = SolidRotor.from_matrices(np.eye(6), spring, ends, "z")
     >>> modes = free_modes(rotor, 1)
     >>> print(modes.labels, np.round(modes.frequencies**2))
     ('eigenmode 1',) [2000000.]

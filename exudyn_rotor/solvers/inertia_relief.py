@@ -36,16 +36,6 @@ _ITERATIVE_PER_ENTRY, _ITERATIVE_PER_COORDINATE = 6.0, 5200.0
 # to d digits in an export 0.2·10⁻ᵈ (8 digits moved the lowest frequencies by 1e-4); a support of
 # k N/m leaves about k / ‖K‖∞
 _STRAIN_LIMIT = 1e-8
-# Limits of the relative residual ‖K r‖ / ‖ |K| |r| ‖ of a rigid motion r. Measured on meshes from
-# 15 000 to 108 000 coordinates, the same in SI and in mm and tonnes: a free motion leaves 1e-16;
-# rounding K to d digits gives 0.4·10⁻ᵈ in nearly all rows (4e-9 for 8 digits); springs of
-# 1e4 N/m at one node or on one face give 1e-9 to 1e-8, bearings of 1e8 N/m 1e-6 to 1e-4, but in
-# their own rows only. Where most rows cancel far better than the whole, the residual comes from
-# such supports and not from lost digits.
-FREE_BELOW = 1e-9
-HELD_ABOVE = 1e-5
-LOCALLY_HELD_ABOVE = 1e-12
-LOCAL_RATIO = 1e-3
 # springs of clamped nodes over the largest diagonal entry of the stiffness: they move by less than
 # 1e-10 of the others, and dense eigenvalues, whose error is relative to the stiffest spring, keep
 # four digits; above a share of it no spring to the ground means anything else
@@ -113,77 +103,6 @@ class Way:
 def coordinates(nodes: np.ndarray) -> np.ndarray:
     """Return the numbers of the coordinates of nodes."""
     return (3 * np.asarray(nodes)[:, None] + np.arange(3)).ravel()
-
-
-def rigid_basis(nodes: np.ndarray) -> np.ndarray:
-    """Return orthonormal columns (3n, r) spanning the rigid motions that displace any node.
-
-    r is 6, but 5 for nodes on one line and 3 for a single node.
-    """
-    center = nodes.mean(axis=0)
-    radius = np.sqrt(np.mean(np.sum((nodes - center) ** 2, axis=1))) or 1.0
-    motions = np.hstack([translations(len(nodes)), rotations(nodes, center) / radius])
-    basis, lengths, _ = np.linalg.svd(motions, full_matrices=False)
-    return basis[:, : np.count_nonzero(lengths > 1e-9 * lengths[0])]
-
-
-def rigid_residuals(nodes: np.ndarray, stiffness: sp.csr_array) -> tuple[np.ndarray, np.ndarray]:
-    """Return how strongly `stiffness` resists the rigid motions, as a whole and in most rows.
-
-    The motions are combined such that each is held or free by itself (singular vectors of K R).
-    Returned are ‖K r‖ / ‖ |K| |r| ‖, and the median over the rows of |K r| / (|K| |r|), both (r,):
-    forces relative to the terms that have to cancel, whatever the units and the mesh size.
-    """
-    basis = rigid_basis(nodes)
-    _, _, combinations = np.linalg.svd(stiffness @ basis, full_matrices=False)
-    motions = basis @ combinations.T
-    forces = np.abs(stiffness @ motions)
-    terms = abs(stiffness) @ np.abs(motions)
-    residuals = _ratio(np.linalg.norm(forces, axis=0), np.linalg.norm(terms, axis=0))
-    return residuals, np.median(_ratio(forces, terms), axis=0)
-
-
-def locally_held(residuals: np.ndarray, typical: np.ndarray) -> np.ndarray:
-    """Return which motions are held by springs in few rows, not by lost digits in most."""
-    return (typical < LOCAL_RATIO * residuals) & (residuals > LOCALLY_HELD_ABOVE)
-
-
-def count_rigid_motions(
-    nodes: np.ndarray, stiffness: sp.csr_array, grounded: bool | None = None
-) -> int:
-    """Return how many of the six rigid motions `stiffness` leaves free.
-
-    A rotation that displaces no node (about a line that holds all nodes) counts as free. `grounded`
-    is what the user knows: True if springs to the ground are inside the matrix, False if not;
-    needed only if the matrix itself does not tell. ValueError if it contradicts the matrix.
-    """
-    residuals, typical = rigid_residuals(nodes, stiffness)
-    held = (residuals > HELD_ABOVE) | locally_held(residuals, typical)
-    doubtful = (residuals >= FREE_BELOW) & ~held
-    if grounded is None and np.any(doubtful):
-        raise ValueError(
-            f"stiffness matrix: {np.count_nonzero(doubtful)} rigid motions are neither free nor "
-            f"held (relative residual {residuals[doubtful].max():.2g}, free is below "
-            f"{FREE_BELOW:g}, held above {HELD_ABOVE:g}). Either the matrix lost digits in an "
-            "export: write all 16 digits, or pass grounded=False to take it as free. Or very soft "
-            "springs to the ground act on most nodes: pass grounded=True"
-        )
-    if grounded is False and np.any(held):
-        raise ValueError(
-            f"stiffness matrix: grounded=False, but {np.count_nonzero(held)} rigid motions are "
-            f"held (relative residual {residuals[held].max():.2g}); remove the supports from the "
-            "matrix or leave grounded out"
-        )
-    if grounded is True and not np.any(held | doubtful):
-        raise ValueError(
-            "stiffness matrix: grounded=True, but all six rigid motions are free; leave grounded "
-            "out or add the supports"
-        )
-    return 6 - int(np.count_nonzero(held | doubtful if grounded else held))
-
-
-def _ratio(values: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    return np.divide(values, sizes, out=np.zeros_like(values), where=sizes > 0.0)
 
 
 def holding_spring(stiffness: sp.csr_array) -> float:
