@@ -203,7 +203,7 @@ class SolidElements:
         means = sp.csr_array(
             (np.full(every.size, 0.5), (every, ends.ravel())), shape=(len(ends), vertices)
         )
-        return sp.csr_array(sp.kron(means, sp.eye_array(3), format="csr"))
+        return matrices.in_all_directions(means)
 
     def _of_strains(self, first: np.ndarray | None, second: np.ndarray | None) -> sp.csr_array:
         """Return ``∫ E(v) : C : E(u) dV``, of E = ε for None, else E₁ of nodal displacements."""

@@ -16,7 +16,7 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components
 from exudyn_rotor import checks
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.solid.elements import SolidElements
-from exudyn_rotor.theory.axis import rotations, translations
+from exudyn_rotor.theory.axis import coupled, rotations, translations
 
 _LISTED = 6  # parts that a message describes
 NodeSet = tuple[Sequence[int], Sequence[float] | None]
@@ -312,3 +312,20 @@ def count_rigid_motions(nodes: np.ndarray, stiffness: sp.csr_array) -> int:
             "all 16; or very soft springs to the ground act on most nodes"
         )
     return 6 - int(np.count_nonzero(held))
+
+
+# springs of clamped nodes over the largest diagonal entry of the stiffness: they move by less than
+# 1e-10 of the others, and dense eigenvalues, whose error is relative to the stiffest spring, keep
+# four digits; above a share of it no spring to the ground means anything else
+_SPRING, _STIFFER = 1e6, 1e4
+
+
+def holding_spring(stiffness: sp.csr_array) -> float:
+    """Return the spring [N/m] that holds clamped coordinates."""
+    return float(_SPRING * stiffness.diagonal()[~clamped_coordinates(stiffness)].max())
+
+
+def clamped_coordinates(stiffness: sp.csr_array) -> np.ndarray:
+    """Return which coordinates are clamped (3n,): those on nothing but a stiff spring."""
+    joined, diagonal = coupled(stiffness), stiffness.diagonal()
+    return ~joined & joined.any() & (diagonal > _STIFFER * diagonal[joined].max(initial=0.0))

@@ -19,11 +19,12 @@ from exudyn_rotor.solid.model import (
     check_connected,
     check_model_units,
     count_rigid_motions,
+    holding_spring,
     rigid_basis,
 )
 from exudyn_rotor.solid.rigid_disc import STIFF, PointMass, RigidDisc, add_nodal_mass, as_tensor
 from exudyn_rotor.solid.surface import outer_section
-from exudyn_rotor.solvers.inertia_relief import SOLVERS, holding_spring
+from exudyn_rotor.solvers.inertia_relief import SOLVERS
 from exudyn_rotor.theory.axis import SpinAxis, skew
 
 
