@@ -149,12 +149,14 @@ class MagneticBearing(LoadedBearing):
         slopes = np.array([self.actuator.slopes(i, x) for x, i in states])
         damping, stiffness = self.coupling(slopes)
         own, both = self.controller.realisation(), np.eye(2)
+        masses = np.repeat(self.scale * own.inertia, 2)
         damping[4:, 4:] = self.scale * np.kron(own.damping, both)
         stiffness[4:, 4:] = self.scale * np.kron(own.stiffness, both)
         by_current = self.control_axes.T @ (slopes[:, 0, None] * self.control_axes)
         static = self.controller.proportional * by_current + stiffness[:2, :2]
-        sensor, inertia = self.sensor_interface, self.scale * own.inertia
-        return ControlledSupport(self.interface, sensor, inertia, damping, stiffness, static)
+        return ControlledSupport(
+            self.interface, masses, lambda _: (stiffness, damping), static, self.sensor_interface
+        )
 
     def coupling(self, slopes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return damping and stiffness between the ports of :class:`ControlledSupport`.

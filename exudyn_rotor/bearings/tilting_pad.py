@@ -29,7 +29,7 @@ from scipy.optimize import brentq
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing, Linearised
-from exudyn_rotor.bearings.controlled_support import PadSupport
+from exudyn_rotor.bearings.controlled_support import ControlledSupport
 from exudyn_rotor.bearings.film.equilibria import Equilibria
 from exudyn_rotor.bearings.film.film import FilmState, OilFilm
 from exudyn_rotor.bearings.film.pads import direction
@@ -119,6 +119,8 @@ class TiltingPadBearing(Bearing):
             "linearised()"
         )
 
+    slopes = law  # which refuses, too
+
     @property
     def tangents(self) -> np.ndarray:
         """Directions t at the pivots along (n1, n2), shape (pads, 2)."""
@@ -153,7 +155,7 @@ class TiltingPadBearing(Bearing):
         Z = self._state(speed, load).impedance(whirl)
         return Z.real, Z.imag / whirl
 
-    def linearised(self) -> Support | PadSupport:
+    def linearised(self) -> Support | ControlledSupport:
         """Return the support for linear analyses: the coefficients under the load at every speed.
 
         With the pads' tilts as coordinates where these have inertia. A pad that carries nothing is
@@ -178,10 +180,10 @@ class TiltingPadBearing(Bearing):
             return self._linear.at(speed, load, self._of_pads)[:2]
 
         masses = np.full(len(self.film.pads), self.pad_mass)
-        return PadSupport(self.interface, masses, matrices, static)
+        return ControlledSupport(self.interface, masses, matrices, static)
 
     def _of_pads(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return what :class:`PadSupport` has, and the stiffness (2, 2) of all in the whirl."""
+        """Return the matrices of the ports, and the stiffness (2, 2) of all in the whirl."""
         state, mass = self._state(speed, load), self.pad_mass
         whole = state.impedance(self.whirl_ratio * abs(speed), mass).real
         absent = [pad for pad, each in enumerate(state.states) if each is None]
@@ -195,10 +197,10 @@ class TiltingPadBearing(Bearing):
         soft = min(mass * speed**2, _HELD * float(np.abs(whole).max()))
         held = np.array([soft, 4.0 * np.sqrt(soft * mass)])  # overdamped: no vibration of its own
         count = len(state.states)
-        total = np.zeros((2, 3 + count, 3 + count))
+        total = np.zeros((2, 2 + count, 2 + count))
         for pad, (each, t) in enumerate(zip(state.coefficients, self.tangents, strict=True)):
-            seen = np.eye(3, 3 + count)[:2]
-            seen[:, 3 + pad] = -t
+            seen = np.eye(2, 2 + count)
+            seen[:, 2 + pad] = -t
             film = np.multiply.outer(held, np.outer(t, t)) if each is None else each
             total += [seen.T @ X @ seen for X in film]
         return total[0], total[1], whole
@@ -279,7 +281,7 @@ def _shift_of_pad(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float)
             raise pressed
         return np.nan
     s = brentq(moment, tried[rises[0]], tried[rises[0] + 1], xtol=_ROOT * film.radius)
-    return s if t @ at(s).tangent[0] @ t > 0.0 else np.nan  # where no pressure is left
+    return s if t @ at(s).coefficients()[0] @ t > 0.0 else np.nan  # where no pressure is left
 
 
 @dataclass(frozen=True, eq=False)
@@ -319,7 +321,7 @@ class _Pads:
             for pad in present:
                 film, t, empty = films[pad], self.tangents[pad], states[pad].solution.empty
                 states[pad] = film.solved(place - shifts[pad] * t, still, speed, empty)
-                force, stiffness = states[pad].force, states[pad].tangent[0]
+                force, stiffness = states[pad].force, states[pad].coefficients()[0]
                 rise, lever = t @ stiffness @ t, stiffness @ t
                 if not rise > _LOOSE * units[pad]:
                     return None

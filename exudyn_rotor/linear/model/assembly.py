@@ -14,12 +14,7 @@ from functools import cached_property
 import numpy as np
 import scipy.linalg as la
 
-from exudyn_rotor.bearings.controlled_support import (
-    Controlled,
-    ControlledSupport,
-    PadSupport,
-)
-from exudyn_rotor.bearings.given import linear_supports
+from exudyn_rotor.bearings.given import Controlled, linear_supports
 from exudyn_rotor.bearings.series import SeriesSupport
 from exudyn_rotor.bearings.support import NoCoefficientsError, Support, acts
 from exudyn_rotor.calls import kept
@@ -46,11 +41,7 @@ _CHANGE = 1e-14  # share of a stiffness that is the rounding of its change by th
 _ROUNDING = 1e-12  # share of a matrix by which it may differ after a turn and be isotropic
 End = tuple[str, str]  # names of a body and of its interface
 Seen = Callable[[End], Terms]  # what a support acts on, seen from outside
-WORDS = {
-    ControlledSupport: "controller",
-    PadSupport: "pads",
-    SeriesSupport: "ring",
-}
+WORDS = "controller", "pads", "ring"  # supports with coordinates of their own, in this order
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,10 +175,10 @@ class PadBody(OwnBody):
 
 def own_body(one: Controlled, number: int, turns: int) -> OwnBody:
     """Return the coordinates of a support; pairs in axes that turn with `turns` times Ω."""
-    word, name = f"{WORDS[type(one)]} {number} at {one.interface}", f" {number}"
+    word, name = f"{one.word} {number} at {one.interface}", f" {number}"
     labels = tuple(f"{word}, {n}" for n in range(1, one.size + 1))
     M, none = np.diag(one.masses), np.zeros((one.size, one.size))
-    if isinstance(one, PadSupport):
+    if one.word == "pads":
         return PadBody(name, 0, M, (none,), (none,), labels)
     quarter = np.kron(np.eye(one.size // 2), axial_skew(3)[:2, :2])
     powers_D, powers_K = (none, 2.0 * turns * M @ quarter), (none, none, -float(turns) * M)
@@ -246,21 +237,20 @@ def own_elements(
     if isinstance(one, SeriesSupport):
         return _series_elements(one, end, base, rate, own)
     ends, ports = (end,), [_relative(end, base, 3)]
-    if isinstance(one, ControlledSupport):
+    if one.sensor is not None:
         ends = end, (end[0], one.sensor)
         ports.append(_relative(ends[1], bases.get(one.sensor), 3))
-    lifted = np.kron(np.eye(len(ports) + own.size // 2), ACROSS)
+    inner = np.eye(own.size) if one.sensor is None else np.kron(np.eye(own.size // 2), ACROSS)
+    lifted = la.block_diag(np.kron(np.eye(len(ports)), ACROSS), inner)
 
     def matrices(speed: float, *_: float) -> tuple[np.ndarray, np.ndarray]:
-        if isinstance(one, PadSupport):
-            return one.matrices(rate * speed)
-        K, D = one.stiffness, one.damping
+        K, D = one.matrices(rate * speed)
         return lifted @ K @ lifted.T, lifted @ D @ lifted.T
 
     def motion(seen: Seen) -> Terms:
         return stacked([*(port(seen) for port in ports), seen((own.name, ""))])
 
-    if isinstance(one, ControlledSupport):
+    if one.sensor is not None:
         return [Element(ends, matrices, motion, law=one)]
     return [Element(ends, matrices, motion, varies=True, stiffness_varies=True)]
 
@@ -320,7 +310,7 @@ def elements_of(
         for one in plain:
             base = bases.get(one.interface)
             elements.append(support_element(one, (name, one.interface), base, ratio, ratio))
-        for one in sorted(controlled, key=lambda each: list(WORDS).index(type(each))):
+        for one in sorted(controlled, key=lambda each: WORDS.index(each.word)):
             own.append(own_body(one, begun + len(own) + 1, turns))
             elements += own_elements(one, (name, one.interface), bases, ratio, own[-1])
     for link in links:

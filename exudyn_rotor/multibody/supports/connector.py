@@ -527,7 +527,8 @@ class BearingConnector(Connector):
 
 def has_torque(bearing: Bearing) -> bool:
     """Return whether a bearing has a torque about the axis in scenes."""
-    return isinstance(bearing, TiltingPadBearing) or bearing.law_with_torque is not None
+    with_torque = bearing.law_with_torque is not None and getattr(bearing, "friction", None) != 0.0
+    return with_torque or isinstance(bearing, TiltingPadBearing)
 
 
 def watch_clearance(body: RotorItems, connector: BearingConnector | MagneticConnector) -> None:
