@@ -125,7 +125,13 @@ class MagneticBearing(LoadedBearing):
     def _states(self, load: np.ndarray) -> list[tuple[float, float]]:
         """Return place [m] and current [A] of each control axis in the equilibrium."""
         axes, gain, actuator = self.control_axes, self.controller.proportional, self.actuator
-        actuator._check_hold(gain)
+        held, pulled = actuator.force_current * gain, actuator.negative_stiffness
+        if held <= pulled:
+            raise ValueError(
+                f"controller: unstable: K_i P of {held:.4g} N/m is not above the negative "
+                f"stiffness K_s of {pulled:.4g} N/m, so that there is no equilibrium; give a "
+                "larger proportional gain"
+            )
         pairs = zip(axes @ load, axes @ self.sensor_offset, strict=True)
         if self.controller.integral:
             return [(-offset, actuator._current_for(-pull, -offset)) for pull, offset in pairs]

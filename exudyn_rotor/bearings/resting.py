@@ -124,7 +124,7 @@ def _of_magnets(bearing: MagneticBearing, place: np.ndarray, sensed: np.ndarray)
         return Resting(none, np.eye(2), none, -offset)
     axes, gain = bearing.control_axes, bearing.controller.proportional
     at = list(zip(-gain * (axes @ (sensed + offset)), axes @ place, strict=True))
-    force = axes.T @ [bearing.actuator.force(*one) for one in at]
+    force = axes.T @ [bearing.actuator.law(*one) for one in at]
     by_current, by_place = np.array([bearing.actuator.slopes(*one) for one in at]).T
     A, A_s = -axes.T @ np.diag(by_place) @ axes, axes.T @ np.diag(gain * by_current) @ axes
     return Resting(A, A_s, np.eye(2), force + A @ place + A_s @ sensed)

@@ -51,8 +51,9 @@ class TiltingPadBearing(Bearing):
     """Journal bearing whose pads tilt about pivots.
 
     With `pad_inertia` the pads' tilts are coordinates, in scenes and in linear analyses. Without it
-    linear analyses have stiffness and damping at the whirl's frequency, the tilts eliminated, and
-    scenes, in which a tilt has a history, take :meth:`linearised`, about the middle of the bearing.
+    linear analyses have stiffness and damping of whirl at the spin speed, as by unbalance, the
+    tilts eliminated, and scenes, in which a tilt has a history, take :meth:`linearised`, about the
+    middle of the bearing.
 
     Parameters
     ----------
@@ -62,9 +63,6 @@ class TiltingPadBearing(Bearing):
         With the pads as they are without tilt, the directions n1 and n2 of the rotor at rest.
     pivot : float, optional
         Place of the pivots over the arc of a pad, from its start; 0.5 is the middle.
-    whirl_ratio : float, optional
-        Frequency of the whirl over the spin speed, 1 for unbalance: of pads without inertia, and in
-        critical speeds.
     pad_inertia : float, optional
         Of each pad about its pivot, along the axis [kg m²]. Light pads follow the journal at once:
         the smaller it is, the less it matters.
@@ -95,15 +93,13 @@ class TiltingPadBearing(Bearing):
 
     film: OilFilm
     pivot: float = 0.5
-    whirl_ratio: float = 1.0
     pad_inertia: float | None = None
     _equilibria: Equilibria[_Pads] = field(default_factory=Equilibria, init=False, repr=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         checks.instance(self.film, "film", OilFilm)
-        checks.keep_numbers(self, {"pivot": "", "whirl_ratio": ""}, above=0.0)
-        checks.number(self.pivot, "pivot", below=1.0)
+        checks.keep_numbers(self, {"pivot": ""}, above=0.0, below=1.0)
         if self.pad_inertia is not None:
             checks.keep_numbers(self, {"pad_inertia": "kg m²"}, above=0.0)
         if self.film.pads[0].closed:
@@ -151,9 +147,8 @@ class TiltingPadBearing(Bearing):
 
     def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return stiffness and damping of (2)."""
-        whirl = self.whirl_ratio * abs(speed)
-        Z = self._state(speed, load).impedance(whirl)
-        return Z.real, Z.imag / whirl
+        Z = self._state(speed, load).impedance(abs(speed))
+        return Z.real, Z.imag / abs(speed)
 
     def linearised(self) -> Support | ControlledSupport:
         """Return the support for linear analyses: the coefficients under the load at every speed.
@@ -185,7 +180,7 @@ class TiltingPadBearing(Bearing):
     def _of_pads(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return the matrices of the ports, and the stiffness (2, 2) of all in the whirl."""
         state, mass = self._state(speed, load), self.pad_mass
-        whole = state.impedance(self.whirl_ratio * abs(speed), mass).real
+        whole = state.impedance(abs(speed), mass).real
         absent = [pad for pad, each in enumerate(state.states) if each is None]
         if absent and not self.__dict__.get("_told"):
             object.__setattr__(self, "_told", True)

@@ -80,12 +80,16 @@ def test_coefficients_are_derivatives_of_the_force(cavitation, speed):
     state = skew.state([3e-5, -4e-5], STILL, speed)
     stiffness, damping = state.coefficients()
     moved = 1e-6 * CLEARANCE * np.array([np.eye(2), -np.eye(2)])
-    ahead, behind = ([skew.state(state.position + e, STILL, speed).force for e in side] for side in moved)
+
+    def force(place, rate=STILL):
+        return skew.state(place, rate, speed).force
+
+    ahead, behind = ([force(state.position + e) for e in side] for side in moved)
     differences = -(np.array(ahead) - behind).T / (2e-6 * CLEARANCE)
     # round-off 1e-16/1e-6, and the square of the step; a node that changes sides adds its own
     assert stiffness == pytest.approx(differences, abs=1e-5 * np.abs(stiffness).max())
     moved = 1e-7 * CLEARANCE * SPEED * np.eye(2)
-    ahead = [skew.state(state.position, e, speed).force - state.force for e in moved]
+    ahead = [force(state.position, e) - state.force for e in moved]
     differences = -np.array(ahead).T / (1e-7 * CLEARANCE * SPEED)
     assert damping == pytest.approx(differences, abs=1e-5 * np.abs(damping).max())
 
