@@ -146,8 +146,8 @@ class TiltingPadBearing(Bearing):
         return -self._state(speed, self._static_load(load)).shifts / self.film.radius
 
     def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return stiffness and damping of (2)."""
-        Z = self._state(speed, load).impedance(abs(speed))
+        """Return stiffness and damping of (2), of pads with inertia by (1)."""
+        Z = self._state(speed, load).impedance(abs(speed), self.pad_mass)
         return Z.real, Z.imag / abs(speed)
 
     def linearised(self) -> Support | ControlledSupport:
@@ -168,19 +168,15 @@ class TiltingPadBearing(Bearing):
         """
         if self.pad_inertia is None:
             return super().linearised()
-        load, static = self._static_load(None), _InTheWhirl(self, 0)
-
-        def matrices(speed: float) -> tuple[np.ndarray, np.ndarray]:
-            static.check_range(speed)
-            return self._linear.at(speed, load, self._of_pads)[:2]
-
+        self._static_load(None)
         masses = np.full(len(self.film.pads), self.pad_mass)
-        return ControlledSupport(self.interface, masses, matrices, static)
+        return ControlledSupport(self.interface, masses, self._of_pads, Linearised(self, 0))
 
-    def _of_pads(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return the matrices of the ports, and the stiffness (2, 2) of all in the whirl."""
-        state, mass = self._state(speed, load), self.pad_mass
-        whole = state.impedance(abs(speed), mass).real
+    def _of_pads(self, speed: float) -> np.ndarray:
+        """Return stiffness and damping of the ports of pads with inertia, (2, 2 + p, 2 + p)."""
+        Linearised(self, 0).check_range(speed)
+        load, mass = self._static_load(None), self.pad_mass
+        state, whole = self._state(speed, load), self.coefficients(speed, load)[0]
         absent = [pad for pad, each in enumerate(state.states) if each is None]
         if absent and not self.__dict__.get("_told"):
             object.__setattr__(self, "_told", True)
@@ -198,7 +194,7 @@ class TiltingPadBearing(Bearing):
             seen[:, 2 + pad] = -t
             film = np.multiply.outer(held, np.outer(t, t)) if each is None else each
             total += [seen.T @ X @ seen for X in film]
-        return total[0], total[1], whole
+        return total
 
     def _state(self, speed: float, load: np.ndarray) -> _Pads:
         """Return the pads in equilibrium."""
@@ -357,12 +353,3 @@ class _Pads:
                 Z = K + 1j * whirl * C
                 total += Z - np.outer(Z @ t, t @ Z) / (t @ Z @ t - mass * whirl**2)
         return total
-
-
-@dataclass(frozen=True, eq=False)
-class _InTheWhirl(Linearised):
-    """Stiffness of all pads with inertia in the whirl, by the spin speed."""
-
-    def _value(self, speed: float) -> np.ndarray:
-        bearing = self.bearing
-        return bearing._linear.at(speed, bearing._static_load(None), bearing._of_pads)[2]
