@@ -144,7 +144,6 @@ class Bearing(LoadedBearing):
         See :class:`LoadedBearing`.
     """
 
-    uses_angle: ClassVar[bool] = False  # whether the law depends on the spin angle
     law_with_torque: ClassVar[LawWithTorque | None] = None
 
     _tried: ClassVar[np.ndarray] = HIGHER

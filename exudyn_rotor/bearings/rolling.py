@@ -26,7 +26,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import cos, hypot, pi, sin
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -91,8 +90,6 @@ class RollingBearing(Bearing):
     >>> print(bearing.equilibrium(100.0).round(7) + 0.0)
     [ 0.00e+00 -1.74e-05]
     """
-
-    uses_angle: ClassVar[bool] = True
 
     count: int
     pitch_radius: float
