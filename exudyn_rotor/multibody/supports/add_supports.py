@@ -254,7 +254,7 @@ def _added(body: Body, support: Given, seat: Seat, sensed: Seat) -> SceneSupport
     mbs = body.mbs
     end, base = RotorEnd(body, support.interface), seat.end(mbs)
     if isinstance(support, Support):
-        parts, left = native_parts(body, support, seat, base is None)
+        parts, left = native_parts(body, support, seat)
         rotor = carrying_rotor(mbs, seat.base) is not None
         made = SupportConnector(support, end, base, rotor)
         if left is not None:
