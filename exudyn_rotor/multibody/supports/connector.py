@@ -61,19 +61,10 @@ class Force(NamedTuple):
 
 
 class Connector(ABC):
-    """A law between a rotor and what carries it.
+    """A law between the end of a rotor and that of its base, None for the ground.
 
-    Attributes
-    ----------
-    end : RotorEnd
-    base : FoundationEnd, MarkerEnd or None
-        None for the ground.
-    nodes : tuple of NodeIndex
-        Of the rotor, of the base, and of coordinates of the law's own.
-    own : int
-        Number of these.
-    muted : bool
-        Whether its object has no force, as where linear equations take the law itself.
+    Its coordinates are those of the `nodes` of both, and `own` more of the law. `muted` its object
+    has no force, as where linear equations take the law itself.
     """
 
     has_mass = False  # whether a mass goes with the rotor across the axis
