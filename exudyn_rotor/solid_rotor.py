@@ -11,12 +11,9 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.prestress.carrying import with_prestress
-from exudyn_rotor.prestress.given_loads import Loads, Spring
-from exudyn_rotor.prestress.static_solution import static_prestress
-from exudyn_rotor.reduction.reduce import ModeSource, reduce_rotor
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.prestress.static_solution import prestress
+from exudyn_rotor.reduction.reduce import reduce
 from exudyn_rotor.solid import matrices, ngsolve_model
-from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.meshes import mesh_model
 from exudyn_rotor.solid.model import FiniteElementModel, import_model, node_set
 from exudyn_rotor.solid.rotor import AxisLike, FiniteElementRotor
@@ -308,99 +305,10 @@ class SolidRotor(FiniteElementRotor):
         model = FiniteElementModel(nodes, mass, stiffness, damping, node_sets, triangles)
         return cls._of_model(model, axis, check_units, grounded, allow_parts)
 
-    def prestress(
-        self,
-        *,
-        clamped: Sequence[str] = (),
-        initial_displacement: bool = False,
-        euler: bool = False,
-        stress: ArrayLike | None = None,
-        yield_stress: float | None = None,
-        speed: float | None = None,
-        loads: Loads | None = None,
-        supports: Sequence[Spring] | Spring = (),
-    ) -> Prestress:
-        """Return the static prestress by the rotation and by loads, for ``stiffening='full'``.
-
-        Solves ``K u⁰ = M x_⊥`` for ω = 1 rad/s, with inertia relief on the motions that the
-        stiffness leaves free, and assembles the geometric stiffness of its stress; likewise, once
-        for all speeds, of the stress by given loads: a thrust softens bending, a preload or a
-        tension stiffens it.
-
-        Parameters
-        ----------
-        clamped : sequence of str, optional
-            Interfaces whose nodes a massless rigid hub holds fixed for the static solution, e.g. a
-            bore on a rigid shaft. The hub moves with the rotor afterwards; a rotor that is held
-            in its frame needs :meth:`clamped`.
-        initial_displacement : bool, optional
-            Also the stiffness from the change of shape by u⁰, per ω² and per ω⁴: the tangent of
-            St. Venant–Kirchhoff elasticity about the linear static state, which K_G alone misses
-            by the order of the static strain or, where parts turn with the static deflection
-            (blades), of that rotation. What is left is the second-order part of the static state.
-        euler : bool, optional
-            Also the stiffness from the stress of an angular acceleration. Without it the
-            rigid-body part of that is used, which is all of it for a rotor that nothing holds.
-        stress : array_like, shape (n, 6), optional
-            Stress at rest, from an interference fit or temperature: xx, yy, zz, yz, xz, xy at the
-            nodes in mesh axes [Pa]. It must be in equilibrium without load; what averaging at
-            nodes lost of that is put right by one elastic solution. Its stiffness takes part in
-            the static solution for the rotation.
-        yield_stress : float, optional
-            Yield stress [Pa].
-        speed : float, optional
-            Highest speed [rad/s]; warns if the von Mises stress is above `yield_stress` there.
-        loads : mapping or array_like, shape (n, 3), optional
-            Loads that turn with the rotor and do not depend on the speed: interface or node number
-            → force (3,) [N], or at an interface force and moment (6,), in mesh axes; or a force at
-            every node, as of pressure. Where the rotor tilts they keep their direction. A moment
-            must be a torque about the axis; it counts as semi-tangential, see
-            :mod:`exudyn_rotor.prestress.given_loads`. This is their stiffness alone: a scene or
-            an analysis has the loads themselves only where they are given there.
-        supports : sequence of Support, optional
-            What holds the rotor in the static solutions, along the axis above all: the loads must
-            balance each other or be taken up, and the centrifugal load pulls on supports that
-            resist the contraction of the shaft.
-
-        Raises
-        ------
-        TypeError, ValueError
-            For values of the wrong kind, if the rotor has no elements (not made by
-            :meth:`from_ngsolve`) or carries a prestress already, an interface is unknown, or
-            `stress` belongs to another mesh or makes the rotor buckle, nothing takes up a load, or
-            a moment is none about the axis.
-
-        Warns
-        -----
-        UserWarning
-            When the material yields, or `stress` is far from equilibrium.
-        """
-        return static_prestress(
-            self,
-            clamped=clamped,
-            initial_displacement=initial_displacement,
-            euler=euler,
-            stress=stress,
-            yield_stress=yield_stress,
-            speed=speed,
-            loads=loads,
-            supports=supports,
-        )
-
-    def with_prestress(self, prestress: Prestress) -> SolidRotor:
-        """Return the rotor carrying a prestress, for full models and as default of `reduce`.
-
-        A constant stress becomes part of the stiffness. Point masses and clamped nodes change the
-        static state: add them before.
-
-        Raises
-        ------
-        TypeError, ValueError
-            If `prestress` is of another kind, belongs to another mesh or another static state
-            (other axis, mass, elasticity, springs or held nodes), or its stress at rest makes the
-            rotor buckle; and if the rotor carries one already.
-        """
-        return with_prestress(self, prestress)
+    prestress = prestress
+    with_prestress = with_prestress
+    reduce = reduce
+    summary = summary
 
     def with_damping(
         self,
@@ -463,45 +371,3 @@ class SolidRotor(FiniteElementRotor):
             mass_damping=self.mass_damping + mass,
             structural_damping=self.structural_damping + loss,
         )
-
-    def reduce(
-        self,
-        modes: ModeSource,
-        *,
-        stress: bool = False,
-        keep_shapes: bool = True,
-        prestress: Prestress | bool | None = None,
-    ) -> ReducedRotor:
-        """Reduce the rotor to component modes and its rigid motions.
-
-        Parameters
-        ----------
-        modes : int, ModeBasis, FEMinterface or ndarray, shape (3n, r)
-            A number of free eigenmodes (0 for a rigid rotor), a basis made by a function of
-            :mod:`exudyn_rotor.reduction`, a FEMinterface whose modes have been computed, or
-            displacement columns in mesh axes [m].
-        stress : bool, optional
-            Also recover stress modes, for stress sensors and contour pictures.
-        keep_shapes : bool, optional
-            Keep the mode shapes at all nodes: needed for sensors at mesh nodes and for drawing.
-        prestress : Prestress or bool, optional
-            Static stress for ``stiffening='full'``; True for :meth:`prestress` with its defaults,
-            False for none. By default that which the rotor carries or, where it has elements and
-            no loose parts, :meth:`prestress` with its defaults.
-
-        Raises
-        ------
-        TypeError, ValueError
-            If the modes are of another kind or of another mesh, or nothing is left of them.
-        """
-        return reduce_rotor(
-            self,
-            modes,
-            stress=stress,
-            keep_shapes=keep_shapes,
-            prestress=prestress,
-        )
-
-    def summary(self) -> str:
-        """Return size, mass, supports, parts, materials, interfaces, masses and discs as text."""
-        return summary(self)

@@ -258,7 +258,6 @@ CALLS = {
     "Prestress.from_matrix": lambda w: {
         "matrix": w.Prestress.matrix,
         "nodes": w.SolidRotor.nodes,
-        "euler": w.Prestress.euler,
     },
     "RollingBearing": {
         "count": 8,
@@ -303,7 +302,7 @@ CALLS = {
     },
     "SolidRotor.from_ngsolve": {"materials": {"steel": STEEL}, "order": 1},
     "SolidRotor.interface_at": {"name": "seat", "position": 0.15, "width": 0.4},
-    "SolidRotor.prestress": {"euler": True},
+    "SolidRotor.prestress": {},
     "SolidRotor.reduce": {"modes": 2},
     "SolidRotor.with_interface": {"name": "middle", "nodes": [0, 1, 2, 3], "weights": [1.0] * 4},
     "SolidRotor.with_solver": {"solver": "direct"},

@@ -189,7 +189,7 @@ def _with_mesh(
     if len(model.rotors) > 1 or model.bodies[0].alone.rotor.shapes is None:
         raise ValueError(
             "target: its linear model has no mesh nodes to show; take a rotor on supports, reduced "
-            "with keep_shapes=True, and not a scene"
+            "with its shapes, and not a scene"
         )
     return model
 

@@ -175,7 +175,7 @@ def test_scene_and_list_have_the_same_exponents(kind, turn, rotation):
     # a heavy spot would turn journals on a circle, on which magnets have other slopes
     reduced, supports = rings(turn, 0.0 if kind == "magnets" else 1e-3), [*KINDS[kind], AXIAL]
     mbs, body, added = on_supports(reduced, supports, rotation, spin=9.0)
-    found = linear_model(mbs, body=body, about="given")
+    found = linear_model(mbs, body=body)
     # differences of Exudyn's forces give the slopes of the magnets
     assert distance(found, linear_model(reduced, supports=supports), SPEED) < 1e-7
     assert added[0].uses_python

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
+from exudyn_rotor.bearings.controlled_support import ControlledSupport
 from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.foundations.foundation import Foundation
@@ -201,7 +202,7 @@ def sensitivity(
     loops = [
         (element.matrices(speed), motion)
         for element, motion in zip(assembly.elements, assembly.motions, strict=True)
-        if element.law is not None
+        if isinstance(element.law, ControlledSupport)
     ]
     motions = motions_over(model, [speed], held=True)
     named = Content.of(model).named(motions)

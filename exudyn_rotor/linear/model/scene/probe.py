@@ -89,6 +89,10 @@ class Probe:
         self.rotor_terms = lru_cache(_KEPT)(self._rotor_terms)
         self.turn = lru_cache(_KEPT)(scene.turn)
 
+    def at_rest(self) -> Probe:
+        """Return the same scene without spin."""
+        return Probe(self.scene, 0.0, self.solver, self.laws)
+
     # ------------------------------------------------------------------ constraints and masses
 
     def constraints(self, theta: float) -> np.ndarray:
