@@ -205,7 +205,7 @@ def _check_support(body: Body, support: Given) -> None:
             f"support at {name!r}: mass: a scene takes one number, alike across the axis [kg], "
             "got a matrix"
         )
-    stiffness, damping = support.matrices(body.plan.setup.placement.speed)
+    stiffness, damping = support.matrices(body.placement.speed)
     acting = {"stiffness": stiffness} | ({"damping": damping} if support.frame == "rotor" else {})
     for kind in [kind for kind, X in acting.items() if free and _about_the_axis(X)]:
         raise ValueError(

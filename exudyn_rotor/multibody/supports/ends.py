@@ -19,7 +19,12 @@ from exudyn.utilities import (
 )
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor.rotor_items import Carrier, RotorItems, carrying_rotor
+from exudyn_rotor.multibody.rotor.rotor_items import (
+    Carrier,
+    RotorItems,
+    carrying_rotor,
+    marker_carrier,
+)
 from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation, foundation_marker
 from exudyn_rotor.solid.places import SAME_PLACE, leeway, off_place
 from exudyn_rotor.theory.axis import skew
@@ -53,7 +58,7 @@ class Seat:
     @classmethod
     def of(cls, body: RotorItems, name: str, base: Base | Mapping[str, Base] | None) -> Seat:
         """Return the place of an interface on its base."""
-        setup = body.plan.setup.placement
+        setup = body.placement
         interface = body.selection.source.interfaces[name]
         on_axis = body.axis.project(interface.reference)
         place = setup.position + setup.rotation @ on_axis
@@ -222,7 +227,7 @@ class RotorEnd:
         unit = np.eye(self.size)
         self._read = np.kron(np.eye(2), np.vstack([unit[spin], rows]))
         self._pull = np.vstack([unit[[spin, *body.locks.tilts]], rows]).T
-        self._start = body.plan.setup.placement.angle
+        self._start = body.placement.angle
 
     def read(self, q: list[float], q_t: list[float]) -> None:
         """Take the motion from coordinates and their rates."""
@@ -369,9 +374,8 @@ class MarkerEnd:
         self._point = A.T @ (place - self._start[:3])
         self._axis, modes = A.T @ axes[:, 2], np.zeros((6, 0))
         if "modeBasis" in body:
-            modes = _mean_motion(body, item)
-            arm = self._point - modes[1]
-            modes = np.vstack([modes[0][:3] - skew(arm) @ modes[0][3:], modes[0][3:]])
+            carrier = marker_carrier(mbs, item)
+            modes = carrier.shifted(self._point - carrier.point).motion
         self._modes, self._count = modes, count
         self.size = count + modes.shape[1]
         self.nodes = tuple(map(exudyn.NodeIndex, nodes[: 1 + bool(modes.shape[1])]))
@@ -410,17 +414,3 @@ class MarkerEnd:
 
 
 BaseEnd = FoundationEnd | MarkerEnd
-
-
-def _mean_motion(body: dict, marker: dict) -> tuple[np.ndarray, np.ndarray]:
-    """Return motion (6, m) and place (3,) of a marker of a flexible body, in axes of the body."""
-    columns = np.asarray(body["modeBasis"])
-    columns = columns.reshape(len(columns) // 3, 3, -1)
-    points = np.reshape(body["referencePositions"], (-1, 3))
-    numbers = list(marker["meshNodeNumbers"])
-    weights = np.asarray(marker["weightingFactors"])
-    place, mean = weights @ points[numbers], np.tensordot(weights, columns[numbers], 1)
-    shares = np.sqrt(weights)[:, None, None]
-    turning = (shares * [-skew(arm) for arm in points[numbers] - place]).reshape(-1, 3)
-    moved = (shares * (columns[numbers] - mean)).reshape(-1, mean.shape[1])
-    return np.vstack([mean, np.linalg.lstsq(turning, moved, rcond=None)[0]]), place

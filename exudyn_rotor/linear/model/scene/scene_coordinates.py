@@ -56,7 +56,7 @@ class SceneCoordinates:
         rest[free[made.count :]] = 0.0
         # where the rotor is when it has turned back
         angle = rest[made.spin_coordinate]
-        turned = turned_origin(body.selection, body.plan.setup.placement.rotation, angle)
+        turned = turned_origin(body.selection, body.placement.rotation, angle)
         rest[free[: made.count]] -= body.motion.free_directions.T @ turned
         return made
 
