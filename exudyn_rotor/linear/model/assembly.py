@@ -375,7 +375,7 @@ class Assembly:
 
     def square(self, X: np.ndarray, place: slice) -> np.ndarray:
         """Return a matrix of one body as a matrix of all coordinates."""
-        wide = np.zeros((self.size, self.size))
+        wide = np.zeros((self.size, self.size), dtype=X.dtype)
         wide[place, place] = X
         return wide
 
