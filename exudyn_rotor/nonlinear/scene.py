@@ -67,10 +67,10 @@ def listed(mbs: exudyn.MainSystem, body: RotorBody | Sequence[RotorBody]) -> Lis
         foundation = None if base is None else _in_mesh(base, body)
     for one in bodies:
         check_origin(one)
-    gravity = bodies[0].plan.setup.gravity
-    if any(np.any(one.plan.setup.gravity != gravity) for one in bodies):
+    gravity = bodies[0].gravity
+    if any(np.any(one.gravity != gravity) for one in bodies):
         raise ValueError("body: the rotors of this scene have different gravity; give all the same")
-    gravity = bodies[0].plan.setup.placement.rotation.T @ gravity
+    gravity = bodies[0].placement.rotation.T @ gravity
     loads = tuple(_loads(mbs, bodies, base))
     return Listed(target, supports, foundation, gravity, loads, level)
 
@@ -98,7 +98,7 @@ def foundation_below(body: RotorBody) -> SceneFoundation | None:
 
 def _in_mesh(base: SceneFoundation, body: RotorBody) -> Foundation:
     """Return a foundation of a scene in axes of the rotor's mesh."""
-    placement, found = body.plan.setup.placement, base.foundation
+    placement, found = body.placement, base.foundation
     back = placement.rotation.T
     if base.gravity_load is None:  # it does not sag, in lists either
         found = replace(found, participation=np.zeros((3, found.size)))
