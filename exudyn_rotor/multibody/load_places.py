@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
-import exudyn
 import numpy as np
 
-from exudyn_rotor.multibody.drives.connect_rotors import SceneConnection
-from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
-from exudyn_rotor.solid.rotor import rotation_moments
+from exudyn_rotor.multibody.rotor.connections import attached
+from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, marker_carrier
 from exudyn_rotor.theory.axis import skew
 
-_MARKERS = {"SuperElementPosition": 3, "SuperElementRigid": 6}
+_MARKERS = ("SuperElementPosition", "SuperElementRigid")
 # loads and connectors that exert no moment
 _FORCES = ("ForceVector", "ConnectorCartesianSpringDamper", "ConnectorSpringDamper")
 _SAME = 1e-6  # of the motion of an interface, by which a marker there may differ
@@ -21,77 +18,48 @@ _SAME = 1e-6  # of the motion of an interface, by which a marker there may diffe
 
 @dataclass(frozen=True, eq=False)
 class LoadPlace:
-    """A place of a rotor where forces act, and perhaps moments.
+    """A place of a rotor where forces act, and perhaps moments."""
 
-    Attributes
-    ----------
-    point : ndarray, shape (3,)
-        Mesh coordinates [m].
-    motion : ndarray, shape (3, m) or (6, m)
-        Displacement of the point, and rotation where moments act, by modal coordinates, mesh axes.
-    interface : str or None
-        The interface whose mean motion this is.
-    """
-
-    point: np.ndarray
+    point: np.ndarray  # (3,) Mesh coordinates [m]
+    # (3, m) or (6, m) Displacement, and rotation where moments act, by modal coordinates, mesh axes
     motion: np.ndarray
-    interface: str | None
+    interface: str | None  # whose mean motion this is
 
 
 def load_places(body: RotorItems) -> tuple[LoadPlace, ...]:
-    """Return where loads and connectors act on a reduced rotor with its marker body."""
-    number = int(body.objects["marker_body"])
-    item = body.mbs.GetObject(number)
-    points = np.reshape(item["referencePositions"], (-1, 3))
-    columns = np.reshape(item["modeBasis"], (len(points), 3, -1))
+    """Return where loads and connectors act on a reduced rotor."""
+    moments: dict[int, bool] = {}  # of markers, whether moments may act there
+    for is_load, _, item, markers in attached(body.mbs):
+        kind = item["loadType" if is_load else "objectType"]
+        for marker in markers if item.get("activeConnector", True) else ():
+            moments[marker] = moments.get(marker, False) or kind not in _FORCES
     found = []
-    for held, moments in _held(body.mbs).items():
-        marker = body.mbs.GetMarker(held)
-        kind = marker["markerType"]
-        if kind in _MARKERS and int(marker["bodyNumber"]) == number:
-            count = _MARKERS[kind] if moments else 3
-            found.append(_at_marker(body, marker, points, columns, count))
-    return (*found, *_of_drives(body))
+    for number, with_moments in moments.items():
+        marker = body.mbs.GetMarker(number)
+        own = int(marker.get("bodyNumber", -1)) == int(body.objects["marker_body"])
+        if own and marker["markerType"] in _MARKERS:
+            rigid = with_moments and marker["markerType"] == "SuperElementRigid"
+            found.append(_at_marker(body, marker, 6 if rigid else 3))
+    interfaces = body.selection.source.interfaces
+    for name in sorted(_driven(body)):
+        motion = interfaces[name].motion @ body.selection.T
+        found.append(LoadPlace(interfaces[name].reference, motion, name))
+    return tuple(found)
 
 
-def _held(mbs: exudyn.MainSystem) -> dict[int, bool]:
-    """Return the markers that something acts on, and whether it may exert moments."""
-    held: dict[int, bool] = {}
-    for markers, kind in _acting(mbs):
-        for marker in map(int, markers):
-            held[marker] = held.get(marker, False) or kind not in _FORCES
-    return held
+def _driven(body: RotorItems) -> set[str]:
+    """Return the interfaces that drives and connections of rotors act on, by coordinates."""
+    places = {
+        drive.at if drive.body.token is body.token else drive.other_at for drive in body.drives
+    }
+    return places - {None}
 
 
-def _acting(mbs: exudyn.MainSystem) -> Iterator[tuple[list, str]]:
-    """Yield markers of loads, connectors and joints, with the kind of these."""
-    for number in range(mbs.systemData.NumberOfLoads()):
-        load = mbs.GetLoad(number)
-        yield [load["markerNumber"]], load["loadType"]
-    for number in range(mbs.systemData.NumberOfObjects()):
-        item = mbs.GetObject(number)
-        if "markerNumbers" in item and item.get("activeConnector", True):
-            yield item["markerNumbers"], item["objectType"]
-
-
-def _at_marker(
-    body: RotorItems,
-    marker: dict,
-    points: np.ndarray,
-    columns: np.ndarray,
-    count: int,
-) -> LoadPlace:
-    """Return the place of a marker; `points` and `columns` are those of the marker body."""
-    numbers = np.asarray(marker["meshNodeNumbers"])
-    weights = np.asarray(marker["weightingFactors"])
-    places, moved, turn = points[numbers], columns[numbers], body.frame.B
-    point, motion = weights @ places, np.tensordot(weights, moved, 1)
-    if count == 6:
-        moments, levers = rotation_moments(places - point, weights)
-        lever = np.linalg.pinv(moments, rcond=1e-9, hermitian=True)
-        motion = np.vstack([motion, lever @ np.einsum("kab,kbm->am", levers, moved)])
-    motion = np.vstack([turn.T @ part for part in np.split(motion, count // 3)])
-    on_mesh = point @ turn + body.frame.origin
+def _at_marker(body: RotorItems, marker: dict, count: int) -> LoadPlace:
+    carrier, turn = marker_carrier(body.mbs, marker), body.frame.B
+    parts = np.split(carrier.motion[:count], count // 3)
+    motion = np.vstack([turn.T @ part for part in parts])
+    on_mesh = carrier.point @ turn + body.frame.origin
     return LoadPlace(on_mesh, motion, _interface_at(body, on_mesh, motion))
 
 
@@ -104,18 +72,3 @@ def _interface_at(body: RotorItems, point: np.ndarray, motion: np.ndarray) -> st
         if np.abs(motion[:3] - expected).max() <= _SAME * np.abs(expected).max():
             found[name] = float(np.linalg.norm(arm))
     return min(found, key=found.__getitem__, default=None)
-
-
-def _of_drives(body: RotorItems) -> Iterator[LoadPlace]:
-    """Yield the interfaces that connections of rotors act on, by coordinates.
-
-    All of the second rotor's, of which the connection knows no name.
-    """
-    interfaces = body.selection.source.interfaces
-    names: set[str] = set()
-    for drive in body.drives:
-        if isinstance(drive, SceneConnection):
-            names |= {drive.at} if drive.body is body else set(interfaces)
-    for name in sorted(names):
-        interface = interfaces[name]
-        yield LoadPlace(interface.reference, interface.motion @ body.selection.T, name)

@@ -249,7 +249,7 @@ RIGHT = {
     "number": "Support.stiffness Support.damping tilt_stiffness tilt_damping",
     "empty": """
         eulerParametersRef rotationMatrixRef triangles variation
-        BaseRecord.integrals.times PIDController.transfer.frequencies
+        BaseRecord.integrals.times
         PeriodicResponse.displacement.time
         Spectra.plot.orders grooved_pads.grooves
         keep_modes.indices""",
@@ -289,9 +289,10 @@ def is_right(call, argument, label):
 
 
 def is_result(call):
-    """Return whether a call constructs a result: analyses do, and the tests of files check it."""
+    """Return whether a call constructs a result or a body: analyses and `add_rotor` do."""
     owner = getattr(er, call, None)
-    return inspect.isclass(owner) and issubclass(owner, er.Result)
+    made = (er.Result, er.RotorBody, er.FullRotorBody)
+    return inspect.isclass(owner) and issubclass(owner, made)
 
 
 def cases():

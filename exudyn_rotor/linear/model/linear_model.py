@@ -29,6 +29,7 @@ from exudyn_rotor.linear.equations import PeriodicSystem, add, others, spread
 from exudyn_rotor.linear.model.assembly import (
     Assembly,
     Element,
+    End,
     elements_of,
     rotors_of,
     stacked_coefficients,
@@ -147,11 +148,18 @@ class LinearModel:
         """Elements and own coordinates, as for axes that stand still."""
         return self._elements_for(0)
 
-    def _elements_for(self, turns: int, kind: str = "") -> tuple[list[Element], list]:
-        carried = self.foundation is not None
-        bases = {name: ("foundation", name) for name in self.foundation.points} if carried else {}
+    def _elements_for(
+        self, turns: int, kind: str = "", supports: Sequence | None = None
+    ) -> tuple[list[Element], list]:
+        """Return elements and own coordinates; `supports` of the only rotor in place of others."""
+        given = self.supports if supports is None else {"": supports}
         kind = kind or ("undamped" if self.is_undamped else "full")
-        return elements_of(self.supports, self.ratios, self.links, bases, turns, kind)
+        return elements_of(given, self.ratios, self.links, self._base, turns, kind)
+
+    def _base(self, number: int, name: str) -> End | None:
+        """Return what carries the support of a number at an interface; None for the ground."""
+        carried = self.foundation is not None and name in self.foundation.points
+        return ("foundation", name) if carried else None
 
     def places(self, name: str) -> tuple[str, ...]:
         """Return the interfaces of a rotor that elements act on."""
@@ -507,7 +515,7 @@ class LinearModel:
         """Warn of motions [rad/s] beyond a table over the frequency, which keeps its end there."""
         for element in () if self.is_richer else self._elements[0]:
             table, used = element.table_frequencies, np.asarray(frequencies)
-            if table.size and not element.held_beyond:
+            if table.size and not element.law.extrapolate:
                 slack = _HELD * table.max()
                 used = used[(used < table.min() - slack) | (used > table.max() + slack)]
                 if used.size:

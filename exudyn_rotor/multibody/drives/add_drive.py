@@ -129,7 +129,7 @@ def add_drive(
             f"body: rotor {body.name!r} has a prescribed spin, which no torque changes; add it "
             "with spin='free', or read its drive torque with body.add_drive_torque_sensor()"
         )
-    drive.torque(body.plan.setup.placement.speed)  # a curve that fails does so here, not in a run
+    drive.torque(body.placement.speed)  # a curve that fails does so here, not in a run
     if at is None:
         if base is not None:
             raise ValueError("base: a drive on the whole rotor has none; give at='…', an interface")

@@ -17,11 +17,11 @@ from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.full.ties import Ties, add_ties, container, no_jacobian
-from exudyn_rotor.multibody.rotor.frame import Layout, LockedForce, add_constraints, driving_force
-from exudyn_rotor.multibody.rotor.plan import Plan
+from exudyn_rotor.multibody.rotor.frame import Layout, LockedForce
+from exudyn_rotor.multibody.rotor.plan import Plan, add_nodes
 from exudyn_rotor.multibody.rotor.rotor_items import (
     add_interface_markers,
-    add_weight,
+    add_locks_and_weight,
     flexible_body,
 )
 from exudyn_rotor.solid.surface import flat_triangles
@@ -30,28 +30,24 @@ from exudyn_rotor.theory.full_motion import FullMotion, principal
 
 def add_full(mbs: exudyn.MainSystem, plan: Plan) -> FullRotorBody:
     """Add the frame's node, that of the displacements, the equations, ties and markers."""
-    rigid, fields = plan.add_nodes(mbs)
+    rigid, fields = add_nodes(mbs, plan)
     motion = plan.motion
     ties, weight = _frame_ties(plan)
-    tied, ties_object = add_ties(mbs, fields, ties, motion.invariants, plan.start)
-    item = flexible_body(plan, [rigid, tied], weight, name=plan.setup.name or "")
-    marker_body = mbs.AddObject(item)
-    by_mass = plan.setup.locking == "mass"
-    guide = driving_force(plan.locks, plan.layout.lock_mass) if by_mass else None
-    item = sparse_object(
-        motion, plan.layout, [rigid, fields], guide, surface_drawing(plan, rigid, fields)
-    )
-    objects = {"physics": mbs.AddObject(item), "marker_body": marker_body}
+    tied, ties_object = add_ties(mbs, fields, ties, plan)
+    marker_body = mbs.AddObject(flexible_body(plan, [rigid, tied], weight, name=plan.name or ""))
+    objects = {
+        "physics": mbs.AddObject(_equations(plan, [rigid, fields])),
+        "marker_body": marker_body,
+    }
     if motion.has_varying_inertia:
         coupling = spin_coupling_object(motion, plan.layout, [rigid, fields])
         objects["spin coupling"] = mbs.AddObject(coupling)
     body = FullRotorBody(
-        mbs,
-        plan,
+        **vars(plan),
+        **add_locks_and_weight(mbs, plan, rigid, marker_body),
+        mbs=mbs,
         nodes={"rigid": rigid, "fields": fields},
         objects=objects,
-        constraints={} if by_mass else add_constraints(mbs, plan.locks, rigid),
-        gravity_load=add_weight(mbs, marker_body, plan.marker_body_gravity),
         ties=ties_object,
     )
     add_interface_markers(body)
@@ -66,7 +62,7 @@ def _frame_ties(plan: Plan) -> tuple[Ties, np.ndarray]:
     motion, held = plan.motion, plan.selection.conditions
     inv = motion.invariants
     free = np.zeros((3, 0))
-    if np.any(plan.marker_body_gravity):
+    if np.any(plan.gravity - motion.gravity):
         count = 3 - held.held.shape[1]
         free = np.linalg.svd(np.eye(3) - held.held @ held.held.T)[0][:, :count]
     rows, stiffness = free.T @ inv.S / inv.mass, np.zeros(free.shape[1])
@@ -76,7 +72,7 @@ def _frame_ties(plan: Plan) -> tuple[Ties, np.ndarray]:
         stiffness = np.append(stiffness, motion.formulation.spin.speed**2 * values)
     local = sp.csr_array((0 if len(rows) else 1, inv.size))  # the flexible body needs a coordinate
     ties = Ties(local, rows, held.rows, np.diag(stiffness) if len(rows) else None)
-    weight = np.zeros((3, ties.count))
+    weight = np.zeros((3, ties.rows.shape[0]))
     weight[:, : free.shape[1]] = inv.mass * free
     return ties, weight
 
@@ -92,7 +88,7 @@ def surface_drawing(
 
     Displacements are drawn with the factor ``visualizationSettings.bodies.deformationScaleFactor``.
     """
-    rotor, color = plan.selection.source, list(plan.setup.color)
+    rotor, color = plan.selection.source, list(plan.color)
     if not len(rotor.triangles):
         return None
     triangles = flat_triangles(rotor.triangles)
@@ -108,17 +104,9 @@ def surface_drawing(
     return drawn
 
 
-def sparse_object(
-    motion: FullMotion,
-    layout: Layout,
-    nodes: list,
-    guide: LockedForce | None,
-    graphics: Callable | None,
-) -> ObjectGenericODE2:
-    """Return the object with the constant matrices, and the forces that vary.
-
-    `guide` drives locked coordinates; `graphics` draws the rotor.
-    """
+def _equations(plan: Plan, nodes: list) -> ObjectGenericODE2:
+    """Return the object with the constant matrices, the forces that vary, and the drawing."""
+    motion, layout = plan.motion, plan.layout
     none = np.zeros(layout.size)
     locks = (layout.lock_mass, none, none)
     mass, damping, stiffness = (
@@ -128,13 +116,12 @@ def sparse_object(
     force = np.zeros(layout.size)
     force[layout.unknowns] = motion.constant_force()
     functions = {"jacobianUserFunction": no_jacobian(layout.size)}
-    if motion.has_varying_forces or guide is not None:
-        functions["forceUserFunction"] = _forces(motion, layout, guide)
+    if motion.has_varying_forces or plan.guide is not None:
+        functions["forceUserFunction"] = _forces(motion, layout, plan.guide)
     if motion.has_varying_forces and not motion.formulation.is_constant_speed:
         functions["jacobianUserFunction"] = _jacobian(motion, layout)
-    drawing = {"show": graphics is not None}
-    if graphics is not None:
-        drawing["graphicsDataUserFunction"] = graphics
+    graphics = surface_drawing(plan, *nodes)
+    drawing = {} if graphics is None else {"graphicsDataUserFunction": graphics}
     return ObjectGenericODE2(
         nodeNumbers=nodes,
         massMatrix=mass,
@@ -142,7 +129,7 @@ def sparse_object(
         stiffnessMatrix=stiffness,
         forceVector=force,
         **functions,
-        visualization=VObjectGenericODE2(**drawing),
+        visualization=VObjectGenericODE2(show=graphics is not None, **drawing),
     )
 
 

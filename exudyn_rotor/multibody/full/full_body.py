@@ -24,7 +24,7 @@ from exudyn_rotor.multibody.rotor.rotor_items import (
 from exudyn_rotor.solid.rotor import Interface
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class FullRotorBody(SceneBody):
     """A full fixed-axis rotor inside an ``mbs``; :func:`exudyn_rotor.add_rotor` makes it.
 
@@ -58,7 +58,7 @@ class FullRotorBody(SceneBody):
     True
     """
 
-    ties: exudyn.ObjectIndex | None = None
+    ties: exudyn.ObjectIndex
     carriers: dict = field(default_factory=dict, init=False, repr=False)
 
     @property
@@ -87,6 +87,7 @@ class FullRotorBody(SceneBody):
         of : exudyn.ConfigurationType or Record
             Shape (n, 3) of a configuration, (s, n, 3) of what :meth:`recorded` returns.
         """
+        checks.instance(of, "of", (exudyn.ConfigurationType, Record))
         if isinstance(of, Record):
             fields = self.layout.unknowns[self.motion.modes]
             return of.q[:, fields].reshape(len(of.q), -1, 3)
@@ -134,13 +135,13 @@ class FullRotorBody(SceneBody):
 
     def _tied(self, interface: Interface) -> Carrier:
         """Add a flexible body whose six coordinates are tied to the nodes of an interface."""
-        inv, size = self.motion.invariants, self.motion.invariants.size
+        size = self.motion.invariants.size
         rows, none = sp.csr_array(interface.mean_motion(size // 3)), np.zeros((0, size))
         ties = Ties(rows, none, none)
-        tied, _ = add_ties(self.mbs, self.nodes["fields"], ties, inv, self.plan.start)
+        tied, _ = add_ties(self.mbs, self.nodes["fields"], ties, self)
         nodes = self.nodes["rigid"], tied
         return Carrier(
-            self.mbs.AddObject(flexible_body(self.plan, nodes, np.zeros((3, 6)))),
+            self.mbs.AddObject(flexible_body(self, nodes, np.zeros((3, 6)))),
             self.frame.points(interface.reference),
             np.kron(np.eye(2), self.frame.B),
             interface.radius,
@@ -151,7 +152,9 @@ class FullRotorBody(SceneBody):
         """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``."""
         self.check_present()
         checks.count(node, "node", most=self.node_count - 1)
-        settings = sensors.settings_at_mesh_node(self, output, options)
+        where = "at a mesh node of a full body (stress: body.stress())"
+        sensors.check_output(output, sensors.AT_MESH_NODE, where)
+        settings = sensors.settings_of(self, options)
         point = self._nodes_carrier([node], "position")
         (number,) = append_nodes(self.mbs, point.body, *point.virtual_nodes("position"))
         return self.mbs.AddSensor(

@@ -7,6 +7,7 @@ Exudyn factorises the Jacobian of an implicit step by Eigen's ``SparseLU``, orde
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
@@ -29,27 +30,15 @@ from exudyn_rotor.theory.full_motion import (
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.stiffening import NO_PRESTRESS
 
-# coordinates below which a step takes less memory than any machine has
-_QUICK = 20_000
-_QUICK_MEMORY = 2e9
 # bytes for every entry of the stiffness matrix, which Exudyn holds many times, and for every
 # estimated entry of a factor; peaks of runs of a disc on a shaft with 10,000 to 70,000 coordinates
 _PER_ENTRY, _PER_FACTOR_ENTRY = 300.0, 22.0
 
 
-def needed_bytes(rotor: SolidRotor) -> float:
-    """Return about what a full body takes in an implicit run, beside the rotor itself [bytes]."""
-    return _PER_ENTRY * rotor.stiffness.nnz + _PER_FACTOR_ENTRY * factor_entries(
-        3 * rotor.node_count
-    )
-
-
 def check_memory(rotor: SolidRotor) -> None:
     """Raise TooLittleMemoryError where an implicit run with a full body would not fit."""
     size, available = 3 * rotor.node_count, available_memory()
-    if size < _QUICK and available > _QUICK_MEMORY:
-        return
-    needed = needed_bytes(rotor)
+    needed = _PER_ENTRY * rotor.stiffness.nnz + _PER_FACTOR_ENTRY * factor_entries(size)
     if needed > available:
         raise TooLittleMemoryError(
             f"rotor: a full body with {size} displacements needs about {needed / 1e9:.2g} GB in a "
@@ -58,37 +47,16 @@ def check_memory(rotor: SolidRotor) -> None:
         )
 
 
-def _damping(rotor: SolidRotor) -> sp.csr_array | None:
-    """Return the damping (3n, 3n); in proportion to a mass that moves freely it is not sparse."""
-    if rotor.mass_damping:
-        raise ValueError(
-            "with_damping(mass=…): a large model that rigid motions are free in cannot be analysed "
-            "with damping in proportion to its mass; reduce it, rotor.reduce(…), or give "
-            "stiffness=… alone"
-        )
-    return rotor.damping
-
-
 _ROUNDING = 1e-12  # of the accelerations that balance a load, for one of 1 rad/s²
 _BROKEN = 1e-9  # share of a displacement that a condition may find in it
 
 
 @dataclass(frozen=True, eq=False)
 class NodalFields:
-    """What stands for the modes in a full body: the displacements of all nodes.
+    """What stands for the modes in a full body: the displacements of all nodes."""
 
-    Attributes
-    ----------
-    origin : ndarray, shape (3,)
-        Frame origin, mesh coordinates [m].
-    invariants : Invariants
-        Sparse, about the origin, without what the conditions take up.
-    source : SolidRotor
-    conditions : Conditions
-    """
-
-    origin: np.ndarray
-    invariants: Invariants
+    origin: np.ndarray  # (3,) Of the frame, mesh coordinates [m]
+    invariants: Invariants  # sparse, about the origin, without what the conditions take up
     source: SolidRotor
     conditions: Conditions
 
@@ -98,9 +66,9 @@ def make_full_plan(rotor: SolidRotor, setup: Setup) -> Plan:
 
     `rotor` carries its prestress where ``setup.stiffening`` is 'full'.
     """
-    _check_possible(rotor, setup.formulation)
     if setup.mass_damping or setup.stiffness_damping:
         rotor = rotor.with_damping(mass=setup.mass_damping, stiffness=setup.stiffness_damping)
+    _check_possible(rotor, setup.formulation)
     origin = rotor.center_of_mass
     if not setup.formulation.translation_count:
         origin = rotor.axis.project(origin)
@@ -118,17 +86,11 @@ def make_full_plan(rotor: SolidRotor, setup: Setup) -> Plan:
     held = conditions(whole, setup.formulation, rotor.grounded, NEGLIGIBLE)
     inv = replace(held.invariants, K2=None, K4=None)
     fields = NodalFields(checks.read_only(origin), inv, rotor, held)
-
-    def motion(
-        formulation: Formulation, plane: np.ndarray | None, gravity: np.ndarray | None
-    ) -> FullMotion:
-        return FullMotion(inv, formulation, second, setup.placement.rotation, plane, gravity)
-
-    start = (
-        _start(setup.modal_coordinates, "modal_coordinates", held),
-        _start(setup.modal_velocities, "modal_velocities", held),
-    )
-    return laid_out(setup, fields, motion, start)
+    start = {
+        name: _start(getattr(setup, name), name, held)
+        for name in ("modal_coordinates", "modal_velocities")
+    }
+    return laid_out(replace(setup, **start), fields, partial(FullMotion, inv), second)
 
 
 def _invariants(rotor: SolidRotor, origin: np.ndarray) -> Invariants:
@@ -139,7 +101,7 @@ def _invariants(rotor: SolidRotor, origin: np.ndarray) -> Invariants:
     """
     clamped = clamped_coordinates(rotor.stiffness).astype(float)
     basis = sp.csr_array(sp.diags_array(1.0 - clamped))
-    matrices = (rotor.mass, rotor.stiffness, _damping(rotor))
+    matrices = (rotor.mass, rotor.stiffness, rotor.damping)
     moving = Invariants.of(rotor.nodes - origin, *matrices, basis, rotor.axis.direction)
     M, K = (
         sp.csr_array(one + sp.diags_array(clamped * whole.diagonal()))
@@ -149,6 +111,11 @@ def _invariants(rotor: SolidRotor, origin: np.ndarray) -> Invariants:
 
 
 def _check_possible(rotor: SolidRotor, formulation: Formulation) -> None:
+    if rotor.mass_damping:  # not sparse for a rotor that moves freely
+        raise ValueError(
+            "mass_damping: a full body that rigid motions are free in does not take damping in "
+            "proportion to its mass; reduce the rotor, rotor.reduce(…), or give stiffness damping"
+        )
     if rotor.grounded and (formulation.translation_count or formulation.has_spin):
         raise ValueError(
             "the stiffness matrix holds this rotor in its own frame (grounded), and a frame "

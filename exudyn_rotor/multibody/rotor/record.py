@@ -98,7 +98,7 @@ class StartState:
 def spin_at_start(body: RotorItems) -> tuple[float, float]:
     """Return angle [rad] and speed [rad/s] with which the rotor starts."""
     if body.formulation.has_spin:
-        return body.plan.setup.placement.angle, body.plan.setup.placement.speed
+        return body.placement.angle, body.placement.speed
     angle, speed, _ = start_values(body.formulation.spin, "spin")
     return angle, speed
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import exudyn
 import numpy as np
-from exudyn.itemInterface import SensorMarker, SensorNode
+from exudyn.itemInterface import SensorMarker, SensorNode, SensorSuperElement
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
@@ -24,7 +24,13 @@ from exudyn_rotor.multibody.rotor.record import (
     keep_in_node,
     spin_at_start,
 )
-from exudyn_rotor.multibody.rotor.rotor_items import Carrier, RotorItems, interface_of_nodes
+from exudyn_rotor.multibody.rotor.rotor_items import (
+    Carrier,
+    RotorItems,
+    carrier_of,
+    interface_of_nodes,
+    nodes_of,
+)
 
 _KINDS = exudyn.OutputVariableType
 
@@ -160,7 +166,7 @@ class SceneBody(RotorItems, ABC):
     def add_interface_sensor(self, interface: str, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at an interface's marker; `options` go to ``SensorMarker``."""
         marker = self.marker(interface)
-        kind = self.plan.setup.markers[interface]
+        kind = self.marker_kinds[interface]
         sensors.check_output(output, sensors.AT_MARKER[kind], f"at a {kind} marker")
         settings = sensors.settings_of(self, options)
         return self.mbs.AddSensor(
@@ -179,8 +185,29 @@ class SceneBody(RotorItems, ABC):
         return sensors.add_function_sensor(self, spin, options)
 
     def add_drive_torque_sensor(self, **options):
-        """Add a sensor of the torque about e that a prescribed spin needs [N m]."""
-        return sensors.add_drive_torque_sensor(self, **options)
+        """Add a sensor of the torque about e that a prescribed spin needs [N m].
+
+        The torque is the rotor's own share (the row of θ in (84–86)) minus the moment of all
+        external forces, which the locked coordinate of the flexible body collects, and minus the
+        friction of bearings and stops, which the motion of a prescribed spin does not feel. Not in
+        static solutions: Exudyn's static solver returns multipliers with the opposite sign.
+        Explicit solvers have no accelerations at the first instant, so the first value is wrong
+        with them.
+        """
+        if self.formulation.has_spin:
+            raise ValueError(
+                f"rotor {self.name!r} spins freely and has no drive; a prescribed spin has one"
+            )
+
+        def torque(mbs, t, given, factors, configuration):
+            q, q_t, q_tt = self.coordinates(configuration)
+            zeta, zeta_tt = q[self.motion.modes], q_tt[self.motion.modes]
+            needed = self.motion.drive_torque(t, q, q_t, zeta_tt)
+            needed -= sensors.external_moment(self, t, configuration)
+            needed -= sensors.deflected_weight(self, t, zeta)
+            return [needed - sensors.friction(self, configuration)]
+
+        return sensors.add_function_sensor(self, torque, options)
 
     def add_energy_sensor(self, **options):
         """Add a sensor of kinetic energy, elastic energy and the potential of the weight [J].
@@ -193,7 +220,7 @@ class SceneBody(RotorItems, ABC):
 
         def energy(mbs, t, sensors, factors, configuration):
             q, q_t, _ = self.coordinates(configuration)
-            gravity = self.plan.setup.gravity
+            gravity = self.gravity
             if self.gravity_load is not None:  # a script may change it
                 gravity = mbs.GetLoadParameter(self.gravity_load, "loadVector")
             energy = self.motion.energy(t, q, q_t, gravity)
@@ -280,18 +307,14 @@ class RotorBody(SceneBody):
 
     def _nodes_carrier(self, where: Sequence[int], kind: str) -> Carrier:
         """Return what moves with the mean rigid motion of mesh nodes."""
-        number, nodes = self.objects["marker_body"], tuple(self.nodes.values())
-        count = self.mesh_node_count
+        count, body = self.mesh_node_count, self.objects["marker_body"]
         if not count:
             raise ValueError(
                 f"where: rotor {self.name!r} has no shapes (without_shapes), "
                 f"so no mesh nodes; name an interface, got {checks.shown(where)}"
             )
-        points = np.reshape(self.mbs.GetObjectParameter(number, "referencePositions"), (-1, 3))
-        interface = interface_of_nodes(points[:count], where, kind)
-        columns = self.mbs.GetObjectParameter(number, "modeBasis")[: 3 * count]
-        motion = interface.mean_motion(count) @ columns
-        return Carrier(number, interface.reference, motion, interface.radius, nodes)
+        interface = interface_of_nodes(nodes_of(self.mbs, body)[:count], where, kind)
+        return carrier_of(self.mbs, body, interface, tuple(self.nodes.values()))
 
     def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``.
@@ -300,7 +323,24 @@ class RotorBody(SceneBody):
         the static centrifugal stress that the modes do not show; for a rotor with a prestress that
         warns. :class:`exudyn_rotor.StressField` gives the whole.
         """
-        return sensors.add_node_sensor(self, node, output, **options)
+        marker_body, count = self.objects["marker_body"], self.mesh_node_count
+        if checks.count(node, "node", least=-1) not in range(count):
+            raise ValueError(
+                f"node: rotor {self.name!r} has mesh nodes 0 … {count - 1}, not {node}"
+                + ("" if count else "; it has no shapes (without_shapes)")
+            )
+        known, where = sensors.AT_MESH_NODE, "at a mesh node"
+        if np.size(self.mbs.GetObjectParameter(marker_body, "outputVariableModeBasis")):
+            known = (*known, _KINDS.StressLocal)
+        else:
+            where += ", of a rotor reduced without stress"
+        sensors.check_output(output, known, where)
+        settings = sensors.settings_of(self, options)
+        sensors.warn_of_static_stress(self, output)
+        item = SensorSuperElement(
+            bodyNumber=marker_body, meshNodeNumber=int(node), outputVariableType=output, **settings
+        )
+        return self.mbs.AddSensor(item)
 
     def start_from(self, state: StartState) -> None:
         """Make a state of the whole scene the initial state of the coming runs.

@@ -101,5 +101,5 @@ def _weights(body: RotorBody, names: list[str]) -> list[np.ndarray]:
     if left == right:
         return [np.zeros(2), np.zeros(2)]
     share = (source.center_of_mass @ e - left) / (right - left)
-    weight = source.invariants.mass * parts_across(body.standing_axes, body.plan.setup.gravity)
+    weight = source.invariants.mass * parts_across(body.standing_axes, body.gravity)
     return [(1.0 - share) * weight, share * weight]

@@ -79,7 +79,7 @@ def _check_all_rotors(mbs: exudyn.MainSystem, bodies: Sequence[RotorBody]) -> No
 
 def _check_alike(first: RotorBody, body: RotorBody) -> None:
     """Refuse rotors whose equations have no common axes, speed or level, and what trains lack."""
-    setup, connections = body.plan.setup, [isinstance(d, SceneConnection) for d in body.drives]
+    connections = [isinstance(drive, SceneConnection) for drive in body.drives]
     for fault, is_there in (
         ("starts without a spin speed, on which ratios depend", spin_at_start(body)[1] == 0.0),
         (
@@ -87,7 +87,7 @@ def _check_alike(first: RotorBody, body: RotorBody) -> None:
             np.abs(body.standing_axes - first.standing_axes).max() > _PARALLEL,
         ),
         (f"has another stiffening than {first.name!r}", body.stiffening != first.stiffening),
-        ("has damping from add_rotor", setup.mass_damping or setup.stiffness_damping),
+        ("has damping from add_rotor", body.mass_damping or body.stiffness_damping),
         ("has a drive, whose torque trains do not have", not all(connections)),
     ):
         if is_there:
