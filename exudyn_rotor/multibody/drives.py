@@ -116,7 +116,7 @@ def add_drive(
     ...     DirectCurrentMotor, SolidRotor, add_drive, add_rotor, recommended_settings
     ... )
     >>> rotor = SolidRotor.from_matrices(
-    ...     0.5 * np.eye(6), np.zeros((6, 6)), [[0.1, 0, 0], [-0.1, 0, 0]], "z", allow_parts=True
+    ...     0.5 * np.eye(6), np.zeros((6, 6)), [[0.1, 0, 0], [-0.1, 0, 0]], "z"
     ... )
     >>> mbs = exudyn.SystemContainer().AddSystem()
     >>> body = add_rotor(mbs, rotor.reduce(0), translation="none")
@@ -291,8 +291,7 @@ def connect_rotors(
     ... )
     >>> square = 0.05 * np.array([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]])
     >>> wheel = SolidRotor.from_matrices(
-    ...     np.eye(12), np.zeros((12, 12)), square, "z", interfaces={"gear": range(4)},
-    ...     allow_parts=True,
+    ...     np.eye(12), np.zeros((12, 12)), square, "z", interfaces={"gear": range(4)}
     ... ).reduce(0)
     >>> mesh = GearMesh(radii=[0.03, 0.06], stiffness=1e7, damping=2e3)
     >>> mbs = exudyn.SystemContainer().AddSystem()

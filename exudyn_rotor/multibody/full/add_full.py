@@ -29,10 +29,10 @@ from exudyn_rotor.multibody.rotor.plan import Plan, Setup, add_nodes, laid_out
 from exudyn_rotor.multibody.rotor.rotor_items import finished, flexible_body
 from exudyn_rotor.prestress.static_solution import relief_rotation
 from exudyn_rotor.reduction.selection import NEGLIGIBLE
+from exudyn_rotor.solid.model import clamped_coordinates
 from exudyn_rotor.solid.surface import flat_triangles
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.solvers.factor import TooLittleMemoryError, available_memory, factor_entries
-from exudyn_rotor.solvers.inertia_relief import clamped_coordinates
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.full_motion import (
     Conditions,
