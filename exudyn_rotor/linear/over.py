@@ -47,7 +47,7 @@ def motions_over(
         given = {"held": held, "least_stable": least_stable, "told": bar.update}
         found = motions_in(model, model.at_all(speeds), method, tolerance, **given)
     if not model.over_frequency:
-        _warn_of_lost(found)
+        _warn_of_lost(found.lost)
     return found
 
 
@@ -107,11 +107,9 @@ def forced_over(
     return found
 
 
-def _warn_of_lost(found: Motions) -> None:
-    """Warn of motions of periodic equations that were not found."""
-    lost = np.any(np.isnan(found.values), axis=1) & ~np.isnan(found.bounds)
-    speeds = found.speeds[lost]
-    if not speeds.size:
+def _warn_of_lost(speeds: Sequence[float]) -> None:
+    """Warn of speeds at which motions of periodic equations were not found."""
+    if not speeds:
         return
     shown = ", ".join(f"{speed:.4g}" for speed in speeds[:5]) + (" …" if len(speeds) > 5 else "")
     warnings.warn(
