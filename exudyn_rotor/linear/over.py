@@ -96,13 +96,11 @@ def forced_over(
     """
     options |= {"held": held}
     if not model.over_frequency:
-        system = model.at(speed) if held is None else model.at(speed).projected(held)
-        return forced_motions(system, loads, frequencies, **options)
+        return forced_motions(model.at(speed), loads, frequencies, **options)
     found = {}
     for n, load in loads.items():
         rates = np.abs(frequencies + n * speed)
-        within = "" if held is None else "held"
-        stack = model.at_all(np.full(len(rates), speed), within, rates)
+        stack = model.at_all(np.full(len(rates), speed), rates)
         found |= forced_motions(stack, {n: load}, frequencies, **options)
     return found
 
