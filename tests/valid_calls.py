@@ -228,7 +228,6 @@ CALLS = {
     },
     "JournalBearing": lambda w: {"film": w.OilFilm, "load": [0.0, -500.0]},
     "LinearActuator": {"force_current": 80.0, "negative_stiffness": 3e5},
-    "LinearActuator.force": {"place": 1e-5},
     "Link": {"first": "first:left", "second": "second:left", "connection": er.Support("left", 1e6)},
     "MagneticBearing": lambda w: {
         "actuator": w.SaturatingActuator,
@@ -284,7 +283,6 @@ CALLS = {
         "gap": 4e-3,
         "current_limit": 6.0,
     },
-    "SaturatingActuator.force": {"place": 1e-5},
     "ShortJournalBearing": {"load": [0.0, -500.0]},
     "from_ross": lambda w: {"rotor": example()},
     "SolidRotor.add_disc": {"position": 0.15, "mass": 1.0, "inertia": [0.02, 0.02], "width": 0.4},

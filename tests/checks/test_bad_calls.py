@@ -249,7 +249,7 @@ RIGHT = {
     "number": "Support.stiffness Support.damping tilt_stiffness tilt_damping",
     "empty": """
         eulerParametersRef rotationMatrixRef triangles variation
-        BaseRecord.integrals.times PIDController.transfer.frequencies
+        BaseRecord.integrals.times
         PeriodicResponse.displacement.time
         Spectra.plot.orders grooved_pads.grooves
         keep_modes.indices""",

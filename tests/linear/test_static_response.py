@@ -220,7 +220,7 @@ def test_magnets_rest_where_their_sensors_show_it():
     ends = [magnetic(n, sensor=s) for n, s in (("0", "2"), ("16", "14"))]
     found = er.static_response(rotor, gravity=DOWN, supports=ends)
     current = -PID["proportional"] * found.deflection("2")[1]
-    force = MAGNETS.force(current, found.journal("0")[1])
+    force = MAGNETS.law(current, found.journal("0")[1])
     assert found.reaction("0")[1] == pytest.approx(force, rel=1e-8)
 
 

@@ -12,13 +12,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
+import scipy.linalg as la
 
-from exudyn_rotor.bearings.controlled_support import (
-    Controlled,
-    ControlledSupport,
-    PadSupport,
-)
-from exudyn_rotor.bearings.given import linear_supports
+from exudyn_rotor.bearings.controlled_support import ControlledSupport
+from exudyn_rotor.bearings.given import Controlled, linear_supports
 from exudyn_rotor.bearings.series import SeriesSupport
 from exudyn_rotor.bearings.support import NoCoefficientsError, Support, acts
 from exudyn_rotor.calls import kept
@@ -47,11 +44,6 @@ End = tuple[str, str]  # names of a body and of its interface
 Seen = Callable[[End], Terms]  # what a support acts on, seen from outside
 # coefficients 'M', 'D' and 'K' by multiples of θ and powers of Ω: Σ X[name, n, p] Ωᵖ exp(inθ)
 Powers = dict[tuple[str, int, int], np.ndarray]
-WORDS = {
-    ControlledSupport: "controller",
-    PadSupport: "pads",
-    SeriesSupport: "ring",
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,10 +198,10 @@ class PadBody(OwnBody):
 
 def own_body(one: Controlled, number: int, turns: int) -> OwnBody:
     """Return the coordinates of a support; pairs in axes that turn with `turns` times Ω."""
-    word, name = f"{WORDS[type(one)]} {number} at {one.interface}", f" {number}"
+    word, name = f"{one.word} {number} at {one.interface}", f" {number}"
     labels = tuple(f"{word}, {n}" for n in range(1, one.size + 1))
     M, none = np.diag(one.masses), np.zeros((one.size, one.size))
-    if isinstance(one, PadSupport):
+    if one.word == "pads":
         return PadBody(name, 0, M, (none,), (none,), labels)
     quarter = np.kron(np.eye(one.size // 2), axial_skew(3)[:2, :2])
     powers_D, powers_K = (none, 2.0 * turns * M @ quarter), (none, none, -float(turns) * M)
@@ -257,21 +249,20 @@ def own_elements(
     if isinstance(one, SeriesSupport):
         return _series_elements(one, end, base(one.interface), rate, own)
     ends, ports = (end,), [_relative(end, base(one.interface), 3)]
-    if isinstance(one, ControlledSupport):
+    if one.sensor is not None:
         ends = end, (end[0], one.sensor)
         ports.append(_relative(ends[1], base(one.sensor), 3))
-    lifted = np.kron(np.eye(len(ports) + own.size // 2), ACROSS)
+    inner = np.eye(own.size) if one.sensor is None else np.kron(np.eye(own.size // 2), ACROSS)
+    lifted = la.block_diag(np.kron(np.eye(len(ports)), ACROSS), inner)
 
     def matrices(speed: float, *_: float) -> tuple[np.ndarray, np.ndarray]:
-        if isinstance(one, PadSupport):
-            return one.matrices(rate * speed)
-        K, D = one.stiffness, one.damping
+        K, D = one.matrices(rate * speed)
         return lifted @ K @ lifted.T, lifted @ D @ lifted.T
 
     def motion(seen: Seen) -> Terms:
         return stacked([*(port(seen) for port in ports), seen((own.name, ""))])
 
-    if isinstance(one, ControlledSupport):
+    if one.sensor is not None:
         return [Element(ends, matrices, motion, law=one)]
     return [Element(ends, matrices, motion, varies=True, stiffness_varies=True)]
 

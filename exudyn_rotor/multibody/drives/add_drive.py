@@ -106,7 +106,7 @@ def add_drive(
     ...     DirectCurrentMotor, SolidRotor, add_drive, add_rotor, recommended_settings
     ... )
     >>> rotor = SolidRotor.from_matrices(
-    ...     0.5 * np.eye(6), np.zeros((6, 6)), [[0.1, 0, 0], [-0.1, 0, 0]], "z", allow_parts=True
+    ...     0.5 * np.eye(6), np.zeros((6, 6)), [[0.1, 0, 0], [-0.1, 0, 0]], "z"
     ... )
     >>> mbs = exudyn.SystemContainer().AddSystem()
     >>> body = add_rotor(mbs, rotor.reduce(0), translation="none")

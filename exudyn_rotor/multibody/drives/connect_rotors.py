@@ -117,8 +117,7 @@ def connect_rotors(
     ... )
     >>> square = 0.05 * np.array([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]])
     >>> wheel = SolidRotor.from_matrices(
-    ...     np.eye(12), np.zeros((12, 12)), square, "z", interfaces={"gear": range(4)},
-    ...     allow_parts=True,
+    ...     np.eye(12), np.zeros((12, 12)), square, "z", interfaces={"gear": range(4)}
     ... ).reduce(0)
     >>> mesh = GearMesh(radii=[0.03, 0.06], stiffness=1e7, damping=2e3)
     >>> mbs = exudyn.SystemContainer().AddSystem()

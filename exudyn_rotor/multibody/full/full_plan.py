@@ -17,9 +17,9 @@ from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor.plan import Plan, Setup, laid_out
 from exudyn_rotor.prestress.static_solution import relief_rotation
 from exudyn_rotor.reduction.selection import NEGLIGIBLE
+from exudyn_rotor.solid.model import clamped_coordinates
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.solvers.factor import TooLittleMemoryError, available_memory, factor_entries
-from exudyn_rotor.solvers.inertia_relief import clamped_coordinates
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.full_motion import (
     Conditions,
