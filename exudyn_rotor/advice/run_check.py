@@ -177,6 +177,9 @@ def check_run(
                                   vibrations over their displacements; larger for slow motion in
                                   space that is integrated in the rotor frame; next to a resonance
                                   amplitudes err by more, by the amplification
+    ``growth``           0.75     change of the growth of a lightly damped motion by the step,
+                                  towards the other sign, over the growth: above 1 the sign is
+                                  wrong; of scenes at constant speed with translation 'none'
     ``film``             1        displacement of a journal at the end over that beyond which its
                                   film is too thin and the law goes on by its tangent
     ``unresisted load``  0.01     what ``connections`` counts, as a share of the largest load
