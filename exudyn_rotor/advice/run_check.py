@@ -105,9 +105,9 @@ class RunCheck:
         """What a record of few instants lacks; empty for a complete one."""
         if self.complete:
             return ""
-        known = "the end state is" if self.instants == 1 else f"{self.instants} instants are"
         return (
-            f"only {known} known: call body.start_recording() before mbs.Assemble(), and lower "
+            f"only {self.instants} of at least {_ENOUGH} instants are known: call "
+            "body.start_recording() before mbs.Assemble(), and lower "
             "solution.sensors.writePeriod of the settings"
         )
 
