@@ -22,6 +22,7 @@ _INSIDE = 1.0 - 1e-9  # of the way to the last film, by rounding
 _DIFFERENCE = 1e-4  # of a motion
 HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a bearing holds count
 
+Numbers = float | np.ndarray
 LawWithTorque = Callable[[float, float, float, float, float, float], tuple[float, float, float]]
 
 
@@ -337,3 +338,10 @@ def check_clearance(clearance: float, radius: float) -> None:
             f"clearance: needs the radial clearance, far below the radius of {radius:g} m, got "
             f"{clearance:g} m"
         )
+
+
+def turned(c: Numbers, s: Numbers, *entries: Numbers) -> list[Numbers]:
+    """Return the four entries of ``R M Rᵀ``, row by row as M's, R the rotation of (c, s)."""
+    a, b, d, e = entries
+    a, b, d, e = c * a - s * d, c * b - s * e, s * a + c * d, s * b + c * e
+    return [c * a - s * b, s * a + c * b, c * d - s * e, s * d + c * e]

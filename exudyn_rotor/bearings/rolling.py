@@ -246,34 +246,17 @@ def _mean_stiffness(bearing: RollingBearing, *load: float) -> np.ndarray:
 
 
 def contacts(
-    bearing: RollingBearing, places: np.ndarray, angles: ArrayLike, least: float = 0.0
+    bearing: RollingBearing, places: np.ndarray, angles: ArrayLike
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return loads of the elements, force on the inner ring, and stiffness, without damping.
+    """Return loads (…, Z) of the elements, force (…, 2) and stiffness (…, 2, 2) without damping.
 
-    Parameters
-    ----------
-    bearing : RollingBearing
-    places : ndarray, shape (…, 2)
-        Of the inner ring [m].
-    angles : array_like, shape (…)
-        Spin angles θ [rad].
-    least : float
-        Depth up to which an element carries nothing [m].
-
-    Returns
-    -------
-    loads : ndarray, shape (…, Z)
-        (2) [N]
-    force : ndarray, shape (…, 2)
-        [N]
-    stiffness : ndarray, shape (…, 2, 2)
-        Less the force's derivative by the place [N/m].
+    Of the inner ring at places (…, 2) and spin angles (…); stiffness is less the force's
+    derivative.
     """
     turn = bearing.cage_ratio * np.asarray(angles)[..., None]
     turned = 2.0 * pi / bearing.count * np.arange(bearing.count) + turn
     n, exponent = np.stack([np.cos(turned), np.sin(turned)], -1), _EXPONENTS[bearing.elements]
-    depth = (n @ places[..., None])[..., 0] - bearing.clearance
-    depth = np.where(depth > least, depth, 0.0)
+    depth = np.maximum((n @ places[..., None])[..., 0] - bearing.clearance, 0.0)
     loads = bearing.stiffness * depth**exponent
     slopes = exponent * bearing.stiffness * depth ** (exponent - 1.0)
     across = np.swapaxes(n, -1, -2)
