@@ -134,19 +134,6 @@ class RollingBearing(Bearing):
         """
         return self.count * self.cage_ratio * checks.number(speed, "speed", "rad/s")
 
-    def element_loads(self, displacement: ArrayLike, angle: float = 0.0) -> np.ndarray:
-        """Return the loads (2) of the elements [N], shape (Z,).
-
-        Parameters
-        ----------
-        displacement : array_like, shape (2,)
-            Of the inner ring [m].
-        angle : float, optional
-            Spin angle θ [rad].
-        """
-        place = checks.vector(displacement, "displacement", "m", size=2)
-        return contacts(self, place, checks.number(angle, "angle", "rad"))[0]
-
     def law_with_torque(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float, float]:

@@ -175,7 +175,7 @@ class ShortFilmBearing(Bearing):
         """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
         c, whirl = self.clearance, speed if self._turns else 0.0
         if hypot(x, y) > THINNEST * c:
-            return self._slopes_beyond(x, y, vx, vy, angle, speed)
+            return super().slopes(x, y, vx, vy, angle, speed)
         found = film_tangent(x / c, y / c, vx / c, vy / c, whirl, _REST * abs(speed))[1]
         found *= self._size / c
         found[[0, 1], [0, 1]] += self.centring_stiffness
