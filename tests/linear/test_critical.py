@@ -4,24 +4,26 @@ import exudyn
 import numpy as np
 import pytest
 from bodies import BODIES, MASS, SHAFT, moments, point_mass, rings
-from models import disc_rotor, two_masses
+from models import disc_rotor, disc_with_craig_bampton_modes, two_masses
 from test_scene_linear import BEARING, on_springs
 from test_scene_linear import rings as scene_rotor
 
 from exudyn_rotor import (
+    JournalBearing,
     OilFilm,
+    ShortJournalBearing,
     SolidRotor,
+    Support,
     add_rotor,
     add_supports,
+    bearing_loads,
+    critical_speed_map,
+    critical_speeds,
     grooved_pads,
     linear_model,
+    load_result,
 )
-from exudyn_rotor.bearings.journal_bearing import JournalBearing
-from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.modal.critical_speed_map import critical_speed_map
-from exudyn_rotor.linear.modal.critical_speeds import critical_speeds
 from exudyn_rotor.linear.over import motions_over
-from exudyn_rotor.results import load_result
 
 KY, KZ = 196e4, 100e4  # Appendix B, unit masses
 
@@ -158,6 +160,27 @@ def test_a_stiffness_that_jumps_makes_no_critical_speed():
     with pytest.warns(UserWarning, match=r"near 1?[90][90.0-9]* rad/s the stiffness .* jumps"):
         result = critical_speeds(point_mass().reduce(0), supports=[support], max_speed=300.0)
     assert result.speeds.size == 0
+
+
+@pytest.mark.parametrize("kind", ["films", "springs that differ", "springs"])
+def test_a_round_rotor_has_each_critical_speed_once(kind):
+    """Also where its basis has one half alone of a pair of bending modes, and two unlike planes."""
+    reduced = disc_with_craig_bampton_modes()
+    ends = list(reduced.interfaces)
+    if kind == "films":
+        size = {"radius": 0.015, "length": 0.015, "clearance": 4e-5, "viscosity": 0.02}
+        loads = bearing_loads(reduced, ends, [0.0, -9.81, 0.0])
+        pairs = zip(ends, loads, strict=True)
+        supports = [ShortJournalBearing(interface=end, load=load, **size) for end, load in pairs]
+    else:
+        stiffness = np.diag([1e7, 2e7]) if kind == "springs that differ" else 1e7
+        supports = [Support(end, stiffness) for end in ends]
+    given = {"supports": supports, "max_speed": 800.0, "nodal_diameters": [1], "accuracy": None}
+    found = critical_speeds(reduced, **given)
+    assert found.axes == "rotor"
+    whole = critical_speeds(reduced.with_attachments, **given)  # both halves of each pair
+    np.testing.assert_allclose(found.speeds, whole.speeds, rtol=2e-3)
+    assert found.whirl == whole.whirl
 
 
 @pytest.fixture(scope="module")
