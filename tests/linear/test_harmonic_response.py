@@ -75,7 +75,7 @@ def test_base_acceleration_is_minus_mass_times_acceleration(speed):
         (lambda: unbalance_response(ring_rotor(1, 1, 1), [1.0]), "no interfaces"),
         (
             lambda: unbalance_response(rings().without_shapes(), [1.0], at=3),
-            "keep_shapes=True",
+            "need a rotor with its mode shapes",
         ),
     ],
 )

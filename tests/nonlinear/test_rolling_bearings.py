@@ -8,7 +8,6 @@ from scipy.integrate import solve_ivp
 
 from exudyn_rotor import (
     Foundation,
-    HarmonicForce,
     Mount,
     RollingBearing,
     SolidRotor,
@@ -133,10 +132,8 @@ def test_a_run_from_it_stays_on_it(founded):
 
 def test_what_nothing_holds_is_told():
     tilting = ring_rotor(0.1, 0.2, 8.0).with_interface("left", range(5)).reduce(0)
-    along = [HarmonicForce("seat", [0.0, 0.0, 5.0])]
     for call, match in (
         (lambda: response(bearing("left"), [100.0], rotor=tilting), "against tilting: all stand"),
-        (lambda: response(bearing(), [100.0], loads=along), "holds the rotor along its axis"),
         (
             lambda: response(bearing(clearance=1e-6), [30.0], 0.0, UPRIGHT),
             "without a load no element",
