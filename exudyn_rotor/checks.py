@@ -214,6 +214,19 @@ def path(value: str | os.PathLike, name: str = "path") -> Path:
     return Path(text)
 
 
+def file(value: str | os.PathLike, name: str = "path") -> Path:
+    """Return the path of a file that is there."""
+    source = path(value, name)
+    if not source.exists():
+        raise FileNotFoundError(
+            f"{name}: there is no file {str(source)!r}; give its whole path, or that from the "
+            f"folder {os.getcwd()!r} on"
+        )
+    if not source.is_file():
+        raise IsADirectoryError(f"{name}: needs a file, {str(source)!r} is a folder or a device")
+    return source
+
+
 def read_only_mapping(values: Mapping[str, Kind]) -> Mapping[str, Kind]:
     """Return a copy that cannot be written to; it can be pickled and copied."""
     return MappingProxyType(dict(values))

@@ -11,17 +11,13 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.prestress.carrying import with_prestress
-from exudyn_rotor.prestress.given_loads import Loads, Spring
-from exudyn_rotor.prestress.static_solution import static_prestress
-from exudyn_rotor.reduction.reduce import ModeSource, reduce_rotor
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.prestress.static_solution import prestress
+from exudyn_rotor.reduction.reduce import reduce
 from exudyn_rotor.solid import matrices, ngsolve_model
-from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.meshes import mesh_model
 from exudyn_rotor.solid.model import FiniteElementModel, import_model, node_set
 from exudyn_rotor.solid.rotor import AxisLike, FiniteElementRotor
 from exudyn_rotor.solid.summary import summary
-from exudyn_rotor.theory.axis import SpinAxis
 
 if TYPE_CHECKING:
     import os
@@ -77,11 +73,11 @@ class SolidRotor(FiniteElementRotor):
     >>> print(rotor.add_point_mass([0, 0, 0.9], 0.5).summary())
     nodes            3
     mass             3.5 kg (lumped mass matrix)
+    size             0 × 0 × 1 m
     centre of mass   [0, 0, 0.57143] m
     spin axis        direction [0, 0, 1], point [0, 0, 0] m
     across the axis  n1 [1, 0, 0], n2 [0, 1, 0]
     rigid motions    1 of 6 free (grounded)
-    part             1: 3 nodes, 3.5 kg, 0 × 0 × 1 m about (0, 0, 0.5) m
     interface        disc: 1 nodes, centre [0, 0, 0.5] m, on the axis
     point mass       0.5 kg at [0, 0, 0.9] m, on node 2, 0.1 m away
     """
@@ -96,7 +92,6 @@ class SolidRotor(FiniteElementRotor):
         order: int = 2,
         interfaces: Sequence[str] | None = None,
         check_units: bool = True,
-        allow_parts: bool = False,
     ) -> SolidRotor:
         """Assemble a rotor from an NGSolve mesh of tetrahedra.
 
@@ -118,9 +113,6 @@ class SolidRotor(FiniteElementRotor):
             weights are area shares, see :func:`exudyn_rotor.solid.surface.area_weights`.
         check_units : bool, optional
             Refuse materials and sizes that cannot be in SI units.
-        allow_parts : bool, optional
-            Take a mesh of several solids that nothing connects. Each of them moves by itself, so
-            that most analyses refuse such a rotor; :meth:`summary` lists the parts.
 
         Raises
         ------
@@ -141,12 +133,10 @@ class SolidRotor(FiniteElementRotor):
         >>> round(rotor.total_mass, 6), list(rotor.interfaces)
         (2.512, ['left'])
         """
-        axis = SpinAxis.of(axis)
-        checks.flag(allow_parts, "allow_parts")
         model = ngsolve_model.assemble_model(
             mesh, materials, order=order, interfaces=interfaces, check_units=check_units
         )
-        return cls._of_model(model, axis, check_units, allow_parts=allow_parts)
+        return cls._of_model(model, axis, check_units)
 
     @classmethod
     def from_mesh(
@@ -160,7 +150,6 @@ class SolidRotor(FiniteElementRotor):
         leave_out: Sequence[str] = (),
         matrices: str | os.PathLike | None = None,
         check_units: bool = True,
-        allow_parts: bool = False,
     ) -> SolidRotor:
         """Assemble a rotor on the mesh of another program: Abaqus, CalculiX, ANSYS, Nastran, Gmsh.
 
@@ -191,7 +180,7 @@ class SolidRotor(FiniteElementRotor):
         matrices : str or path, optional
             Mass and stiffness from a file, instead of elements: ``.sti`` of CalculiX with
             ``.mas`` and ``.dof`` beside it, or DMIG cards of Nastran.
-        check_units, allow_parts : bool, optional
+        check_units : bool, optional
             As of :meth:`from_ngsolve`.
 
         Raises
@@ -219,8 +208,6 @@ class SolidRotor(FiniteElementRotor):
         >>> SolidRotor.from_mesh(mesh, steel, ("z", [0.5, 0.5, 0]))
         SolidRotor(12 nodes, 15700 kg, interfaces ['bottom'], 6 rigid motions free)
         """
-        axis = SpinAxis.of(axis)
-        checks.flag(allow_parts, "allow_parts")
         model = mesh_model.import_model(
             mesh,
             materials,
@@ -230,7 +217,7 @@ class SolidRotor(FiniteElementRotor):
             matrices=matrices,
             check_units=check_units,
         )
-        return cls._of_model(model, axis, check_units, allow_parts=allow_parts)
+        return cls._of_model(model, axis, check_units)
 
     @classmethod
     def from_fem_interface(
@@ -239,8 +226,6 @@ class SolidRotor(FiniteElementRotor):
         axis: AxisLike,
         *,
         check_units: bool = True,
-        grounded: bool | None = None,
-        allow_parts: bool = False,
     ) -> SolidRotor:
         """Take a rotor from Exudyn's FEMinterface; its node sets with a name become interfaces.
 
@@ -252,11 +237,6 @@ class SolidRotor(FiniteElementRotor):
             Read by :meth:`SpinAxis.of`.
         check_units : bool, optional
             Refuse sizes and masses that cannot be in SI units.
-        grounded : bool, optional
-            Whether springs to the ground are inside the stiffness matrix; needed only if the
-            matrix itself does not tell.
-        allow_parts : bool, optional
-            Take several parts that neither the stiffness connects nor springs hold.
 
         Raises
         ------
@@ -265,7 +245,7 @@ class SolidRotor(FiniteElementRotor):
             of the matrices fails.
         """
         model = import_model(fem)
-        return cls._of_model(model, axis, check_units, grounded, allow_parts)
+        return cls._of_model(model, axis, check_units)
 
     @classmethod
     def from_matrices(
@@ -279,8 +259,6 @@ class SolidRotor(FiniteElementRotor):
         interfaces: Mapping[str, Any] | None = None,
         triangles: ArrayLike = (),
         check_units: bool = True,
-        grounded: bool | None = None,
-        allow_parts: bool = False,
     ) -> SolidRotor:
         """Make a rotor from plain arrays.
 
@@ -294,7 +272,7 @@ class SolidRotor(FiniteElementRotor):
             Name → node numbers, or name → (node numbers, weights).
         triangles : array_like of int, shape (t, 3) or (t, 6), optional
             Surface for drawing.
-        axis, check_units, grounded, allow_parts
+        axis, check_units
             As those of :meth:`from_fem_interface`.
 
         Raises
@@ -306,101 +284,12 @@ class SolidRotor(FiniteElementRotor):
         entries = {} if interfaces is None else checks.mapping(interfaces, "interfaces", "nodes")
         node_sets = {name: node_set(name, entry) for name, entry in entries.items()}
         model = FiniteElementModel(nodes, mass, stiffness, damping, node_sets, triangles)
-        return cls._of_model(model, axis, check_units, grounded, allow_parts)
+        return cls._of_model(model, axis, check_units)
 
-    def prestress(
-        self,
-        *,
-        clamped: Sequence[str] = (),
-        initial_displacement: bool = False,
-        euler: bool = False,
-        stress: ArrayLike | None = None,
-        yield_stress: float | None = None,
-        speed: float | None = None,
-        loads: Loads | None = None,
-        supports: Sequence[Spring] | Spring = (),
-    ) -> Prestress:
-        """Return the static prestress by the rotation and by loads, for ``stiffening='full'``.
-
-        Solves ``K u⁰ = M x_⊥`` for ω = 1 rad/s, with inertia relief on the motions that the
-        stiffness leaves free, and assembles the geometric stiffness of its stress; likewise, once
-        for all speeds, of the stress by given loads: a thrust softens bending, a preload or a
-        tension stiffens it.
-
-        Parameters
-        ----------
-        clamped : sequence of str, optional
-            Interfaces whose nodes a massless rigid hub holds fixed for the static solution, e.g. a
-            bore on a rigid shaft. The hub moves with the rotor afterwards; a rotor that is held
-            in its frame needs :meth:`clamped`.
-        initial_displacement : bool, optional
-            Also the stiffness from the change of shape by u⁰, per ω² and per ω⁴: the tangent of
-            St. Venant–Kirchhoff elasticity about the linear static state, which K_G alone misses
-            by the order of the static strain or, where parts turn with the static deflection
-            (blades), of that rotation. What is left is the second-order part of the static state.
-        euler : bool, optional
-            Also the stiffness from the stress of an angular acceleration. Without it the
-            rigid-body part of that is used, which is all of it for a rotor that nothing holds.
-        stress : array_like, shape (n, 6), optional
-            Stress at rest, from an interference fit or temperature: xx, yy, zz, yz, xz, xy at the
-            nodes in mesh axes [Pa]. It must be in equilibrium without load; what averaging at
-            nodes lost of that is put right by one elastic solution. Its stiffness takes part in
-            the static solution for the rotation.
-        yield_stress : float, optional
-            Yield stress [Pa].
-        speed : float, optional
-            Highest speed [rad/s]; warns if the von Mises stress is above `yield_stress` there.
-        loads : mapping or array_like, shape (n, 3), optional
-            Loads that turn with the rotor and do not depend on the speed: interface or node number
-            → force (3,) [N], or at an interface force and moment (6,), in mesh axes; or a force at
-            every node, as of pressure. Where the rotor tilts they keep their direction. A moment
-            must be a torque about the axis; it counts as semi-tangential, see
-            :mod:`exudyn_rotor.prestress.given_loads`. This is their stiffness alone: a scene or
-            an analysis has the loads themselves only where they are given there.
-        supports : sequence of Support, optional
-            What holds the rotor in the static solutions, along the axis above all: the loads must
-            balance each other or be taken up, and the centrifugal load pulls on supports that
-            resist the contraction of the shaft.
-
-        Raises
-        ------
-        TypeError, ValueError
-            For values of the wrong kind, if the rotor has no elements (not made by
-            :meth:`from_ngsolve`) or carries a prestress already, an interface is unknown, or
-            `stress` belongs to another mesh or makes the rotor buckle, nothing takes up a load, or
-            a moment is none about the axis.
-
-        Warns
-        -----
-        UserWarning
-            When the material yields, or `stress` is far from equilibrium.
-        """
-        return static_prestress(
-            self,
-            clamped=clamped,
-            initial_displacement=initial_displacement,
-            euler=euler,
-            stress=stress,
-            yield_stress=yield_stress,
-            speed=speed,
-            loads=loads,
-            supports=supports,
-        )
-
-    def with_prestress(self, prestress: Prestress) -> SolidRotor:
-        """Return the rotor carrying a prestress, for full models and as default of `reduce`.
-
-        A constant stress becomes part of the stiffness. Point masses and clamped nodes change the
-        static state: add them before.
-
-        Raises
-        ------
-        TypeError, ValueError
-            If `prestress` is of another kind, belongs to another mesh or another static state
-            (other axis, mass, elasticity, springs or held nodes), or its stress at rest makes the
-            rotor buckle; and if the rotor carries one already.
-        """
-        return with_prestress(self, prestress)
+    prestress = prestress
+    with_prestress = with_prestress
+    reduce = reduce
+    summary = summary
 
     def with_damping(
         self,
@@ -463,45 +352,3 @@ class SolidRotor(FiniteElementRotor):
             mass_damping=self.mass_damping + mass,
             structural_damping=self.structural_damping + loss,
         )
-
-    def reduce(
-        self,
-        modes: ModeSource,
-        *,
-        stress: bool = False,
-        keep_shapes: bool = True,
-        prestress: Prestress | bool | None = None,
-    ) -> ReducedRotor:
-        """Reduce the rotor to component modes and its rigid motions.
-
-        Parameters
-        ----------
-        modes : int, ModeBasis, FEMinterface or ndarray, shape (3n, r)
-            A number of free eigenmodes (0 for a rigid rotor), a basis made by a function of
-            :mod:`exudyn_rotor.reduction`, a FEMinterface whose modes have been computed, or
-            displacement columns in mesh axes [m].
-        stress : bool, optional
-            Also recover stress modes, for stress sensors and contour pictures.
-        keep_shapes : bool, optional
-            Keep the mode shapes at all nodes: needed for sensors at mesh nodes and for drawing.
-        prestress : Prestress or bool, optional
-            Static stress for ``stiffening='full'``; True for :meth:`prestress` with its defaults,
-            False for none. By default that which the rotor carries or, where it has elements and
-            no loose parts, :meth:`prestress` with its defaults.
-
-        Raises
-        ------
-        TypeError, ValueError
-            If the modes are of another kind or of another mesh, or nothing is left of them.
-        """
-        return reduce_rotor(
-            self,
-            modes,
-            stress=stress,
-            keep_shapes=keep_shapes,
-            prestress=prestress,
-        )
-
-    def summary(self) -> str:
-        """Return size, mass, supports, parts, materials, interfaces, masses and discs as text."""
-        return summary(self)

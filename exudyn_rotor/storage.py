@@ -91,11 +91,7 @@ def read_arrays(path: str | PathLike, kind: str) -> dict[str, np.ndarray]:
     ValueError
         If the file is damaged, of another kind, or written by another version of the package.
     """
-    source = checks.path(path)
-    if not source.exists():
-        raise FileNotFoundError(f"path: there is no file {str(source)!r}")
-    if not source.is_file():
-        raise IsADirectoryError(f"path: needs a file, {str(source)!r} is a folder or a device")
+    source = checks.file(path)
     try:
         with open(source, "rb") as opened, np.load(opened, allow_pickle=False) as file:
             data = {name: file[name] for name in file.files if name != _CHECKSUM}
@@ -110,6 +106,29 @@ def read_arrays(path: str | PathLike, kind: str) -> dict[str, np.ndarray]:
     for array in data.values():
         array.flags.writeable = False
     return data
+
+
+def read_rows(path: str | PathLike, name: str = "path") -> list[tuple[int, list[str]]]:
+    """Return number and words of the lines of a text table, without comments and empty lines.
+
+    Words stand between semicolons, commas, tabs or blanks; in lines with semicolons a comma is that
+    of decimals. Text after ``#`` is a comment.
+
+    Raises
+    ------
+    TypeError, OSError
+        As :func:`read_arrays`.
+    """
+    # Excel marks UTF-8; names may be in another encoding
+    text = checks.file(path, name).read_text(encoding="utf-8-sig", errors="replace")
+    rows = []
+    for number, line in enumerate(text.splitlines(), 1):
+        line = line.split("#")[0].strip()
+        line = line.replace(",", ".") if ";" in line else line
+        between = next((mark for mark in ";,\t" if mark in line), None)
+        if line:
+            rows.append((number, [word.strip() for word in line.split(between)]))
+    return rows
 
 
 class Entries:

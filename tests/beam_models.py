@@ -140,7 +140,7 @@ class BeamRotor:
         T = np.hstack([rigid / sizes, joined(*flexible)])
         inv = Invariants(
             direction=np.array([0.0, 0.0, 1.0]), mass=mass, center=np.array([0.0, 0.0, center]),
-            J=inertia, S=momenta[:3], P=P, D=zero, B=zero, **parts,
+            J=inertia, S=momenta[:3], P=P, D=zero, **parts,
         )  # fmt: skip
         inv = inv.moved(inv.center).in_basis(T)
         places = {str(i): self._place(i, radius, T) for i in range(n)}

@@ -46,14 +46,11 @@ def rotor(attached: bool) -> ReducedRotor:
         invariants=replace(
             made.invariants,
             K2=square + square.T,
-            B=square @ square.T,
             H=0.1 * made.invariants.K,
             K0=square + square.T,
         ),
         shapes=replace(made.shapes, stress=RNG.normal(size=(count, 6, size))),
-        centrifugal=Centrifugal(
-            RNG.normal(size=3 * count), RNG.normal(size=(count, 6)), 3e8, np.ones((count, 6))
-        ),
+        centrifugal=Centrifugal(RNG.normal(size=3 * count), RNG.normal(size=(count, 6)), 3e8),
         dropped=("column 7",),
         attached=made.attached if attached else None,
     )
@@ -95,12 +92,11 @@ def results() -> list:
             ("left", "node 2"), motion[:2, 0, 0].real, ("left", "right"),
             *RNG.normal(size=(2, 2, 6)), *RNG.normal(size=(2, 2)), np.eye(3), 90.0,
             basis_errors=np.zeros(2), nodes=RNG.normal(size=(4, 3)),
-            displacement=RNG.normal(size=(4, 3)), along=np.arange(4.0),
-            triangles=np.array(TRIANGLES), stress=RNG.normal(size=(4, 6))),
+            displacement=RNG.normal(size=(4, 3)), stress=RNG.normal(size=(4, 6))),
         Sensitivity(("left, 1", "left, 2"), speeds, table.T + 1j, 90.0),
         Spectra(speeds, speeds, speeds[:2], table),
         StressField(RNG.normal(size=(4, 3)), np.array(TRIANGLES), RNG.normal(size=(4, 6, 2)),
-                    RNG.normal(size=(4, 6)), True, np.zeros((4, 6))),
+                    RNG.normal(size=(4, 6)), True),
         StressHistory(speeds, speeds, np.array([2, 0]), RNG.normal(size=(3, 2, 6)), np.ones(4),
                       np.ones(4), RNG.normal(size=(4, 3)), np.array(TRIANGLES)),
     ]  # fmt: skip

@@ -228,7 +228,6 @@ CALLS = {
     },
     "JournalBearing": lambda w: {"film": w.OilFilm, "load": [0.0, -500.0]},
     "LinearActuator": {"force_current": 80.0, "negative_stiffness": 3e5},
-    "LinearActuator.force": {"place": 1e-5},
     "Link": {"first": "first:left", "second": "second:left", "connection": er.Support("left", 1e6)},
     "MagneticBearing": lambda w: {
         "actuator": w.SaturatingActuator,
@@ -259,7 +258,6 @@ CALLS = {
     "Prestress.from_matrix": lambda w: {
         "matrix": w.Prestress.matrix,
         "nodes": w.SolidRotor.nodes,
-        "euler": w.Prestress.euler,
     },
     "RollingBearing": {
         "count": 8,
@@ -285,7 +283,6 @@ CALLS = {
         "gap": 4e-3,
         "current_limit": 6.0,
     },
-    "SaturatingActuator.force": {"place": 1e-5},
     "ShortJournalBearing": {"load": [0.0, -500.0]},
     "from_ross": lambda w: {"rotor": example()},
     "SolidRotor.add_disc": {"position": 0.15, "mass": 1.0, "inertia": [0.02, 0.02], "width": 0.4},
@@ -305,7 +302,7 @@ CALLS = {
     },
     "SolidRotor.from_ngsolve": {"materials": {"steel": STEEL}, "order": 1},
     "SolidRotor.interface_at": {"name": "seat", "position": 0.15, "width": 0.4},
-    "SolidRotor.prestress": {"euler": True},
+    "SolidRotor.prestress": {},
     "SolidRotor.reduce": {"modes": 2},
     "SolidRotor.with_interface": {"name": "middle", "nodes": [0, 1, 2, 3], "weights": [1.0] * 4},
     "SolidRotor.with_solver": {"solver": "direct"},

@@ -3,7 +3,8 @@
 Axial forces at the interfaces are found from the loads on the modes. Between interfaces the shaft
 bends as their deflections and rotations say, by cubic lines, so that a tension N between them has
 the stiffness ``N ∫ v'² dz``. Beside it the elastic stiffness of the modes tells the buckling load
-of the shaft, as if hinged where the forces act.
+of the shaft, as if hinged where the forces act. Of a full body the tensions follow from how far its
+interfaces part along the axis, and the stiffness is that of their stress in the solid.
 """
 
 from __future__ import annotations
@@ -12,12 +13,16 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor.advice.run_loads import instants, interface_loads
-from exudyn_rotor.multibody.rotor.record import Record
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.full.full_body import FullRotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import Record, RotorBody
+from exudyn_rotor.prestress.given_loads import HeldRotor
+from exudyn_rotor.prestress.static_solution import stress_stiffness
 from exudyn_rotor.reduction.reduced_rotor import ModeKind
+from exudyn_rotor.solvers.inertia_relief import inertia_relief
 from exudyn_rotor.theory.rotating_axes import axes_of
 
 _LOOKED_AT = 20  # instants
+_INDEPENDENT = 1e-6  # share of the largest elongation: interfaces at one place part by none
 _BENT = np.array([[36, 3, -36, 3], [3, 4, -3, -1], [-36, -3, 36, -3], [3, -1, -3, 4]]) / 30.0
 
 
@@ -60,7 +65,7 @@ def _stiffness(places: np.ndarray, motions: list[np.ndarray], tension: np.ndarra
 def _share(body: RotorBody, geometric: np.ndarray) -> float:
     """Return the largest size of a geometric stiffness over the elastic one, without tilts."""
     inv = body.selection.invariants
-    if inv.K0 is not None and body.plan.setup.stiffening != "none":
+    if inv.K0 is not None and body.stiffening != "none":
         geometric = geometric - inv.K0
     elastic = np.array([kind is ModeKind.ELASTIC for kind in body.selection.kinds])
     flexible = elastic & (np.diag(inv.K) > 0.0)
@@ -72,3 +77,25 @@ def _share(body: RotorBody, geometric: np.ndarray) -> float:
     reduced = geometric[np.ix_(f, f)] - coupling @ rest @ coupling.T
     values = la.eigh(reduced, inv.K[np.ix_(f, f)], eigvals_only=True)
     return float(np.abs(values).max())
+
+
+def axial_share_of_full(body: FullRotorBody, record: Record) -> float | None:
+    """Return the same of a full body, when its tensions are largest; None without elements."""
+    rotor, e = body.selection.source, body.axis.direction
+    if rotor.elements is None or len(rotor.interfaces) < 2 or len(record.time) < 2:
+        return None
+    seats = sorted(rotor.interfaces.values(), key=lambda one: one.reference @ e)
+    along = np.vstack([e @ one.mean_motion(rotor.node_count)[:3] for one in seats])
+    apart = np.diff(along, axis=0)
+    relief = inertia_relief(rotor)
+    pulled = relief.solve(apart.T)
+    by_spin = apart @ relief.solve(rotor.centrifugal_load)
+    moved = record.q[:, body.layout.unknowns][:, body.motion.modes]
+    parted = apart @ moved.T - np.outer(by_spin, record.speed**2)
+    tensions = np.linalg.lstsq(apart @ pulled, parted, rcond=_INDEPENDENT)[0]
+    largest = tensions[:, np.argmax(np.abs(tensions).max(axis=0))]
+    geometric = stress_stiffness(rotor, pulled @ largest)
+    given = getattr(rotor.carried_prestress, "by_loads", None)
+    if given is not None and body.stiffening != "none":
+        geometric = geometric - given
+    return float(np.abs(HeldRotor(rotor, (), relief).buckling_shares(geometric)).max())

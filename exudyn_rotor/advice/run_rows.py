@@ -10,14 +10,13 @@ from typing import NamedTuple
 import exudyn
 import numpy as np
 
-from exudyn_rotor.advice.axial_force import axial_share
+from exudyn_rotor.advice.axial_force import axial_share, axial_share_of_full
 from exudyn_rotor.advice.request import PERIOD_ERROR
 from exudyn_rotor.advice.run_loads import instants, interface_loads, residual_deflection
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.connections import lost_items
-from exudyn_rotor.multibody.rotor.record import Record, implicit_step
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import Record, RotorBody, implicit_step
 from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
 from exudyn_rotor.solid.elements import von_mises
 from exudyn_rotor.theory.invariants import Invariants, inertia_tensor
@@ -343,9 +342,10 @@ def _residual(run: RecordedRun) -> float | None:
     "axial force over the buckling load, its stiffness in bending left out",
     "frequencies are off by about half of it; give it to rotor.prestress(loads=…, "
     "supports=…), and the prestress to reduce",
-    of_modes=True,
 )
 def _axial(run: RecordedRun) -> float | None:
+    if isinstance(run.body, FullRotorBody):
+        return axial_share_of_full(run.body, run.record)
     return axial_share(run.body, run.record, run.size)
 
 
@@ -360,6 +360,4 @@ def _yielding(run: RecordedRun) -> float | None:
     static = None if run.reduced is None else run.reduced.centrifugal
     if static is None or static.stress is None or not static.yield_stress:
         return None
-    # the stress is a + ω²b and its von Mises stress convex in ω²: largest at an end
-    ends = (static.stress_at(speed) for speed in (0.0, run.fastest))
-    return max(von_mises(stress).max() for stress in ends) / static.yield_stress
+    return run.fastest**2 * von_mises(static.stress).max() / static.yield_stress

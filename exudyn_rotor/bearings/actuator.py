@@ -36,19 +36,9 @@ class Actuator(ABC):
     force_current: float
     negative_stiffness: float
 
-    def force(self, current: float, place: float) -> float:
-        """Return the force along the control axis [N] by current [A] and place [m].
-
-        Raises
-        ------
-        TypeError, ValueError
-        """
-        checks.number(current, "current", "A")
-        return self.law(current, checks.number(place, "place", "m"))
-
     @abstractmethod
     def law(self, current: float, place: float) -> float:
-        """For scenes: return the force [N] by current and place, unchecked."""
+        """Return the force along the control axis [N] by current [A] and place [m], unchecked."""
 
     @abstractmethod
     def slopes(self, current: float, place: float) -> tuple[float, float]:
@@ -61,16 +51,6 @@ class Actuator(ABC):
     @abstractmethod
     def _place_under(self, load: float, gain: float, offset: float) -> float:
         """Return where ``F(−gain (x + offset), x) + load = 0`` [m], next to the centre."""
-
-    def _check_hold(self, gain: float) -> None:
-        """Refuse a gain that lets the negative stiffness pull the rotor away."""
-        held, pulled = self.force_current * gain, self.negative_stiffness
-        if held <= pulled:
-            raise ValueError(
-                f"controller: unstable: K_i P of {held:.4g} N/m is not above the negative "
-                f"stiffness K_s of {pulled:.4g} N/m, so that there is no equilibrium; give a "
-                "larger proportional gain"
-            )
 
 
 @dataclass(frozen=True)
@@ -91,7 +71,7 @@ class LinearActuator(Actuator):
     Examples
     --------
     >>> from exudyn_rotor import LinearActuator
-    >>> LinearActuator(force_current=80.0, negative_stiffness=3e5).force(1.0, 1e-4)
+    >>> LinearActuator(force_current=80.0, negative_stiffness=3e5).law(1.0, 1e-4)
     110.0
     """
 
@@ -149,7 +129,7 @@ class SaturatingActuator(Actuator):
     ... )
     >>> print(round(magnets.force_current), round(magnets.negative_stiffness))
     500 2500000
-    >>> round(magnets.force(2.0, 0.0)), round(magnets.force(9.0, 0.0))  # the latter at the limit
+    >>> round(magnets.law(2.0, 0.0)), round(magnets.law(9.0, 0.0))  # the latter at the limit
     (1000, 2250)
     """
 

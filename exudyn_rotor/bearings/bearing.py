@@ -12,13 +12,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.controlled_support import Controlled
+from exudyn_rotor.bearings.controlled_support import ControlledSupport
 from exudyn_rotor.bearings.film.equilibria import Equilibria
 from exudyn_rotor.bearings.own_table import table_of
 from exudyn_rotor.bearings.support import COEFFICIENTS, NoCoefficientsError, Support
 
 _REMEMBERED = 1000  # coefficients of a bearing
-_DIFFERENCE, _STILL = 1e-6, 1e-6  # of the largest motion, which is at least that in SI units
+_INSIDE = 1.0 - 1e-9  # of the way to the last film, by rounding
+_DIFFERENCE = 1e-4  # of a motion
 HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a bearing holds count
 
 LawWithTorque = Callable[[float, float, float, float, float, float], tuple[float, float, float]]
@@ -113,7 +114,7 @@ class LoadedBearing(ABC):
         return table_of(self.linearised(), speeds, frequencies)
 
     @abstractmethod
-    def linearised(self) -> Support | Controlled:
+    def linearised(self) -> Support | ControlledSupport:
         """Return the equations for linear analyses, about the equilibrium under the load."""
 
     def _static_load(self, load: ArrayLike | None) -> np.ndarray:
@@ -143,7 +144,6 @@ class Bearing(LoadedBearing):
         See :class:`LoadedBearing`.
     """
 
-    uses_angle: ClassVar[bool] = False  # whether the law depends on the spin angle
     law_with_torque: ClassVar[LawWithTorque | None] = None
 
     _tried: ClassVar[np.ndarray] = HIGHER
@@ -151,34 +151,30 @@ class Bearing(LoadedBearing):
         default_factory=lambda: Equilibria(_REMEMBERED), init=False, repr=False
     )
 
-    @abstractmethod
     def law(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
         """Return the force on the journal [N] by x, y, ẋ, ẏ, θ and Ω, anywhere, unchecked."""
+        return self.law_with_torque(x, y, vx, vy, angle, speed)[:2]
 
+    @abstractmethod
     def slopes(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
-        found = self.law_along(np.array([[x, y, vx, vy]]), np.array([angle]), speed)[1][0]
-        return found[:, :2], found[:, 2:]
 
     def law_along(
         self, motion: np.ndarray, angles: np.ndarray, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return forces and their derivatives by motions (t, 4); by differences in this class.
+        """Return forces and their derivatives along motions (t, 4).
 
         Of displacements and velocities [m], [m/s], spin angles (t,) and the spin speed: forces
         (t, 2) [N], and minus their derivatives by the motion, (t, 2, 4).
         """
-        sizes = np.abs(motion).max(axis=0)
-        steps = _DIFFERENCE * np.repeat([max(*sizes[:2], _STILL), max(*sizes[2:], _STILL)], 2)
-        force, slopes = np.empty((len(motion), 2)), np.empty((len(motion), 2, 4))
-        for row, (state, angle) in enumerate(zip(motion, angles.tolist(), strict=True)):
-            force[row] = self.law(*state.tolist(), angle, speed)
-            slopes[row] = differenced(self.law, state, steps, angle, speed)
-        return force, slopes
+        states = [(*state, a) for state, a in zip(motion.tolist(), angles.tolist(), strict=True)]
+        forces = [self.law(*state, speed) for state in states]
+        slopes = [np.hstack(self.slopes(*state, speed)) for state in states]
+        return np.reshape(forces, (-1, 2)), np.reshape(slopes, (-1, 2, 4))
 
     def clearance_along(self, direction: np.ndarray | None = None) -> float:
         """Return how far that way, of length 1 (2,), or at least, the journal may go [m].
@@ -224,13 +220,42 @@ class Bearing(LoadedBearing):
             Of the journal from the centre of the bearing along (n1, n2) [m].
         """
         place = checks.vector(displacement, "displacement", "m", size=2)
-        distance = hypot(*place)
-        reach = self._reach(place / distance if distance else np.array([1.0, 0.0]))
-        return distance / reach if reach < inf else None
+        edge = self._edge(*place.tolist())
+        return hypot(*place) / edge if edge < inf else None
 
-    def _reach(self, direction: np.ndarray) -> float:
-        """Return how far that way, of length 1 (2,), the law is that of a film [m]."""
+    def _edge(self, x: float, y: float) -> float:
+        """Return how far the journal may go, on the way to a place, for a film to be there [m]."""
         return inf
+
+    def _inside(self, x: float, y: float) -> tuple[float, float]:
+        """Return the last place with a film on the way to a place [m]."""
+        share = min(1.0, _INSIDE * self._edge(x, y) / max(hypot(x, y), 1e-300))
+        return share * x, share * y
+
+    def _beyond(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, float]:
+        """Return the force where there is no film, by the tangent of the last one.
+
+        So Newton's method comes back from such places.
+        """
+        a, b = self._inside(x, y)
+        fx, fy = self.law(a, b, vx, vy, angle, speed)
+        gx, gy = (self.slopes(a, b, vx, vy, angle, speed)[0] @ (x - a, y - b)).tolist()
+        return fx - gx, fy - gy
+
+    def _slopes_beyond(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return :meth:`slopes` where there is no film, by central differences."""
+        motion, size = np.array([x, y, vx, vy]), hypot(x, y)
+        steps = _DIFFERENCE * np.repeat([size, max(size * abs(speed), hypot(vx, vy), size)], 2)
+        ends = [
+            [self.law(*(motion + move), angle, speed) for move in (-each, each)]
+            for each in np.diag(steps)
+        ]
+        found = np.array([np.subtract(*pair) for pair in ends]).T / (2.0 * steps)
+        return found[:, :2], found[:, 2:]
 
     def coefficients(
         self, speed: float, load: ArrayLike | None = None
@@ -305,36 +330,10 @@ def bearing_of(support: object) -> Bearing | None:
     return next((each.bearing for each in given if isinstance(each, Linearised)), None)
 
 
-def by_tangent(
-    force: Callable[[float, float], tuple[float, ...]],
-    x: float,
-    y: float,
-    most: float,
-    step: float,
-) -> tuple[float, ...]:
-    """Return a force, and a torque with it, outside the radius `most`, by its tangent there.
-
-    The tangent is that of the last `step` inside. So Newton's method comes back from places at
-    which there is no force.
-    """
-    eccentricity = hypot(x, y)
-    ex, ey = x / eccentricity, y / eccentricity
-    edge = force(most * ex, most * ey)
-    inside = force((most - step) * ex, (most - step) * ey)
-    beyond = (eccentricity - most) / step
-    return tuple(f + beyond * (f - g) for f, g in zip(edge, inside, strict=True))
-
-
-def differenced(
-    law: Callable[..., tuple[float, ...]],
-    motion: np.ndarray,
-    steps: np.ndarray,
-    angle: float,
-    speed: float,
-) -> np.ndarray:
-    """Return less the central differences (2, 4) of a law's force by place and velocity (4,)."""
-    ends = [
-        [law(*(motion + move).tolist(), angle, speed)[:2] for move in (-each, each)]
-        for each in np.diag(steps)
-    ]
-    return np.array([np.subtract(*pair) for pair in ends]).T / (2.0 * steps)
+def check_clearance(clearance: float, radius: float) -> None:
+    """Refuse a clearance as large as the radius: one of a diameter, or in other units."""
+    if clearance >= radius:
+        raise ValueError(
+            f"clearance: needs the radial clearance, far below the radius of {radius:g} m, got "
+            f"{clearance:g} m"
+        )

@@ -22,7 +22,7 @@ from typing import ClassVar
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, LawWithTorque
+from exudyn_rotor.bearings.bearing import Bearing
 
 Numbers = float | np.ndarray
 
@@ -88,23 +88,10 @@ class ClearanceStop(Bearing):
         checks.keep_numbers(self, positive, above=0.0)
         checks.keep_numbers(self, {"damping": "N s/m", "friction": ""}, least=0.0)
 
-    def law(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[float, float]:
-        """Return the force on the journal (1), (2) [N]."""
-        return self._law_with_torque(x, y, vx, vy, angle, speed)[:2]
-
-    @property
-    def law_with_torque(self) -> LawWithTorque | None:
-        """As :attr:`law`, with the torque of friction on the journal [N m]; None without friction.
-
-        Scenes need it where the spin is free.
-        """
-        return self._law_with_torque if self.friction else None
-
-    def _law_with_torque(
+    def law_with_torque(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float, float]:
+        """Return the force on the journal (1), (2) [N], and the torque of friction [N m]."""
         e = hypot(x, y)
         depth = e - self.clearance
         if depth <= 0.0:

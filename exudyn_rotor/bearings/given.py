@@ -7,7 +7,7 @@ from typing import get_args
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing
-from exudyn_rotor.bearings.controlled_support import Controlled
+from exudyn_rotor.bearings.controlled_support import ControlledSupport
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.series import FloatingRingBearing, SeriesSupport
 from exudyn_rotor.bearings.support import Support, acts
@@ -15,6 +15,7 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedInterface
 from exudyn_rotor.solid.rotor import Interface
 
 Given = Support | Bearing | MagneticBearing | SeriesSupport | FloatingRingBearing
+Controlled = ControlledSupport | SeriesSupport
 _TILTING = ("tilt_stiffness", "tilt_damping")
 
 

@@ -125,7 +125,13 @@ class MagneticBearing(LoadedBearing):
     def _states(self, load: np.ndarray) -> list[tuple[float, float]]:
         """Return place [m] and current [A] of each control axis in the equilibrium."""
         axes, gain, actuator = self.control_axes, self.controller.proportional, self.actuator
-        actuator._check_hold(gain)
+        held, pulled = actuator.force_current * gain, actuator.negative_stiffness
+        if held <= pulled:
+            raise ValueError(
+                f"controller: unstable: K_i P of {held:.4g} N/m is not above the negative "
+                f"stiffness K_s of {pulled:.4g} N/m, so that there is no equilibrium; give a "
+                "larger proportional gain"
+            )
         pairs = zip(axes @ load, axes @ self.sensor_offset, strict=True)
         if self.controller.integral:
             return [(-offset, actuator._current_for(-pull, -offset)) for pull, offset in pairs]
@@ -149,12 +155,14 @@ class MagneticBearing(LoadedBearing):
         slopes = np.array([self.actuator.slopes(i, x) for x, i in states])
         damping, stiffness = self.coupling(slopes)
         own, both = self.controller.realisation(), np.eye(2)
+        masses = np.repeat(self.scale * own.inertia, 2)
         damping[4:, 4:] = self.scale * np.kron(own.damping, both)
         stiffness[4:, 4:] = self.scale * np.kron(own.stiffness, both)
         by_current = self.control_axes.T @ (slopes[:, 0, None] * self.control_axes)
         static = self.controller.proportional * by_current + stiffness[:2, :2]
-        sensor, inertia = self.sensor_interface, self.scale * own.inertia
-        return ControlledSupport(self.interface, sensor, inertia, damping, stiffness, static)
+        return ControlledSupport(
+            self.interface, masses, lambda _: (stiffness, damping), static, self.sensor_interface
+        )
 
     def coupling(self, slopes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return damping and stiffness between the ports of :class:`ControlledSupport`.

@@ -26,7 +26,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import cos, hypot, pi, sin
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -92,8 +91,6 @@ class RollingBearing(Bearing):
     [ 0.00e+00 -1.74e-05]
     """
 
-    uses_angle: ClassVar[bool] = True
-
     count: int
     pitch_radius: float
     element_radius: float
@@ -150,22 +147,22 @@ class RollingBearing(Bearing):
         place = checks.vector(displacement, "displacement", "m", size=2)
         return contacts(self, place, checks.number(angle, "angle", "rad"))[0]
 
-    def law(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[float, float]:
-        """Return the force on the inner ring [N]."""
-        return self.law_with_torque(x, y, vx, vy, angle, speed)[:2]
-
     def law_with_torque(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float, float]:
-        """As :meth:`law`, with the torque (3) on the inner ring [N m]."""
+        """Return the force on the inner ring [N], and the torque (3) [N m]."""
         angles = 2.0 * pi / self.count * np.arange(self.count) + self.cage_ratio * angle
         c, s = np.cos(angles), np.sin(angles)
         depth = np.maximum(x * c + y * s - self.clearance, 0.0)
         loads, d = self.stiffness * depth ** _EXPONENTS[self.elements], self.damping
         px, py = float(loads @ c), float(loads @ s)
         return -px - d * vx, -py - d * vy, self.cage_ratio * (x * py - y * px)
+
+    def slopes(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
+        return contacts(self, np.array([x, y]), angle)[2], self.damping * np.eye(2)
 
     def law_along(
         self, motion: np.ndarray, angles: np.ndarray, speed: float

@@ -72,6 +72,8 @@ class SeriesSupport:
     4878049
     """
 
+    word: ClassVar[str] = "ring"  # for labels
+
     interface: str
     inner: Support | Bearing
     mass: float

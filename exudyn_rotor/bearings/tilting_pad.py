@@ -29,7 +29,7 @@ from scipy.optimize import brentq
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing, Linearised
-from exudyn_rotor.bearings.controlled_support import PadSupport
+from exudyn_rotor.bearings.controlled_support import ControlledSupport
 from exudyn_rotor.bearings.film.equilibria import Equilibria
 from exudyn_rotor.bearings.film.film import FilmState, OilFilm
 from exudyn_rotor.bearings.film.pads import direction
@@ -51,8 +51,9 @@ class TiltingPadBearing(Bearing):
     """Journal bearing whose pads tilt about pivots.
 
     With `pad_inertia` the pads' tilts are coordinates, in scenes and in linear analyses. Without it
-    linear analyses have stiffness and damping at the whirl's frequency, the tilts eliminated, and
-    scenes, in which a tilt has a history, take :meth:`linearised`, about the middle of the bearing.
+    linear analyses have stiffness and damping of whirl at the spin speed, as by unbalance, the
+    tilts eliminated, and scenes, in which a tilt has a history, take :meth:`linearised`, about the
+    middle of the bearing.
 
     Parameters
     ----------
@@ -62,9 +63,6 @@ class TiltingPadBearing(Bearing):
         With the pads as they are without tilt, the directions n1 and n2 of the rotor at rest.
     pivot : float, optional
         Place of the pivots over the arc of a pad, from its start; 0.5 is the middle.
-    whirl_ratio : float, optional
-        Frequency of the whirl over the spin speed, 1 for unbalance: of pads without inertia, and in
-        critical speeds.
     pad_inertia : float, optional
         Of each pad about its pivot, along the axis [kg m²]. Light pads follow the journal at once:
         the smaller it is, the less it matters.
@@ -95,15 +93,13 @@ class TiltingPadBearing(Bearing):
 
     film: OilFilm
     pivot: float = 0.5
-    whirl_ratio: float = 1.0
     pad_inertia: float | None = None
     _equilibria: Equilibria[_Pads] = field(default_factory=Equilibria, init=False, repr=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         checks.instance(self.film, "film", OilFilm)
-        checks.keep_numbers(self, {"pivot": "", "whirl_ratio": ""}, above=0.0)
-        checks.number(self.pivot, "pivot", below=1.0)
+        checks.keep_numbers(self, {"pivot": ""}, above=0.0, below=1.0)
         if self.pad_inertia is not None:
             checks.keep_numbers(self, {"pad_inertia": "kg m²"}, above=0.0)
         if self.film.pads[0].closed:
@@ -118,6 +114,8 @@ class TiltingPadBearing(Bearing):
             "alone; give pad_inertia, and their tilts become coordinates, or give the scene its "
             "linearised()"
         )
+
+    slopes = law  # which refuses, too
 
     @property
     def tangents(self) -> np.ndarray:
@@ -148,12 +146,11 @@ class TiltingPadBearing(Bearing):
         return -self._state(speed, self._static_load(load)).shifts / self.film.radius
 
     def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return stiffness and damping of (2)."""
-        whirl = self.whirl_ratio * abs(speed)
-        Z = self._state(speed, load).impedance(whirl)
-        return Z.real, Z.imag / whirl
+        """Return stiffness and damping of (2), of pads with inertia by (1)."""
+        Z = self._state(speed, load).impedance(abs(speed), self.pad_mass)
+        return Z.real, Z.imag / abs(speed)
 
-    def linearised(self) -> Support | PadSupport:
+    def linearised(self) -> Support | ControlledSupport:
         """Return the support for linear analyses: the coefficients under the load at every speed.
 
         With the pads' tilts as coordinates where these have inertia. A pad that carries nothing is
@@ -171,19 +168,15 @@ class TiltingPadBearing(Bearing):
         """
         if self.pad_inertia is None:
             return super().linearised()
-        load, static = self._static_load(None), _InTheWhirl(self, 0)
-
-        def matrices(speed: float) -> tuple[np.ndarray, np.ndarray]:
-            static.check_range(speed)
-            return self._linear.at(speed, load, self._of_pads)[:2]
-
+        self._static_load(None)
         masses = np.full(len(self.film.pads), self.pad_mass)
-        return PadSupport(self.interface, masses, matrices, static)
+        return ControlledSupport(self.interface, masses, self._of_pads, Linearised(self, 0))
 
-    def _of_pads(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return what :class:`PadSupport` has, and the stiffness (2, 2) of all in the whirl."""
-        state, mass = self._state(speed, load), self.pad_mass
-        whole = state.impedance(self.whirl_ratio * abs(speed), mass).real
+    def _of_pads(self, speed: float) -> np.ndarray:
+        """Return stiffness and damping of the ports of pads with inertia, (2, 2 + p, 2 + p)."""
+        Linearised(self, 0).check_range(speed)
+        load, mass = self._static_load(None), self.pad_mass
+        state, whole = self._state(speed, load), self.coefficients(speed, load)[0]
         absent = [pad for pad, each in enumerate(state.states) if each is None]
         if absent and not self.__dict__.get("_told"):
             object.__setattr__(self, "_told", True)
@@ -195,13 +188,13 @@ class TiltingPadBearing(Bearing):
         soft = min(mass * speed**2, _HELD * float(np.abs(whole).max()))
         held = np.array([soft, 4.0 * np.sqrt(soft * mass)])  # overdamped: no vibration of its own
         count = len(state.states)
-        total = np.zeros((2, 3 + count, 3 + count))
+        total = np.zeros((2, 2 + count, 2 + count))
         for pad, (each, t) in enumerate(zip(state.coefficients, self.tangents, strict=True)):
-            seen = np.eye(3, 3 + count)[:2]
-            seen[:, 3 + pad] = -t
+            seen = np.eye(2, 2 + count)
+            seen[:, 2 + pad] = -t
             film = np.multiply.outer(held, np.outer(t, t)) if each is None else each
             total += [seen.T @ X @ seen for X in film]
-        return total[0], total[1], whole
+        return total
 
     def _state(self, speed: float, load: np.ndarray) -> _Pads:
         """Return the pads in equilibrium."""
@@ -279,7 +272,7 @@ def _shift_of_pad(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float)
             raise pressed
         return np.nan
     s = brentq(moment, tried[rises[0]], tried[rises[0] + 1], xtol=_ROOT * film.radius)
-    return s if t @ at(s).tangent[0] @ t > 0.0 else np.nan  # where no pressure is left
+    return s if t @ at(s).coefficients()[0] @ t > 0.0 else np.nan  # where no pressure is left
 
 
 @dataclass(frozen=True, eq=False)
@@ -319,7 +312,7 @@ class _Pads:
             for pad in present:
                 film, t, empty = films[pad], self.tangents[pad], states[pad].solution.empty
                 states[pad] = film.solved(place - shifts[pad] * t, still, speed, empty)
-                force, stiffness = states[pad].force, states[pad].tangent[0]
+                force, stiffness = states[pad].force, states[pad].coefficients()[0]
                 rise, lever = t @ stiffness @ t, stiffness @ t
                 if not rise > _LOOSE * units[pad]:
                     return None
@@ -360,12 +353,3 @@ class _Pads:
                 Z = K + 1j * whirl * C
                 total += Z - np.outer(Z @ t, t @ Z) / (t @ Z @ t - mass * whirl**2)
         return total
-
-
-@dataclass(frozen=True, eq=False)
-class _InTheWhirl(Linearised):
-    """Stiffness of all pads with inertia in the whirl, by the spin speed."""
-
-    def _value(self, speed: float) -> np.ndarray:
-        bearing = self.bearing
-        return bearing._linear.at(speed, bearing._static_load(None), bearing._of_pads)[2]

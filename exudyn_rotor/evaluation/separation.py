@@ -247,7 +247,7 @@ def separation_margins(
             )
             peaks.append((name, place, size, sides))
             coarse += [] if is_near else [(name, float(speeds[row]))]
-    warn_of_coarse_peaks(coarse, response.refined)
+    warn_of_coarse_peaks(coarse)
     peaks.sort(key=lambda peak: peak[1])
     at, half_power = np.array([peak[1] for peak in peaks]), [peak[3] for peak in peaks]
     factors = np.array([_amplification(*peak[1::2]) for peak in peaks])

@@ -236,7 +236,7 @@ class Foundation:
             count = checks.count(modes, "modes")
             used = list(dict.fromkeys(name for _, name in named))
             basis = craig_bampton_modes(solid, count, used, coupling="RBE3")
-            solid = solid.reduce(basis, prestress=False, keep_shapes=False)
+            solid = solid.reduce(basis, prestress=False).without_shapes()
         if solid.invariants.H is not None:
             raise ValueError(
                 "solid: its structural damping is for steady motions only; use "

@@ -147,7 +147,7 @@ def response_shapes(
     load, held = unbalance_load(model, unbalances, own), model.held_basis
     loads = {n: values[:, None] ** 2 * F for n, F in load.items()}
     none = np.zeros(len(values))
-    stack = model.at_all(values, "held")
+    stack = model.at_all(values)
     found = forced_motions(stack, loads, none, held=held, tolerance=tolerance)
     seen = _of_nodes(model, {n: X.T for n, X in found.items()}, 1.0)
     if any(np.any(np.isnan(x)) for x in seen.values()):
@@ -189,7 +189,7 @@ def _with_mesh(
     if len(model.rotors) > 1 or model.bodies[0].alone.rotor.shapes is None:
         raise ValueError(
             "target: its linear model has no mesh nodes to show; take a rotor on supports, reduced "
-            "with keep_shapes=True, and not a scene"
+            "with its shapes, and not a scene"
         )
     return model
 

@@ -22,17 +22,13 @@ import numpy as np
 import scipy.sparse as sp
 
 from exudyn_rotor import checks
-from exudyn_rotor.prestress.static_solution import (
-    relief_under_stress,
-    static_prestress,
-)
+from exudyn_rotor.prestress import static_solution
 from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.rotor import FiniteElementRotor, Rotor, check_unstressed
 from exudyn_rotor.solvers.factor import TooLittleMemoryError
 from exudyn_rotor.solvers.inertia_relief import (
     InertiaRelief,
-    Way,
     free_motions_of,
     inertia_relief,
 )
@@ -41,83 +37,60 @@ from exudyn_rotor.theory.axis import coupled, rotations, translations
 # share of the load by which an imported matrix may miss it, and a computed one, with the rounding
 # of the elastic forces
 _IMPORTED, _SAME, _ROUNDING = 0.01, 1e-6, 1e-9
-_COMPUTE = "compute the prestress with this rotor: rotor.prestress()"
 # force on the ground by a translation, of the largest on a node, that is more than rounding
 _GROUNDED = 1e-9
 # fewer nodes are lumped masses, and their springs no solid
 _FEWEST = 50
 
 
-def with_prestress(rotor: Rotor, prestress: Prestress) -> Rotor:
-    """Return the rotor carrying a prestress; see :meth:`exudyn_rotor.SolidRotor.with_prestress`."""
+def with_prestress(self: Rotor, prestress: Prestress) -> Rotor:
+    """Return the rotor carrying a prestress, for full models and as default of `reduce`.
+
+    Point masses and clamped nodes change the static state: add them before.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `prestress` is of another kind, belongs to another mesh or another static state (other
+        axis, mass, elasticity, springs or held nodes), or the rotor carries one already.
+    """
     checks.instance(prestress, "prestress", Prestress, "rotor.prestress() computes one")
-    check_unstressed(rotor)
-    matrices.check_same_mesh(rotor.nodes, prestress.nodes, "prestress")
-    _check_static_state(rotor, prestress)
-    stiffness = rotor.stiffness
-    if prestress.constant is not None:
-        stiffness = matrices.frozen(sp.csr_array(stiffness + prestress.constant))
-        relief_under_stress(stiffness, rotor.mass, free_motions_of(rotor), Way.of(rotor))
-    return replace(rotor, stiffness=stiffness, carried_prestress=replace(prestress, constant=None))
+    check_unstressed(self)
+    matrices.check_same_mesh(self.nodes, prestress.nodes, "prestress")
+    load, free = self.centrifugal_load, free_motions_of(self)
+    balanced = load - self.mass @ (free @ (free.T @ load))
+    if prestress.displacement is not None:
+        _check_equilibrium(self, prestress.displacement, balanced)
+    elif not self.grounded:
+        _check_rotations(self, prestress, balanced)
+    return replace(self, carried_prestress=prestress)
 
 
 def with_chosen_prestress(rotor: Rotor, prestress: Prestress | bool | None) -> Rotor:
     """Return the rotor with what ``reduce(prestress=…)`` asks for; None is the best there is."""
     if isinstance(prestress, bool | np.bool_):
-        return replace(rotor, carried_prestress=static_prestress(rotor) if prestress else None)
+        computed = static_solution.prestress(rotor) if prestress else None
+        return replace(rotor, carried_prestress=computed)
     if prestress is not None:
         return with_prestress(rotor, prestress)
     if rotor.carried_prestress is not None or rotor.elements is None:
         return rotor
-    try:
-        inertia_relief(rotor)
-    except ValueError:  # parts that nothing connects have no static state
-        return rotor
-    return replace(rotor, carried_prestress=static_prestress(rotor))
+    return replace(rotor, carried_prestress=static_solution.prestress(rotor))
 
 
-def _check_static_state(rotor: FiniteElementRotor, prestress: Prestress) -> None:
-    """Refuse a prestress of another static state than the rotor's own."""
-    if prestress.constant is None and prestress.constant_stress is not None:
-        raise ValueError(
-            "prestress: this is what another rotor carries, whose stiffness holds the stress at "
-            f"rest already; {_COMPUTE[:-1]}stress=…)"
-        )
-    load = rotor.centrifugal_load
-    size = max(np.linalg.norm(load), 1e-300)
-    balanced = load
-    if prestress.balanced:
-        free = free_motions_of(rotor)
-        balanced = load - rotor.mass @ (free @ (free.T @ load))
-    if prestress.load is not None and prestress.displacement is not None:
-        _check_computed(rotor, prestress, load, balanced, size)
-    elif not rotor.grounded:
-        _check_rotations(rotor, prestress, balanced)
-
-
-def _check_computed(
-    rotor: FiniteElementRotor,
-    prestress: Prestress,
-    load: np.ndarray,
-    balanced: np.ndarray,
-    size: float,
+def _check_equilibrium(
+    rotor: FiniteElementRotor, displacement: np.ndarray, load: np.ndarray
 ) -> None:
-    """Compare load and elastic forces, but at nodes that are held, whose forces are not known."""
-    stiffness = rotor.stiffness
-    if prestress.constant is not None:
-        stiffness = stiffness + prestress.constant
-    compared = coupled(rotor.stiffness).reshape(-1, 3)
-    if prestress.hub is not None:
-        compared[prestress.hub] = False
-    imbalance = np.linalg.norm((stiffness @ prestress.displacement - balanced)[compared.ravel()])
-    rounding = _ROUNDING * np.linalg.norm(abs(stiffness) @ np.abs(prestress.displacement))
-    change = np.linalg.norm(prestress.load - load)
-    if change > _SAME * size or imbalance > _SAME * size + rounding:
+    """Refuse a static displacement whose elastic forces are not the load, both (3n,)."""
+    left = (rotor.stiffness @ displacement - load)[coupled(rotor.stiffness)]
+    rounding = _ROUNDING * np.linalg.norm(abs(rotor.stiffness) @ np.abs(displacement))
+    size = np.linalg.norm(load)
+    if np.linalg.norm(left) > _SAME * size + rounding:
         raise ValueError(
-            f"prestress: it belongs to another rotor: its centrifugal load differs by "
-            f"{change / size:.3g}, and its elastic forces by {imbalance / size:.3g} of this "
-            "rotor's load (another density, elastic modulus or axis, other point masses, clamped "
-            f"nodes or springs to the ground); {_COMPUTE}"
+            "prestress: it belongs to another rotor: its elastic forces differ by "
+            f"{np.linalg.norm(left) / max(size, 1e-300):.3g} of this rotor's centrifugal load "
+            "(another density, elastic modulus or axis, other point masses, clamped nodes or "
+            "springs to the ground); compute the prestress with this rotor: rotor.prestress()"
         )
 
 
@@ -164,7 +137,7 @@ def estimated_stiffness(rotor: FiniteElementRotor) -> sp.csr_array | None:
     try:
         rigid = inertia_relief(rotor).rigid
         truss = _truss(rotor, i, j, bars, stiffness)
-        relief = InertiaRelief(truss, rotor.mass, rigid, Way())
+        relief = InertiaRelief(truss, rotor.mass, rigid)
     except (ValueError, TooLittleMemoryError):
         return None
     moved = relief.solve(rotor.centrifugal_load).reshape(-1, 3)
@@ -172,7 +145,7 @@ def estimated_stiffness(rotor: FiniteElementRotor) -> sp.csr_array | None:
     network = sp.csr_array((-tension, (i, j)), shape=(count, count))
     network = network - sp.diags_array(np.asarray(network.sum(axis=1)).ravel())
     network = 0.5 * (network + network.T)
-    return sp.csr_array(sp.kron(network, sp.eye_array(3), format="csr"))
+    return matrices.in_all_directions(network)
 
 
 def _truss(

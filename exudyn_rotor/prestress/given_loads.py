@@ -42,6 +42,7 @@ _HELD = 1e-9  # of the largest: a rigid motion that the supports hold
 _UNBALANCED = 1e-6  # share of a load that nothing takes up
 _UNEVEN = 0.1  # share of a torque that pulls a plane of the interface, and not all around
 _ROUNDING = 1e-9  # of a moment: part across the axis
+_STEPS, _SEED = 20, 3  # of the iteration on the buckling load
 
 
 def nodal_loads(rotor: FiniteElementRotor, loads: Loads) -> np.ndarray:
@@ -92,46 +93,103 @@ def _torque(
     return forces
 
 
-def checked_supports(supports: Sequence[Spring] | Spring) -> tuple[Spring, ...]:
-    """Return supports as a tuple; TypeError for anything else than a Support or several."""
-    listed = [supports] if hasattr(supports, "matrices") else supports
-    found = checks.items(listed, "supports", "a Support or a sequence of them")
-    for one in found:
-        if not (hasattr(one, "matrices") and hasattr(one, "stiffness_varies")):
-            raise TypeError(f"supports: needs objects of kind Support, got {checks.shown(one)}")
-    return found
+class HeldRotor:
+    """Static solutions of a rotor on supports; parameters as of :meth:`SolidRotor.prestress`.
 
+    `free` (3n, f) are the rigid motions that nothing holds.
+    """
 
-def support_forces(
-    rotor: FiniteElementRotor, supports: Sequence[Spring], relief: InertiaRelief, load: np.ndarray
-) -> np.ndarray:
-    """Return the nodal forces (3n,) by which supports take up a load (3n,)."""
-    rows, stiffness = _springs(rotor, supports)
-    if not len(stiffness):
-        return np.zeros_like(load)
-    columns = rows.T.toarray()
-    rigid = rows @ relief.rigid
-    _, sizes, turned = np.linalg.svd(rigid)
-    held = turned[: np.count_nonzero(sizes > _HELD * sizes.max(initial=0.0))].T
-    count, few = len(stiffness), held.shape[1]
-    A, b = np.zeros((count + few, count + few)), np.zeros(count + few)
-    A[:count, :count] = rows @ relief.solve(columns) + np.diag(1.0 / stiffness)
-    A[:count, count:] = rigid @ held
-    A[count:, :count] = A[:count, count:].T
-    b[:count] = -(rows @ relief.solve(load))
-    b[count:] = -(held.T @ (relief.rigid.T @ load))
-    scale = 1.0 / np.sqrt(np.r_[np.diag(A)[:count], np.ones(few)])
-    forces = scale * np.linalg.solve(scale[:, None] * A * scale, scale * b)
-    return columns @ forces[:count]
+    def __init__(
+        self, rotor: FiniteElementRotor, supports: Sequence[Spring] | Spring, relief: InertiaRelief
+    ) -> None:
+        self._rotor, self._relief = rotor, relief
+        rows, springs = _springs(rotor, supports)
+        self._rows = rows
+        self._stiffness = rotor.stiffness + rows.T @ sp.diags_array(springs) @ rows
+        rigid = rows @ relief.rigid
+        _, sizes, turned = np.linalg.svd(rigid)
+        count = np.count_nonzero(sizes > _HELD * sizes.max(initial=0.0))
+        self._rigid, self.free = relief.rigid @ turned[:count].T, relief.rigid @ turned[count:].T
+        self._flexible = relief.solve(rows.T.toarray())
+        motion = rows @ self._rigid
+        A = np.block(
+            [
+                [rows @ self._flexible + np.diag(1.0 / springs), motion],
+                [motion.T, np.zeros((count, count))],
+            ]
+        )
+        self._scale = 1.0 / np.sqrt(np.r_[np.diag(A)[: springs.size], np.ones(count)])
+        self._matrix = self._scale[:, None] * A * self._scale
+
+    def solve(self, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the displacement of a load and the forces of the supports, all (3n,)."""
+        elastic = self._relief.solve(load)
+        gap = -np.r_[self._rows @ elastic, self._rigid.T @ load]
+        found = self._scale * np.linalg.solve(self._matrix, self._scale * gap)
+        forces, rigid = np.split(found, [self._rows.shape[0]])
+        return elastic + self._flexible @ forces + self._rigid @ rigid, self._rows.T @ forces
+
+    def check_balanced(self, load: np.ndarray, forces: np.ndarray) -> None:
+        """Refuse loads that supports, by their `forces` (3n,), do not take up."""
+        rotor, rigid, total = self._rotor, self._relief.rigid, (load + forces).reshape(-1, 3)
+        size = np.abs(rigid).T @ np.abs(load)
+        if np.any(np.abs(rigid.T @ total.ravel()) > _UNBALANCED * np.maximum(size, 1e-300)):
+            e, force = rotor.axis.direction, total.sum(axis=0)
+            moment = np.cross(rotor.nodes - rotor.axis.point, total).sum(axis=0)
+            raise ValueError(
+                f"loads: nothing takes up {e @ force:.4g} N along the axis, "
+                f"{np.linalg.norm(force - e * (e @ force)):.4g} N across it, and a torque of "
+                f"{e @ moment:.4g} N m; give the other loads, or supports=[Support(…)] that hold "
+                "it (a 3 × 3 stiffness acts along the axis, too)"
+            )
+
+    def buckling_shares(self, geometric: sp.csr_array) -> np.ndarray:
+        """Return shares of the buckling load, ascending, of the loads of a stiffness K_G.
+
+        They are μ in ``−K_G v = μ K v`` with the stiffness K on the supports; a tension has
+        negative ones. On rigid motions a that nothing holds, K_G decides alone: dead loads that
+        press a free shaft turn it over, however small they are, and supports that come later must
+        prevent that. There the work ``½ (v + Ra)ᵀ K_G (v + Ra)`` is taken where it is stationary
+        in a: the shaft is hinged where the loads act, and its buckling load is Euler's.
+        """
+        forces = geometric @ self.free
+        block = self.free.T @ forces
+        terms = np.abs(self.free).T @ (abs(geometric) @ np.abs(self.free))
+        values, turn = np.linalg.eigh(0.5 * (block + block.T))
+        felt = np.abs(values) > _HELD * terms.max(initial=0.0)
+        columns = forces @ turn[:, felt]
+
+        def load(motion: np.ndarray) -> np.ndarray:
+            return columns @ ((columns.T @ motion) / values[felt]) - geometric @ motion
+
+        def size(motion: np.ndarray) -> float:
+            return np.sqrt(max(motion @ (self._stiffness @ motion), 0.0))
+
+        start = np.random.default_rng(_SEED).standard_normal(geometric.shape[0])
+        basis = loads = np.zeros((start.size, 0))
+        new = self.solve(start)[0]
+        for _ in range(_STEPS):
+            whole = size(new)
+            for _ in range(2):  # one pass loses orthogonality
+                new = new - basis @ (basis.T @ (self._stiffness @ new))
+            if size(new) <= _HELD * whole:
+                break
+            new = new / size(new)
+            basis, loads = np.column_stack([basis, new]), np.column_stack([loads, load(new)])
+            new = self.solve(loads[:, -1])[0]
+        return np.linalg.eigvalsh(basis.T @ loads)
 
 
 def _springs(
-    rotor: FiniteElementRotor, supports: Sequence[Spring]
+    rotor: FiniteElementRotor, supports: Sequence[Spring] | Spring
 ) -> tuple[sp.csr_array, np.ndarray]:
     """Return motions (m, 3n) of interfaces, and the stiffness of springs that hold them (m,)."""
+    listed = [supports] if hasattr(supports, "matrices") else supports
     axes = np.kron(np.eye(2), axes_of(rotor.axis))
     rows, stiffness = [sp.csr_array((0, rotor.nodes.size))], []
-    for one in supports:
+    for one in checks.items(listed, "supports", "a Support or a sequence of them"):
+        if not (hasattr(one, "matrices") and hasattr(one, "stiffness_varies")):
+            raise TypeError(f"supports: needs objects of kind Support, got {checks.shown(one)}")
         if one.stiffness_varies:
             raise ValueError(
                 f"supports: that at {one.interface!r} varies with the speed; the static solution "
@@ -145,20 +203,3 @@ def _springs(
         rows.append(sp.csr_array((axes @ directions[:, kept]).T) @ motion)
         stiffness += values[kept].tolist()
     return sp.csr_array(sp.vstack(rows)), np.array(stiffness)
-
-
-def check_balanced(
-    rotor: FiniteElementRotor, relief: InertiaRelief, load: np.ndarray, forces: np.ndarray
-) -> None:
-    """Refuse loads that supports, by their `forces` (3n,), do not take up."""
-    size = np.abs(relief.rigid).T @ np.abs(load)
-    left = np.abs(relief.rigid.T @ (load + forces))
-    if np.any(left > _UNBALANCED * np.maximum(size, 1e-300)):
-        e, total = rotor.axis.direction, (load + forces).reshape(-1, 3).sum(axis=0)
-        moment = np.cross(rotor.nodes - rotor.axis.point, (load + forces).reshape(-1, 3)).sum(0)
-        raise ValueError(
-            f"loads: nothing takes up {e @ total:.4g} N along the axis, "
-            f"{np.linalg.norm(total - e * (e @ total)):.4g} N across it, and a torque of "
-            f"{e @ moment:.4g} N m; give the other loads, or supports=[Support(…)] that hold it "
-            "(a 3 × 3 stiffness acts along the axis, too)"
-        )

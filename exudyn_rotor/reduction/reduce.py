@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache, partial
 
@@ -13,7 +13,7 @@ from exudyn.FEM import FEMinterface
 
 from exudyn_rotor import checks
 from exudyn_rotor.prestress.carrying import estimated_stiffness, with_chosen_prestress
-from exudyn_rotor.prestress.static_solution import relief_rotations
+from exudyn_rotor.prestress.static_solution import relief_rotation
 from exudyn_rotor.reduction.attachment import attachment_modes, inertial_modes
 from exudyn_rotor.reduction.component import (
     ModeBasis,
@@ -47,19 +47,36 @@ _NO_TURN = 1e-9  # of the largest: what rounding leaves of the rotation of a tra
 ModeSource = int | ModeBasis | FEMinterface | np.ndarray
 
 
-def reduce_rotor(
-    rotor: FiniteElementRotor,
+def reduce(
+    self: FiniteElementRotor,
     modes: ModeSource,
     *,
     stress: bool = False,
-    keep_shapes: bool = True,
     prestress: Prestress | bool | None = None,
 ) -> ReducedRotor:
-    """Reduce `rotor`; see :meth:`exudyn_rotor.SolidRotor.reduce`."""
+    """Reduce the rotor to component modes and its rigid motions.
+
+    Parameters
+    ----------
+    modes : int, ModeBasis, FEMinterface or ndarray, shape (3n, r)
+        A number of free eigenmodes (0 for a rigid rotor), a basis made by a function of
+        :mod:`exudyn_rotor.reduction`, a FEMinterface whose modes have been computed, or
+        displacement columns in mesh axes [m].
+    stress : bool, optional
+        Also recover stress modes, for stress sensors and contour pictures.
+    prestress : Prestress or bool, optional
+        Static stress for ``stiffening='full'``; True for :meth:`prestress` with its defaults,
+        False for none. By default that which the rotor carries or, where it has elements and
+        no loose parts, :meth:`prestress` with its defaults.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the modes are of another kind or of another mesh, or nothing is left of them.
+    """
     checks.flag(stress, "stress")
-    checks.flag(keep_shapes, "keep_shapes")
     with one_thread():  # waking others for products of thin matrices costs more than it gains
-        rotor = with_chosen_prestress(rotor, prestress)
+        rotor = with_chosen_prestress(self, prestress)
         unknown = prestress is None and rotor.carried_prestress is None
         network = estimated_stiffness(rotor) if unknown else None
     component = component_modes(rotor, modes)
@@ -69,7 +86,9 @@ def reduce_rotor(
         if basis.matrix.shape[1] == 0:
             raise ValueError("the reduced basis is empty: ask for at least one component mode")
         attached = cache(partial(_with_attachments, rotor, component, basis))
-        return _reduced(rotor, component, basis, stress, keep_shapes, attached, network)
+        reduced = _reduced(rotor, component, basis, network)
+        shapes = _shapes(rotor, component, basis, stress)
+    return replace(reduced, shapes=shapes, centrifugal=_centrifugal(rotor), attached=attached)
 
 
 def reduced_for_loads(
@@ -94,18 +113,16 @@ def reduced_for_loads(
     matrix = unit_columns(rotor, np.hstack(columns))
     known = None if spins or rotor.carried_prestress is not None else False
     basis = ModeBasis(matrix, numbered("static mode", matrix.shape[1]), rotor.nodes)
-    return reduce_rotor(rotor, basis, stress=stress, prestress=known)
+    return reduce(rotor, basis, stress=stress, prestress=known)
 
 
 def _reduced(
     rotor: FiniteElementRotor,
     component: ModeBasis,
     basis: OrthonormalBasis,
-    stress: bool,
-    keep_shapes: bool,
-    attached: Callable | None = None,
     network: sp.csr_array | None = None,
 ) -> ReducedRotor:
+    """Return the rotor in a basis, without shapes."""
     center = rotor.center_of_mass
     invariants = Invariants.of(
         rotor.nodes - center,
@@ -116,7 +133,6 @@ def _reduced(
         rotor.axis.direction,
         basis.momenta,
     )
-    _check_stable(basis.stiffness)
     invariants = _cleaned(invariants, basis)
     mode_mass = _mode_mass(component, basis)
     if rotor.mass_damping:
@@ -135,9 +151,6 @@ def _reduced(
         mode_mass=mode_mass,
         dropped=basis.dropped,
         grounded=rotor.grounded,
-        shapes=_shapes(rotor, component, basis, stress) if keep_shapes else None,
-        centrifugal=_centrifugal(rotor) if keep_shapes else None,
-        attached=attached,
     )
 
 
@@ -161,7 +174,7 @@ def _with_attachments(
             return None
         every = _joined(component, added)
         finer = _basis(rotor, every)
-        reduced = _reduced(rotor, every, finer, False, False)
+        reduced = _reduced(rotor, every, finer)
         return reduced, finer.matrix.T @ basis.momenta
 
 
@@ -239,28 +252,18 @@ def _cleaned(invariants: Invariants, basis: OrthonormalBasis) -> Invariants:
     )
 
 
-def _check_stable(stiffness: np.ndarray) -> None:
-    """Refuse a rotor that its stress at rest makes buckle, by the stiffness of flexible modes."""
-    if stiffness.size and stiffness.min() < -1e-9 * abs(stiffness).max():
-        raise ValueError(
-            f"a mode has the stiffness {stiffness.min():.4g} 1/s²: the rotor buckles under its "
-            "stress at rest; check sign and unit of prestress(stress=…) [Pa, tension positive]"
-        )
-
-
 def _stiffened(rotor: FiniteElementRotor, invariants: Invariants, basis: np.ndarray) -> Invariants:
     """Add what the carried prestress gives to the invariants of the basis."""
     carried = rotor.carried_prestress
     if carried is None:
         return invariants
-    K2 = basis.T @ (carried.per_square @ basis)
-    B, K4 = (
+    K2, K4 = (
         None if matrix is None else basis.T @ (matrix @ basis)
-        for matrix in (carried.euler, carried.per_fourth_power)
+        for matrix in (carried.per_square, carried.per_fourth_power)
     )
     if carried.by_loads is not None:
         invariants = replace(invariants, K0=_of_loads(rotor, invariants, basis))
-    return with_prestress(invariants, K2, B, relief_rotations(rotor), K4)
+    return with_prestress(invariants, K2, relief_rotation(rotor), K4)
 
 
 def _of_loads(rotor: FiniteElementRotor, invariants: Invariants, basis: np.ndarray) -> np.ndarray:
@@ -284,9 +287,7 @@ def _centrifugal(rotor: FiniteElementRotor) -> Centrifugal | None:
     carried = rotor.carried_prestress
     if carried is None or carried.displacement is None:
         return None
-    return Centrifugal(
-        carried.displacement, carried.stress, carried.yield_stress, carried.constant_stress
-    )
+    return Centrifugal(carried.displacement, carried.stress, carried.yield_stress)
 
 
 def _interfaces(rotor: FiniteElementRotor, basis: np.ndarray) -> dict[str, ReducedInterface]:

@@ -145,8 +145,6 @@ class Centrifugal:
         Per ω² at the nodes, components xx, yy, zz, yz, xz, xy, mesh axes [Pa s²].
     yield_stress : float or None
         Yield stress of the material [Pa].
-    constant_stress : ndarray or None, shape (n, 6)
-        Stress at rest, which does not depend on the speed, components as in `stress` [Pa].
 
     Raises
     ------
@@ -157,32 +155,18 @@ class Centrifugal:
     displacement: np.ndarray | None = None
     stress: np.ndarray | None = None
     yield_stress: float | None = None
-    constant_stress: np.ndarray | None = None
 
     def __post_init__(self) -> None:
         fields = {}
         if self.displacement is not None:
             name = "centrifugal: displacement"
             fields["displacement"] = checks.vector(self.displacement, name, "m s²", size=None)
-        for name in ("stress", "constant_stress"):
-            if getattr(self, name) is not None:
-                values = checks.array(getattr(self, name), f"centrifugal: {name}", shape=(None, 6))
-                fields[name] = values
+        if self.stress is not None:
+            fields["stress"] = checks.array(self.stress, "centrifugal: stress", shape=(None, 6))
         if self.yield_stress is not None:
             name = "centrifugal: yield_stress"
             fields["yield_stress"] = checks.number(self.yield_stress, name, "Pa", above=0.0)
         checks.keep(self, **fields)
-
-    def stress_at(self, speed: float) -> np.ndarray | None:
-        """Return the static stress at a spin speed [rad/s], with that at rest, (n, 6) [Pa].
-
-        None where the stress per ω² is not known.
-        """
-        speed = checks.number(speed, "speed", "rad/s")
-        if self.stress is None:
-            return None
-        by_spin = speed**2 * self.stress
-        return by_spin if self.constant_stress is None else self.constant_stress + by_spin
 
 
 _SAME_DIRECTION = 1e-9  # of unit vectors: a file keeps them to the last bit
@@ -234,7 +218,7 @@ class ReducedRotor:
     >>> from exudyn_rotor import SolidRotor
     >>> spring = 1e6 * np.kron([[1, -1], [-1, 1]], np.diag([0, 0, 1]))
     >>> ends = [[0, 0, 0], [0, 0, 1]]
-    >>> rotor = SolidRotor.from_matrices(np.eye(6), spring, ends, "z", grounded=False)
+    >>> rotor = SolidRotor.from_matrices(np.eye(6), spring, ends, "z")
     >>> reduced = rotor.reduce(1)
     >>> reduced
     ReducedRotor(5 rigid + 1 flexible modes, 2 kg, interfaces: none)
@@ -293,7 +277,7 @@ class ReducedRotor:
         if self.centrifugal is not None:
             checks.instance(self.centrifugal, "centrifugal", Centrifugal)
             nodes = 0 if self.shapes is None else len(self.shapes.nodes)
-            for name, width in (("displacement", 3), ("stress", 6), ("constant_stress", 6)):
+            for name, width in (("displacement", 3), ("stress", 6)):
                 field = getattr(self.centrifugal, name)
                 if field is not None and field.size != width * nodes:
                     raise ValueError(f"centrifugal: {name}: needs the {nodes} nodes of the shapes")
@@ -435,15 +419,13 @@ class ReducedRotor:
         return speed**2 * self._static("displacement").reshape(-1, 3)
 
     def static_stress(self, speed: float) -> np.ndarray:
-        """Return the static stress at a spin speed ω [rad/s], shape (n, 6) [Pa].
+        """Return the static stress by the rotation at a spin speed ω [rad/s], shape (n, 6) [Pa].
 
-        That of the rotation, and the stress at rest if the prestress was given one. Components
-        xx, yy, zz, yz, xz, xy at the nodes in mesh axes; accuracy and errors as
+        Components xx, yy, zz, yz, xz, xy at the nodes in mesh axes; accuracy and errors as
         :meth:`static_displacement`.
         """
         speed = checks.number(speed, "speed", "rad/s")
-        self._static("stress")
-        return self.centrifugal.stress_at(speed)
+        return speed**2 * self._static("stress")
 
     @cached_property
     def unshown_stress(self) -> np.ndarray:
@@ -464,7 +446,7 @@ class ReducedRotor:
     def stress_of(self, coordinates: ArrayLike, speed: float) -> np.ndarray:
         """Return the stress of coordinates of the columns, shape (n, 6) [Pa].
 
-        With the static stress that the columns do not show, and the stress at rest.
+        With the static stress that the columns do not show.
 
         Parameters
         ----------
@@ -479,9 +461,7 @@ class ReducedRotor:
         """
         coordinates = checks.vector(coordinates, "coordinates", size=self.size)
         speed = checks.number(speed, "speed", "rad/s")
-        constant = getattr(self.centrifugal, "constant_stress", None)
-        stress = self._stress_columns @ coordinates + speed**2 * self.unshown_stress
-        return stress if constant is None else stress + constant
+        return self._stress_columns @ coordinates + speed**2 * self.unshown_stress
 
     @property
     def _stress_columns(self) -> np.ndarray:

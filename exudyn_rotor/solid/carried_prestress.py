@@ -23,34 +23,22 @@ class Prestress:
     Attributes
     ----------
     matrix : scipy.sparse.csr_array, shape (3n, 3n)
-        Stiffness per ω², ordered x0 y0 z0 x1 …: K_G of the centrifugal stress, with that of a
-        hub's forces [N s²/m].
+        Stiffness per ω², ordered x0 y0 z0 x1 …: K_G of the centrifugal stress [N s²/m].
     nodes : ndarray, shape (n, 3)
         Positions of the mesh it belongs to [m].
-    euler : scipy.sparse.csr_array or None
-        K_G per ω̇, of the stress by the Euler load ``−M ẽx`` [N s²/m].
     displacement : ndarray or None, shape (3n,)
-        Static centrifugal displacement per ω², mesh axes [m s²].
+        Static centrifugal displacement per ω², mesh axes [m s²]; None for an imported matrix.
     stress : ndarray or None, shape (n, 6)
         Its stress at the nodes per ω², xx, yy, zz, yz, xz, xy in mesh axes [Pa s²].
-    constant : scipy.sparse.csr_array or None
-        K_G of a stress that does not depend on the speed [N/m].
-    constant_stress : ndarray or None, shape (n, 6)
-        That stress at the nodes, in equilibrium, components as in `stress` [Pa].
     initial_displacement : tuple of two scipy.sparse.csr_array, or None
         K_u per ω² and K_uu per ω⁴ of the static displacement [N s²/m, N s⁴/m].
-    balanced : bool
-        True if inertia forces balance the load on every rigid motion that the rotor's stiffness
-        leaves free; False if held nodes take it up.
     yield_stress : float or None
         Yield stress of the material [Pa].
-    load : ndarray or None, shape (3n,)
-        Centrifugal load per ω² that it was computed for [N s²]; None for an imported matrix.
-    hub : ndarray of int or None
-        Nodes that a rigid hub held in the static solution.
     by_loads : scipy.sparse.csr_array or None
         K_G of the stress by given loads [N/m]. It resists tilts of the whole rotor, too, as loads
         keep their direction, so that it is no part of the rotor's own stiffness.
+    buckling_factor : float or None
+        Multiple of the given loads at which the rotor buckles; None where it never does.
     reactions : ndarray or None, shape (3n,)
         Nodal forces per ω² of the supports that hold the rotor under the centrifugal load [N s²].
 
@@ -73,17 +61,12 @@ class Prestress:
 
     matrix: sp.csr_array
     nodes: np.ndarray
-    euler: sp.csr_array | None = None
     displacement: np.ndarray | None = None
     stress: np.ndarray | None = None
-    constant: sp.csr_array | None = None
     initial_displacement: tuple[sp.csr_array, sp.csr_array] | None = None
-    balanced: bool = True
     yield_stress: float | None = None
-    constant_stress: np.ndarray | None = None
-    load: np.ndarray | None = None
-    hub: np.ndarray | None = None
     by_loads: sp.csr_array | None = None
+    buckling_factor: float | None = None
     reactions: np.ndarray | None = None
 
     def __post_init__(self) -> None:
@@ -92,37 +75,23 @@ class Prestress:
         checked = {
             "nodes": nodes,
             "matrix": matrices.as_matrix("prestress matrix", self.matrix, count),
-            "balanced": checks.flag(self.balanced, "balanced"),
         }
-        for name in ("euler", "constant", "by_loads"):
-            if getattr(self, name) is not None:
-                checked[name] = matrices.as_matrix(f"{name} matrix", getattr(self, name), count)
+        if self.by_loads is not None:
+            checked["by_loads"] = matrices.as_matrix("by_loads matrix", self.by_loads, count)
         if self.initial_displacement is not None:
-            pair = self.initial_displacement
-            if not isinstance(pair, tuple | list) or len(pair) != 2:
-                raise TypeError(
-                    "initial_displacement: needs two matrices, K_u and K_uu, got "
-                    f"{checks.shown(pair)}"
-                )
+            both = checks.items(self.initial_displacement, "initial_displacement", "K_u and K_uu")
+            if len(both) != 2:
+                raise ValueError(f"initial_displacement: needs K_u and K_uu, got {len(both)}")
             checked["initial_displacement"] = tuple(
-                matrices.as_matrix("initial_displacement matrix", one, count) for one in pair
+                matrices.as_matrix("initial_displacement matrix", one, count) for one in both
             )
-        shapes = {
-            "displacement": (3 * count,),
-            "load": (3 * count,),
-            "reactions": (3 * count,),
-            "stress": (count, 6),
-            "constant_stress": (count, 6),
-        }
+        shapes = {"displacement": (3 * count,), "reactions": (3 * count,), "stress": (count, 6)}
         for name, shape in shapes.items():
             if getattr(self, name) is not None:
                 checked[name] = checks.array(getattr(self, name), name, shape=shape)
-        if self.hub is not None:
-            checked["hub"] = checks.whole_numbers(self.hub, "hub", most=count - 1)
-        if self.yield_stress is not None:
-            checked["yield_stress"] = checks.number(
-                self.yield_stress, "yield_stress", "Pa", above=0.0
-            )
+        for name, unit in (("yield_stress", "Pa"), ("buckling_factor", "")):
+            if getattr(self, name) is not None:
+                checked[name] = checks.number(getattr(self, name), name, unit, above=0.0)
         checks.keep(self, **checked)
 
     @property
@@ -138,14 +107,7 @@ class Prestress:
         return None if self.initial_displacement is None else self.initial_displacement[1]
 
     @classmethod
-    def from_matrix(
-        cls,
-        matrix: Any,
-        nodes: ArrayLike,
-        euler: Any = None,
-        *,
-        initial_displacement: tuple[Any, Any] | None = None,
-    ) -> Prestress:
+    def from_matrix(cls, matrix: Any, nodes: ArrayLike) -> Prestress:
         """Take the geometric stiffness of an imported model.
 
         Parameters
@@ -155,22 +117,17 @@ class Prestress:
             without the spin softening ``−ẽᵀMẽ`` [N s²/m].
         nodes : array_like, shape (n, 3)
             Positions of the mesh, those of the rotor [m].
-        euler : array_like or sparse, shape (3n, 3n), optional
-            The same for the Euler load ``−M ẽx`` of an angular acceleration of 1 rad/s².
-        initial_displacement : tuple of two such matrices, optional
-            ``K_u`` and ``K_uu``, the parts of the tangent stiffness for 1 rad/s that are linear
-            and quadratic in the static displacement [N s²/m, N s⁴/m].
 
         Raises
         ------
         TypeError
             If an array does not hold numbers.
         ValueError
-            If a shape does not fit, a matrix is not symmetric, or an entry is not finite.
+            If a shape does not fit, the matrix is not symmetric, or an entry is not finite.
         """
-        return cls(matrix, nodes, euler, initial_displacement=initial_displacement)
+        return cls(matrix, nodes)
 
     def __repr__(self) -> str:
-        names = ("euler", "constant", "by_loads", "initial_displacement")
+        names = ("by_loads", "initial_displacement")
         given = [f", {name}" for name in names if getattr(self, name) is not None]
         return f"Prestress({len(self.nodes)} nodes{''.join(given)})"

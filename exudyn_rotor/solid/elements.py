@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
@@ -15,7 +15,6 @@ from exudyn_rotor.solid.shapes import KINDS, ElementKind, Rule
 
 # Components xx, yy, zz, yz, xz, xy as entries of the 3 × 3 tensor.
 _FIRST, _SECOND = np.array([0, 1, 2, 1, 0, 0]), np.array([0, 1, 2, 2, 2, 1])
-_TENSOR = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])
 _CHUNK = 4_000_000  # numbers in the largest array of a step
 
 
@@ -52,8 +51,6 @@ class SolidElements:
         Lamé parameters λ, μ of every region [Pa].
     densities : ndarray, shape (regions,)
         [kg/m³].
-    free : scipy.sparse.csr_array, optional
-        Takes held directions of clamped nodes out of displacements, shape (3n, 3n).
     """
 
     nodes: np.ndarray
@@ -61,7 +58,6 @@ class SolidElements:
     materials: Sequence[str]
     lame: np.ndarray
     densities: np.ndarray
-    free: sp.csr_array | None = None
 
     @classmethod
     def of_materials(
@@ -88,11 +84,11 @@ class SolidElements:
                 yield (self.densities[part.regions][:, None] * part.weights) @ products
 
         matrix = self._assembled(entries, 1)
-        return self._without_held(matrices.in_all_directions(matrix))
+        return matrices.in_all_directions(matrix)
 
     def stiffness_matrix(self) -> sp.csr_array:
         """Return the stiffness matrix (3n, 3n)."""
-        return self._without_held(self._of_strains(None, None))
+        return self._of_strains(None, None)
 
     def geometric_stiffness(self, displacement: np.ndarray) -> sp.csr_array:
         """Return ``vᵀ K_G u = ∫ σ⁰ : (∇uᵀ∇v) dV`` with σ⁰ of a displacement (3n,).
@@ -100,21 +96,16 @@ class SolidElements:
         σ⁰ is Hooke's stress of its linear strain.
         """
         static = self._static(displacement)
-        return self._without_held(self._of_stress(lambda part: part.stress(static, self.lame)))
 
-    def geometric_stiffness_of_stress(self, stress: np.ndarray) -> sp.csr_array:
-        """Return the same of a nodal stress (n, 6), interpolated by the shape functions.
+        def entries(block: Block) -> Iterator[np.ndarray]:
+            for part in self._parts(block, block.shape.stiffness_rule):
+                stress = part.weights[..., None, None] * part.stress(static, self.lame)
+                weighted = part.slopes @ stress
+                yield np.einsum("eqic,eqjc->eij", weighted, part.slopes, optimize=True)
 
-        Components xx, yy, zz, yz, xz, xy in mesh axes [Pa].
-        """
-        return self._without_held(self._of_nodal_stress(stress))
-
-    def load_of_stress(self, stress: np.ndarray) -> np.ndarray:
-        """Return the nodal forces ``v · r = ∫ σ : ∇v dV`` of a nodal stress (n, 6), shape (3n,).
-
-        The positions are in the space of the displacements and ``∇x = I``, so ``r = K_G x``.
-        """
-        return self._of_nodal_stress(stress) @ self.nodes.ravel()
+        # it acts on each direction by itself, the same on all
+        matrix = self._assembled(entries, 1)
+        return matrices.in_all_directions(matrix)
 
     def initial_displacement_stiffness(self, displacement: np.ndarray) -> sp.csr_array:
         """Return ``∫ E₁(v) : C : ε(u) + ε(v) : C : E₁(u) dV``, ``E₁(u) = sym(∇u⁰ᵀ∇u)``.
@@ -124,7 +115,7 @@ class SolidElements:
         ``E = sym ∇u + ½ ∇uᵀ∇u``. Parameters as there.
         """
         half = self._of_strains(self._static(displacement), None)
-        return self._without_held(sp.csr_array(half + half.T))
+        return sp.csr_array(half + half.T)
 
     def squared_displacement_stiffness(self, displacement: np.ndarray) -> sp.csr_array:
         """Return ``∫ E₁(v) : C : E₁(u) dV``, the tangent's part of second order in u⁰.
@@ -132,7 +123,7 @@ class SolidElements:
         Symbols and parameters of :meth:`initial_displacement_stiffness`.
         """
         static = self._static(displacement)
-        return self._without_held(self._of_strains(static, static))
+        return self._of_strains(static, static)
 
     def nodal_stress(self, displacements: np.ndarray) -> np.ndarray:
         """Return the stress (n, 6, k) of displacement columns (3n, k).
@@ -194,10 +185,6 @@ class SolidElements:
             for i, name in enumerate(self.materials)
         ]
 
-    def holding(self, free: sp.csr_array) -> SolidElements:
-        """Return the elements with more directions held, which the projection `free` takes out."""
-        return replace(self, free=free if self.free is None else sp.csr_array(self.free @ free))
-
     def interpolation(self) -> sp.csr_array | None:
         """Return what gives all displacements (3n,) that are linear in every element.
 
@@ -216,8 +203,7 @@ class SolidElements:
         means = sp.csr_array(
             (np.full(every.size, 0.5), (every, ends.ravel())), shape=(len(ends), vertices)
         )
-        linear = sp.csr_array(sp.kron(means, sp.eye_array(3), format="csr"))
-        return linear if self.free is None else sp.csr_array(self.free @ linear)
+        return matrices.in_all_directions(means)
 
     def _of_strains(self, first: np.ndarray | None, second: np.ndarray | None) -> sp.csr_array:
         """Return ``∫ E(v) : C : E(u) dV``, of E = ε for None, else E₁ of nodal displacements."""
@@ -236,20 +222,6 @@ class SolidElements:
                 yield pairs.transpose(0, 1, 3, 2, 4).reshape(len(left), -1, 9)
 
         return self._assembled(entries, 3)
-
-    def _of_nodal_stress(self, stress: np.ndarray) -> sp.csr_array:
-        values = checks.array(stress, "stress", "Pa", shape=(len(self.nodes), 6))
-        return self._of_stress(lambda part: part.interpolated(values)[..., _TENSOR])
-
-    def _of_stress(self, stress: Callable[[_Part], np.ndarray]) -> sp.csr_array:
-        """Return K_G of a stress tensor; it acts on each direction by itself, the same on all."""
-
-        def entries(block: Block) -> Iterator[np.ndarray]:
-            for part in self._parts(block, block.shape.stiffness_rule):
-                weighted = part.slopes @ (part.weights[..., None, None] * stress(part))
-                yield np.einsum("eqic,eqjc->eij", weighted, part.slopes, optimize=True)
-
-        return matrices.in_all_directions(self._assembled(entries, 1))
 
     def _assembled(
         self, entries: Callable[[Block], Iterator[np.ndarray]], dim: int
@@ -275,7 +247,7 @@ class SolidElements:
     def _parts(self, block: Block, rule: Rule) -> Iterator[_Part]:
         """Return a block's elements at the points of a rule, some at a time."""
         points, weights = rule
-        values, slopes = block.shape.values(points), block.shape.slopes(points)
+        slopes = block.shape.slopes(points)
         step = max(1, _CHUNK // (27 * slopes[..., 0].size))
         for start in range(0, len(block.nodes), step):
             nodes = block.nodes[start : start + step]
@@ -283,32 +255,24 @@ class SolidElements:
             sizes = np.linalg.det(jacobians)
             across = np.einsum("qnc,eqcx->eqnx", slopes, np.linalg.inv(jacobians), optimize=True)
             regions = block.regions[start : start + step]
-            yield _Part(nodes, regions, np.abs(sizes) * weights, values, across)
+            yield _Part(nodes, regions, np.abs(sizes) * weights, across)
 
     def _static(self, displacement: np.ndarray) -> np.ndarray:
         return checks.array(displacement, "displacement", shape=(self.nodes.size,)).reshape(-1, 3)
-
-    def _without_held(self, matrix: sp.csr_array) -> sp.csr_array:
-        return matrix if self.free is None else sp.csr_array(self.free.T @ matrix @ self.free)
 
 
 @dataclass(frozen=True, eq=False)
 class _Part:
     """Some elements of a block at integration points.
 
-    Nodes (e, n), regions (e,), weights (e, q) [m³], shape functions (q, n), and their slopes
-    ∂N_j/∂x_c (e, q, n, 3).
+    Nodes (e, n), regions (e,), weights (e, q) [m³], and the slopes ∂N_j/∂x_c (e, q, n, 3) of the
+    shape functions.
     """
 
     nodes: np.ndarray
     regions: np.ndarray
     weights: np.ndarray
-    values: np.ndarray
     slopes: np.ndarray
-
-    def interpolated(self, values: np.ndarray) -> np.ndarray:
-        """Return nodal values (n, c) at the points, shape (e, q, c)."""
-        return self.values @ values[self.nodes]
 
     def gradient(self, displacement: np.ndarray) -> np.ndarray:
         """Return ∂u_k/∂x_c of nodal displacements (n, 3), shape (e, q, 3, 3)."""

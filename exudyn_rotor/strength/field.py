@@ -50,8 +50,6 @@ class StressField(Result):
         Static stress per ω² that the modes do not show [Pa s²]; zero without a prestress.
     has_static : bool
         Whether the rotor was reduced with a prestress, so that the static stress is complete.
-    constant : ndarray, shape (n, 6)
-        Stress at rest [Pa]; zero unless the prestress was given one.
 
     Examples
     --------
@@ -61,8 +59,7 @@ class StressField(Result):
     >>> nodes = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
     >>> along = np.zeros((4, 6, 1))
     >>> along[:, 2] = 1.0
-    >>> none = np.zeros((4, 6))
-    >>> field = StressField(nodes, [[0, 1, 2]], along, none, True, none)
+    >>> field = StressField(nodes, [[0, 1, 2]], along, rest=np.zeros((4, 6)), has_static=True)
     >>> print(field.at([2e6], speed=0.0)[0])
     [      0.       0. 2000000.       0.       0.       0.]
     """
@@ -72,7 +69,6 @@ class StressField(Result):
     modes: np.ndarray = numbers("nodes", 6, "modes")
     rest: np.ndarray = numbers("nodes", 6)
     has_static: bool
-    constant: np.ndarray = numbers("nodes", 6)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -113,15 +109,12 @@ class StressField(Result):
                 "with a model from NGSolve, and keep the shapes"
             )
         columns = reduced.shapes.stress
-        none = np.zeros(columns.shape[:2])
-        constant = getattr(reduced.centrifugal, "constant_stress", None)
         return cls(
             positions=reduced.shapes.nodes,
             triangles=reduced.shapes.triangles,
             modes=columns @ selection.T,
             rest=reduced.unshown_stress,
             has_static=getattr(reduced.centrifugal, "stress", None) is not None,
-            constant=none if constant is None else constant,
         )
 
     def at(
@@ -169,7 +162,7 @@ class StressField(Result):
         if not isinstance(nodes, slice):
             nodes = checks.whole_numbers(nodes, "nodes", most=len(self.positions) - 1)
         dynamic = np.einsum("nck,sk->snc", self.modes[nodes], values, optimize=True)
-        return dynamic + self.constant[nodes] + (speed**2)[:, None, None] * self.rest[nodes]
+        return dynamic + (speed**2)[:, None, None] * self.rest[nodes]
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return a row for each modal coordinate; `units` change nothing."""

@@ -165,7 +165,7 @@ def stress_history(
     >>> nodes = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
     >>> along = np.zeros((4, 6))
     >>> along[:, 2] = 1.0
-    >>> field = StressField(nodes, [[0, 1, 2]], along[:, :, None], along, True, 0.0 * along)
+    >>> field = StressField(nodes, [[0, 1, 2]], along[:, :, None], along, True)
     >>> history = stress_history(field, [0.0, 1.0], [[5.0], [-2.0]], speed=[0.0, 3.0], count=1)
     >>> print(history.peak, history.von_mises[:, 0])
     [7. 7. 7. 7.] [5. 7.]

@@ -1,6 +1,6 @@
 """The fixed spin axis, and algebra of block-nodal vectors: x0 y0 z0 x1 y1 z1 …
 
-The functions write out the matrices that the paper prints (Φ, ẽ_bd, x̃, Ψ̃). Source of the equation
+The functions write out the matrices that the paper prints (Φ, ẽ_bd). Source of the equation
 numbers: Zwölfer, Rasmussen, Santos, "Rotordynamics Local Frame Formulations for 3D Continuum Finite
 Elements", SSRN 4830498.
 """
@@ -55,22 +55,6 @@ def rotations(nodes: Array, center: Array) -> Array:
     arms = np.asarray(nodes, dtype=float) - np.asarray(center, dtype=float)
     columns = np.cross(np.eye(3)[:, None, :], arms[None, :, :])
     return columns.reshape(3, -1).T
-
-
-def tilde(nodal: Array) -> Array:
-    """Return ``x̃`` (3n × 3): the skew matrices of all nodal vectors, stacked (9)."""
-    return np.vstack([skew(vector) for vector in np.asarray(nodal, float).reshape(-1, 3)])
-
-
-def tilde_basis(modes: Array | sp.csr_array) -> Array | sp.csr_array:
-    """Return ``Ψ̃`` (3n × 3m): the tilde matrix of every mode, side by side (30).
-
-    Sparse where the modes are.
-    """
-    kron = sp.kron if sp.issparse(modes) else np.kron
-    units = np.eye(3)
-    whole = sum(kron(modes[axis::3], skew(units[axis])) for axis in range(3))
-    return sp.csr_array(whole) if sp.issparse(modes) else whole
 
 
 def coupled(matrix: sp.csr_array) -> np.ndarray:

@@ -57,20 +57,19 @@ class SumMatrix:
 class FullStiffening:
     """Centrifugal stiffening of a full model."""
 
-    K2: sp.csr_array  # (3n, 3n) Sparse parts per ω² and per ω̇
-    B: sp.csr_array
-    tilt: Factors  # low-rank parts ``VᵀWV`` of the same; W is zero where there is none
+    K2: sp.csr_array  # (3n, 3n) Sparse part per ω²
+    tilt: Factors  # low-rank parts ``VᵀWV`` per ω² and per ω̇; W is zero where there is none
     euler: Factors
     K4: sp.csr_array | None = None  # stiffness per ω⁴
 
 
 def full_stiffening(
-    invariants: Invariants, level: str, turns: np.ndarray | None = None
+    invariants: Invariants, level: str, turn: np.ndarray | None = None
 ) -> FullStiffening:
     """Return the stiffening of a level; the full form of ``theory.stiffening.stiffening``.
 
-    At the level 'full' the sparse invariants have the matrices of a prestress in K2, B and K4, and
-    `turns` (2, 3) are the angular accelerations of its inertia relief.
+    At the level 'full' the sparse invariants have the matrices of a prestress in K2 and K4, and
+    `turn` (3,) is the angular acceleration of its inertia relief.
     """
     zero, e = sp.csr_array(invariants.C.shape), skew(invariants.direction)
 
@@ -79,12 +78,10 @@ def full_stiffening(
         return V, share * W
 
     if level == "full":
-        tilt, known = factors(skew(turns[0]), -1.0), invariants.B is not None
-        euler = factors(skew(turns[1]), -1.0) if known else factors(e, 1.0)
-        B = invariants.B if known else zero
-        return FullStiffening(invariants.K2, B, tilt, euler, invariants.K4)
+        tilt = factors(skew(turn), -1.0)
+        return FullStiffening(invariants.K2, tilt, factors(e, 1.0), invariants.K4)
     share = 0.0 if level == "none" else 1.0
-    return FullStiffening(zero, zero, factors(-e @ e, -share), factors(e, share))
+    return FullStiffening(zero, factors(-e @ e, -share), factors(e, share))
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,7 +161,8 @@ class FullMotion(Motion):
         plane: ArrayLike | None = None,
         gravity: ArrayLike | None = None,
     ) -> None:
-        sparse = Stiffening(second_order.K2, second_order.B, second_order.K4)
+        none = sp.csr_array(second_order.K2.shape)
+        sparse = Stiffening(second_order.K2, none, second_order.K4)
         super().__init__(invariants, formulation, sparse, orientation, plane, gravity)
         terms, (V, W) = self.spin_terms, second_order.tilt
         euler = (second_order.euler,)

@@ -20,7 +20,7 @@ from exudyn_rotor.theory.axis import skew, translations, turned
 
 Matrix = np.ndarray | sp.csr_array
 
-_OPTIONAL = ("K2", "B", "K4", "K2_estimated", "H", "K0")
+_OPTIONAL = ("K2", "K4", "K2_estimated", "H", "K0")
 _UNIT = 1e-9  # a direction may differ from unit length by this much
 EPSILON = np.array([skew(unit) for unit in np.eye(3)])  # ε_aik of (a × b)_i = ε_aik a_a b_k
 
@@ -52,8 +52,8 @@ class Invariants:
         ``M*_ψ̃ψ = ΨᵀMẽ_bdΨ`` (80), skew-symmetric.
     C : shape (k, k)
         ``M*_ψ̃ψ̃ = (ẽ_bdΨ)ᵀM(ẽ_bdΨ)`` (81), symmetric and non-negative.
-    K2, B : shape (k, k), optional
-        Stiffness per ω² and per ω̇ of a static prestress, see
+    K2 : shape (k, k), optional
+        Stiffness per ω² of a static prestress, see
         :class:`exudyn_rotor.theory.stiffening.Stiffening`; None where none was computed.
     K4 : shape (k, k), optional
         Stiffness per ω⁴ of a static displacement, as there.
@@ -70,7 +70,7 @@ class Invariants:
     ------
     TypeError, ValueError
         If shapes do not fit, an entry is not finite, the mass is not positive or M not positive
-        definite, the direction is no unit vector, M, K, C, J or a matrix that is given of K2, B,
+        definite, the direction is no unit vector, M, K, C, J or a matrix that is given of K2,
         K4, K2_estimated, H and K0 is not symmetric, or G not skew-symmetric. Sparse matrices are
         taken as they come from a solid rotor, which has checked them: of them only shape and
         entries are looked at.
@@ -101,7 +101,6 @@ class Invariants:
     G: Matrix
     C: Matrix
     K2: Matrix | None = None
-    B: Matrix | None = None
     K4: Matrix | None = None
     K2_estimated: Matrix | None = None
     H: Matrix | None = None

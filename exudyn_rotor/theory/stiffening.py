@@ -215,32 +215,22 @@ def stiffening(invariants: Invariants, level: str) -> Stiffening:
         return Stiffening(K2=-_work_hessian(invariants, -e @ e), B=_work_hessian(invariants, e))
     if invariants.K2 is None:
         raise ValueError(NO_PRESTRESS)
-    # of an unknown Euler field only what rigid rotations feel
-    B = _work_hessian(invariants, e) if invariants.B is None else invariants.B
-    return Stiffening(invariants.K2, B, invariants.K4)
+    # of the Euler field what rigid rotations feel, which is all of it where nothing holds the rotor
+    return Stiffening(invariants.K2, _work_hessian(invariants, e), invariants.K4)
 
 
 def with_prestress(
-    invariants: Invariants,
-    K2: np.ndarray,
-    B: np.ndarray | None,
-    relief: np.ndarray,
-    K4: np.ndarray | None = None,
+    invariants: Invariants, K2: np.ndarray, relief: np.ndarray, K4: np.ndarray | None = None
 ) -> Invariants:
     """Return dense invariants with the stiffness of a static prestress.
 
-    K2, B and K4 are ``Ψᵀ(K_G + K_u)Ψ`` per ω² and ω̇, and ``ΨᵀK_uuΨ`` per ω⁴. `relief` (2, 3) are
-    angular accelerations per ω² and ω̇ whose inertia balanced the two loads. That part of a load
-    strains nothing, and does the work on rigid rotations that ``'tilt'`` gives it.
+    K2 and K4 are ``Ψᵀ(K_G + K_u)Ψ`` per ω² and ``ΨᵀK_uuΨ`` per ω⁴. `relief` (3,) is the angular
+    acceleration per ω² whose inertia balanced the load. That part of the load strains nothing, and
+    does the work on rigid rotations that ``'tilt'`` gives it.
     """
-
-    def relieved(matrix: np.ndarray, turn: np.ndarray) -> np.ndarray:
-        return 0.5 * (matrix + matrix.T) - _work_hessian(invariants, skew(turn))
-
     return replace(
         invariants,
-        K2=relieved(K2, relief[0]),
-        B=None if B is None else relieved(B, relief[1]),
+        K2=0.5 * (K2 + K2.T) - _work_hessian(invariants, skew(relief)),
         K4=None if K4 is None else 0.5 * (K4 + K4.T),
     )
 

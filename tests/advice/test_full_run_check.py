@@ -34,7 +34,7 @@ SCENES = {
         "stiffening": "full",
     },
 }
-OF_MODES = {"unresisted load", "stiffening", "top modes", "residual", "axial force"}
+OF_MODES = {"unresisted load", "stiffening", "top modes", "residual"}
 
 
 @pytest.fixture(scope="module")
@@ -54,6 +54,9 @@ def test_rows_are_those_of_all_modes(solid, scene):
     modes = check_run(run(solid, solid.reduce(54), **SCENES[scene]), warn=False)
     assert {row.name for row in whole.rows} == {row.name for row in modes.rows} - OF_MODES
     for row in whole.rows:
+        if row.name == "axial force":  # there is none, and each measure rounds by itself
+            assert row.value < 1e-3
+            continue
         assert row.value == pytest.approx(modes[row.name].value, rel=3e-3, abs=1e-15)
         assert row.ok == modes[row.name].ok
 

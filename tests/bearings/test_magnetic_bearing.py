@@ -175,7 +175,7 @@ def test_scene_and_list_have_the_same_exponents(kind, turn, rotation):
     # a heavy spot would turn journals on a circle, on which magnets have other slopes
     reduced, supports = rings(turn, 0.0 if kind == "magnets" else 1e-3), [*KINDS[kind], AXIAL]
     mbs, body, added = on_supports(reduced, supports, rotation, spin=9.0)
-    found = linear_model(mbs, body=body, about="given")
+    found = linear_model(mbs, body=body)
     # differences of Exudyn's forces give the slopes of the magnets
     assert distance(found, linear_model(reduced, supports=supports), SPEED) < 1e-7
     assert added[0].uses_python
@@ -211,16 +211,13 @@ def test_magnets_pull_by_the_square_of_current_over_gap():
     k, i_0, s_0 = 1e-5, 2.0, 4e-4
     i, x = 0.7, 5e-5
     pull = k * (((i_0 + i) / (s_0 - x)) ** 2 - ((i_0 - i) / (s_0 + x)) ** 2)
-    assert MAGNETS.force(i, x) == pytest.approx(pull, rel=1e-14)
-    assert MAGNETS.force(50.0, 0.0) == pytest.approx(k * (6.0 / s_0) ** 2, rel=1e-14)
+    assert MAGNETS.law(i, x) == pytest.approx(pull, rel=1e-14)
+    assert MAGNETS.law(50.0, 0.0) == pytest.approx(k * (6.0 / s_0) ** 2, rel=1e-14)
     for current, place in ((0.0, 0.0), (i, x), (-3.0, -x), (5.0, x)):
         step = 1e-6
         found = (
-            (MAGNETS.force(current + step, place) - MAGNETS.force(current - step, place)) / step,
-            (
-                MAGNETS.force(current, place + step * s_0)
-                - MAGNETS.force(current, place - step * s_0)
-            )
+            (MAGNETS.law(current + step, place) - MAGNETS.law(current - step, place)) / step,
+            (MAGNETS.law(current, place + step * s_0) - MAGNETS.law(current, place - step * s_0))
             / (step * s_0),
         )
         np.testing.assert_allclose(MAGNETS.slopes(current, place), 0.5 * np.array(found), rtol=1e-7)

@@ -249,7 +249,7 @@ RIGHT = {
     "number": "Support.stiffness Support.damping tilt_stiffness tilt_damping",
     "empty": """
         eulerParametersRef rotationMatrixRef triangles variation
-        BaseRecord.integrals.times PIDController.transfer.frequencies Prestress.hub
+        BaseRecord.integrals.times
         PeriodicResponse.displacement.time
         Spectra.plot.orders grooved_pads.grooves
         keep_modes.indices""",
@@ -264,7 +264,7 @@ RIGHT = {
 WRONG = {
     "negative": """
         anticipated_cross_coupling.speed from_grade.speed permissible_unbalance.speed
-        prestress.speed sensitivity.speed stability_level_one.speed stability_threshold.speed
+        sensitivity.speed stability_level_one.speed stability_threshold.speed
         standard_unbalances.speed""",
     "unknown": """
         add_drive.at add_interface_sensor.interface add_sensor.name
@@ -289,9 +289,10 @@ def is_right(call, argument, label):
 
 
 def is_result(call):
-    """Return whether a call constructs a result: analyses do, and the tests of files check it."""
+    """Return whether a call constructs a result or a body: analyses and `add_rotor` do."""
     owner = getattr(er, call, None)
-    return inspect.isclass(owner) and issubclass(owner, er.Result)
+    made = (er.Result, er.RotorBody, er.FullRotorBody)
+    return inspect.isclass(owner) and issubclass(owner, made)
 
 
 def cases():

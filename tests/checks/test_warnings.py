@@ -27,6 +27,7 @@ from exudyn_rotor import (
     check_run,
     periodic_response,
     propose,
+    recommended_settings,
     select_modes,
     steady_state,
     stress_history,
@@ -48,13 +49,7 @@ def small_rotor_in_millimetres(beam):
     """A shaft of 6 mm × 30 mm, which would be of 6.7e6 kg."""
     corners = np.array([[x, y, z] for x in (-3.0, 3.0) for y in (-3.0, 3.0) for z in (0.0, 30.0)])
     mass = 7850.0 * np.pi * 3.0**2 * 30.0 / 8.0
-    SolidRotor.from_matrices(mass * np.eye(24), np.zeros((24, 24)), corners, "z", allow_parts=True)
-
-
-def stress_out_of_balance(beam):
-    stress = np.zeros((beam.node_count, 6))
-    stress[:, 0] = 1e8 * np.cos(20.0 * beam.nodes[:, 0])
-    beam.prestress(stress=stress)
+    SolidRotor.from_matrices(mass * np.eye(24), np.zeros((24, 24)), corners, "z")
 
 
 def mass_on_balls(speed, tolerance=1e-2, **bearing):
@@ -131,6 +126,15 @@ def asked_for_connections(beam, source=None):
     body.check_connections()
 
 
+def run_of_a_full_body_with_a_dense_solver(_):
+    mbs = exu.SystemContainer().AddSystem()
+    add_rotor(mbs, disc_rotor(1), spin=1.0, translation="none")
+    mbs.Assemble()
+    settings = recommended_settings(1e-4, 1e-4)
+    settings.timeIntegration.verboseMode = 0
+    mbs.SolveDynamic(settings)
+
+
 def full_body_asked_for_connections(beam):
     asked_for_connections(beam, ring_rotor(0.1, 0.1, 2.0))
 
@@ -146,9 +150,7 @@ PLACES = {
     "bearings/annular_seal.py:__post_init__": (
         lambda _: AnnularSeal(interface="a", **LAMINAR),
         UserWarning, "may be laminar"),
-    "prestress/static_solution.py:_in_equilibrium": (
-        stress_out_of_balance, UserWarning, "not in equilibrium"),
-    "multibody/rotor/sensors.py:_warn_of_static_stress": (
+    "multibody/rotor/sensors.py:warn_of_static_stress": (
         native_stress_of_a_prestressed_rotor, UserWarning, "stress of the modes alone"),
     "reduction/component.py:lowest_with_pairs": (
         lambda _: disc_rotor().reduce(1), UserWarning, "one of a pair in two planes"),
@@ -166,6 +168,8 @@ PLACES = {
         scene_of_a_full_lossy_rotor, UserWarning, "A scene runs without it"),
     "multibody/rotor/rotor_body.py:check_connections": (
         asked_for_connections, ConnectionWarning, "does not tilt"),
+    "multibody/rotor/assembly.py:_tell_of_dense_solver": (
+        run_of_a_full_body_with_a_dense_solver, UserWarning, "EigenSparse"),
     "multibody/rotor/assembly.py:warn_of_lost_connections": (
         torque_on_a_tilt_of_the_node, ConnectionWarning, "does not tilt"),
     "advice/run_check.py:check_run": (
@@ -185,7 +189,6 @@ ELSEWHERE = {
     "evaluation/separation.py:_warn_of_speeds_left_out": "count, and the response is known from",
     "linear/model/build.py:warn_of_structural_damping": "campbell finds modes without it",
     "multibody/add_rotor.py:_add_reduced": "A scene runs without it",
-    "prestress/static_solution.py:_warn_of_yield": "above yield_stress",
     "solvers/factor.py:_tell_of_mkl": "exudyn-rotor\\[mkl\\]",
     "solid/meshes/mesh_data.py:warn": "taken as",
     "theory/stiffening.py:warn_of_left_out": "beyond 'tilt' is left out",

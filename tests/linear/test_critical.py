@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 from bodies import BODIES, MASS, SHAFT, moments, point_mass, rings
 from models import disc_rotor, disc_with_craig_bampton_modes, two_masses
-from test_scene_linear import BEARING, on_springs
 from test_scene_linear import rings as scene_rotor
 
 from exudyn_rotor import (
@@ -219,18 +218,6 @@ def test_tables_tell_that_there_are_none():
     assert low < 1e2 < 1e4 < high
 
 
-def test_scene_has_the_critical_speeds_of_its_rotor():
-    """The scene is linearised by differences, good to about 1e-7 of its stiffness."""
-    K, D = (np.diag(values) for values in BEARING)
-    supports = [Support(name, K, D) for name in ("left", "right")]
-    given = {"max_speed": 2000.0, "nodal_diameters": [1], "accuracy": None}
-    rotor = critical_speeds(scene_rotor(0), supports=supports, **given)
-    mbs, body = on_springs(modes=0)
-    scene = critical_speeds(mbs, body=body, **given)
-    assert len(rotor.speeds) >= 3
-    np.testing.assert_allclose(scene.speeds, rotor.speeds, rtol=1e-5)
-
-
 def test_speeds_at_which_films_are_too_thin_are_left_out():
     """Lists end there as scenes do; the stiffness of another speed would jump."""
     pads = grooved_pads(1e-4, [0.0, np.pi], 0.3)
@@ -279,7 +266,7 @@ def test_critical_speeds_are_looked_for_from_where_tables_begin(begins, found, i
 def test_a_map_over_a_table_is_many_analyses(disc, order):
     reduced, fixed = disc.reduce(8), Support("right", rising(2e7))
     given = {"order": order, "max_speed": 4000.0, "nodal_diameters": [1], "accuracy": None}
-    stiffnesses = np.geomspace(1e5, 1e9, 5)
+    stiffnesses = np.geomspace(1e5, 1e9, 3)
     varied = critical_speed_map(reduced, "left", stiffnesses, supports=fixed, **given)
     for row, stiffness in enumerate(stiffnesses):
         one = critical_speeds(reduced, supports=[Support("left", stiffness), fixed], **given)

@@ -145,7 +145,7 @@ def test_a_larger_motion_along_the_axis_is_not_the_main_one():
     motion[:, 0, 1, 0] = [1e-6, 5e-6, 1e-6]
     motion[:, 0, 1, 1] = -1j * motion[:, 0, 1, 0]
     speeds = [90.0, 100.0, 110.0]
-    response = UnbalanceResponse(("left",), [0, 1], motion, "inertial", speeds, refined=True)
+    response = UnbalanceResponse(("left",), [0, 1], motion, "inertial", speeds)
     assert response.main_order == 1
     with pytest.warns(UserWarning, match="too far apart"):
         assert response.peak()[0] == pytest.approx(100.0)

@@ -14,9 +14,7 @@ def point_mass() -> ReducedRotor:
     nodes, none = [[0.0, 0.0, 0.0]], np.zeros((3, 3))
     rotor = SolidRotor.from_matrices(np.eye(3), STIFFNESS * np.eye(3), nodes, "z")
     displaced = (none, FOURTH * np.eye(3))
-    return rotor.reduce(
-        np.eye(3), prestress=Prestress.from_matrix(none, nodes, initial_displacement=displaced)
-    )
+    return rotor.reduce(np.eye(3), prestress=Prestress(none, nodes, initial_displacement=displaced))
 
 
 def test_critical_speeds_are_zeros_of_a_polynomial_of_degree_four():

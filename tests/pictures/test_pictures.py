@@ -140,7 +140,7 @@ def test_stress_in_the_order_of_paraview(tmp_path):
     modes_of = np.zeros((4, 6, 1))
     modes_of[:, :, 0] = np.arange(1.0, 7.0)  # xx, yy, zz, yz, xz, xy
     none = np.zeros((4, 6))
-    field = StressField(nodes, [[0, 1, 2]], modes_of, none, True, none)
+    field = StressField(nodes, [[0, 1, 2]], modes_of, none, True)
     field.to_vtk(tmp_path / "stress.vtu", [2.0], 0.0)
     read = meshio.read(tmp_path / "stress.vtu")
     assert read.point_data["stress"].tolist() == [[2, 4, 6, 12, 8, 10]] * 3

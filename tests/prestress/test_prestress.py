@@ -1,7 +1,5 @@
 """Static prestress: equilibrium, closed solutions, the derivative of the tangent, and refusals."""
 
-import warnings
-
 import ngsolve as ngs
 import numpy as np
 import pytest
@@ -9,7 +7,7 @@ import scipy.sparse as sp
 from models import STEEL, block_beam, disc_rotor
 from netgen.occ import Cylinder, OCCGeometry, Pnt, Z
 
-from exudyn_rotor import Prestress, SolidRotor, SpinAxis, free_modes
+from exudyn_rotor import Prestress, SolidRotor, SpinAxis
 from exudyn_rotor.solid.elements import von_mises
 from exudyn_rotor.theory.axis import rotations
 
@@ -81,23 +79,6 @@ def test_thin_disc_grows_and_is_stressed_as_in_plane_stress(disc):
     np.testing.assert_allclose(middle[:, 0] + middle[:, 1], both, rtol=0.02)
 
 
-def test_tension_at_rest_lifts_the_frequency_of_a_clamped_beam(beam):
-    held = beam.clamped(["left", "right"])
-    tension = np.zeros((held.node_count, 6))
-    tension[:, 2] = 2e7
-    stretched = held.with_prestress(held.prestress(stress=tension))
-    before, after = (free_modes(rotor, 1).frequencies[0] ** 2 for rotor in (held, stretched))
-    # Rayleigh's quotient σ ∫w'² / ρ∫w² with the first mode of a clamped Euler beam
-    root, length = 4.730040744862704, 0.3
-    ratio = (np.cosh(root) - np.cos(root)) / (np.sinh(root) - np.sin(root))
-    s = np.linspace(0, 1, 20001)
-    w = np.cosh(root * s) - np.cos(root * s) - ratio * (np.sinh(root * s) - np.sin(root * s))
-    slope = np.gradient(w, s) / length
-    expected = 2e7 / STEEL["density"] * np.sum(slope**2) / np.sum(w**2)
-    # a beam of this thickness also shears, which makes its mode shape a little rounder
-    assert after - before == pytest.approx(expected, rel=0.05)
-
-
 # ------------------------------------------------------------------ initial displacement
 
 
@@ -133,49 +114,45 @@ def test_both_parts_are_the_derivative_of_the_tangent(beam):
     assert abs(geometric - expected).max() > 0.1 * abs(expected).max()
 
 
-# ------------------------------------------------------------------ yielding
-
-
-def test_yielding_is_reported_with_its_place(disc):
-    prestress = disc.prestress()
-    worst = int(np.argmax(von_mises(prestress.stress)))
-    limit = np.sqrt(3e8 / von_mises(prestress.stress)[worst])
-    with pytest.warns(UserWarning, match=rf"node {worst} \(.*yield_stress=3e\+08"):
-        disc.prestress(yield_stress=3e8, speed=1.01 * limit)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        disc.prestress(yield_stress=3e8, speed=0.99 * limit)
-
-
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        ({"yield_stress": -1.0}, r"yield_stress: needs a finite number \[Pa\] > 0, got -1.0"),
-        (
-            {"yield_stress": 1e8, "speed": np.inf},
-            r"speed: needs a finite number \[rad/s\] > 0, got inf",
-        ),
-        ({"speed": 100.0}, "give yield_stress="),
-        ({"clamped": ["nose"]}, "clamped: 'nose' is unknown; there are: 'left', 'right'"),
-    ],
-)
-def test_impossible_arguments_are_refused(beam, given, message):
-    with pytest.raises(ValueError, match=message):
-        beam.prestress(**given)
-
-
 # ------------------------------------------------------------------ imported matrices, refusals
 
 
 def test_imported_matrix_is_taken_as_it_is(disc):
-    computed = disc.prestress(euler=True)
-    imported = Prestress.from_matrix(computed.matrix, disc.nodes, computed.matrix.toarray())
+    computed = disc.prestress()
+    imported = Prestress.from_matrix(computed.matrix.toarray(), disc.nodes)
     assert abs(imported.matrix - computed.matrix).max() == 0.0
-    assert abs(imported.euler - computed.matrix).max() == 0.0
-    assert imported.displacement is None
-    assert imported.per_fourth_power is None
-    K_u, K_uu = 2.0 * computed.matrix, 3.0 * computed.matrix
-    more = Prestress.from_matrix(computed.matrix, disc.nodes, initial_displacement=(K_u, K_uu))
-    assert abs(more.per_square - 3.0 * computed.matrix).max() < 1e-12 * abs(K_u).max()
-    assert abs(more.per_fourth_power - K_uu).max() == 0.0
-    assert "initial_displacement" in repr(more)
+    assert imported.displacement is imported.per_fourth_power is None
+    assert disc.with_prestress(imported).carried_prestress is imported
+
+
+def softened(disc: SolidRotor) -> Prestress:
+    """Return an imported matrix that holds the spin softening as well."""
+    across = np.diag(np.tile([1.0, 1.0, 0.0], disc.node_count))
+    return Prestress.from_matrix(disc.prestress().matrix - across @ disc.mass, disc.nodes)
+
+
+@pytest.mark.parametrize(
+    ("carrying", "message"),
+    [
+        (lambda disc, _: disc.prestress(yield_stress=-1.0), r"yield_stress: needs .*got -1.0"),
+        (lambda disc, beam: disc.with_prestress(beam.prestress()), "prestress from another mesh"),
+        (
+            lambda disc, _: disc.add_point_mass([RADIUS, 0, 0], 0.1).with_prestress(
+                disc.prestress()
+            ),
+            "belongs to another rotor: its elastic forces differ by",
+        ),
+        (
+            lambda _, beam: beam.clamped(["left"]).with_prestress(beam.prestress()),
+            "belongs to another rotor",
+        ),
+        (lambda disc, _: disc.with_prestress(softened(disc)), r"alone \(no spin softening"),
+        (
+            lambda disc, _: disc.with_prestress(disc.prestress()).prestress(),
+            "carries a prestress already",
+        ),
+    ],
+)
+def test_prestress_of_another_state_is_refused(disc, beam, carrying, message):
+    with pytest.raises(ValueError, match=message):
+        carrying(disc, beam)

@@ -4,8 +4,6 @@ import ngsolve as ngs
 import numpy as np
 import pytest
 import scipy.linalg as la
-import scipy.sparse as sp
-import scipy.sparse.linalg as spla
 from models import STEEL
 from netgen.occ import Box, OCCGeometry, Pnt, X
 from numpy.polynomial import Polynomial
@@ -15,7 +13,6 @@ from exudyn_rotor import (
     SpinAxis,
     campbell,
 )
-from exudyn_rotor.theory.stiffening import stiffening
 
 LENGTH, WIDTH, HEIGHT = 1.0, 0.06, 0.02
 
@@ -70,23 +67,3 @@ def test_flap_and_lag_of_a_rotating_blade(hub):
         assert np.abs(found[i] / lag - 1).min() < 0.01
         if speed > 0.0:
             assert np.abs(tilt[i] / flap - 1).min() > 0.02
-
-
-def test_euler_stress_of_a_blade_is_that_of_its_load():
-    solid = blade()
-    kept = np.setdiff1d(np.arange(solid.node_count), solid.interfaces["root"].nodes)
-    rows = (3 * kept[:, None] + np.arange(3)).ravel()
-    load = -solid.mass @ np.cross((0, 0, 1), solid.nodes).ravel()
-    displacement = np.zeros(load.size)
-    stiffness = sp.csc_array(solid.stiffness[rows][:, rows])
-    displacement[rows] = spla.spsolve(stiffness, load[rows])
-    expected = solid.elements.geometric_stiffness(displacement)
-    found = solid.prestress(euler=True).euler
-    assert abs(found - expected).max() < 1e-8 * abs(expected).max()
-    reduced = solid.reduce(4, prestress=solid.prestress(euler=True))
-    B = reduced.shapes.matrix.T @ expected @ reduced.shapes.matrix
-    terms = stiffening(reduced.invariants, "full")
-    np.testing.assert_allclose(terms.B, B, rtol=0, atol=1e-7 * np.abs(B).max())
-    # without it, what the tilts of rigid rotors feel is left
-    plain = solid.reduce(4, prestress=True).invariants
-    assert np.array_equal(stiffening(plain, "full").B, stiffening(plain, "tilt").B)

@@ -102,7 +102,7 @@ def referee(solid: ClampedSolid, step: float) -> np.ndarray:
 
 def reduced(solid: ClampedSolid, level: str, step: float) -> np.ndarray:
     """Return the tip's lag deflection of the reduced rotor [m]."""
-    rotor = solid.clamped.reduce(MODES, prestress=solid.clamped.prestress(euler=True))
+    rotor = solid.clamped.reduce(MODES, prestress=True)
     formulation = Formulation("none", SPIN)
     chosen = select_modes(rotor, formulation)
     motion = Motion(chosen.invariants, formulation, stiffening(chosen.invariants, level))

@@ -13,7 +13,6 @@ w = 0. A point mass, with N = [[0, −1], [1, 0]], G = mN and C = m, has ``M ÿ 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -64,8 +63,6 @@ class RotorAlone:
         Frequency of the lowest of these halves [rad/s].
     spin : Spin or None
         The spin as a coordinate.
-    places : mapping of str to ndarray, shape (6, n), optional
-        Motions of further places along (n1, n2, e), by the columns of the reduced rotor.
     """
 
     rotor: ReducedRotor
@@ -78,7 +75,6 @@ class RotorAlone:
     left_out: dict[str, float]
     complete_up_to: float
     spin: Spin | None
-    places: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     @property
     def has_halves(self) -> bool:
@@ -103,8 +99,7 @@ class RotorAlone:
     @kept
     def motion(self, name: str) -> np.ndarray:
         """Return the motion (6, k) of an interface along (n1, n2, e) in the rotor frame."""
-        known = name in self.places
-        return (self.places[name] if known else interface_motion(self.rotor, name)) @ self.Q
+        return interface_motion(self.rotor, name) @ self.Q
 
     def within(self, V: np.ndarray) -> RotorAlone:
         """Return the rotor with the motions of an orthonormal basis V (k, r) alone.

@@ -105,8 +105,8 @@ def place(model: LinearModel, at: At, speed: float = 1.0) -> Place:
         raise ValueError(f"at: {at!r}: of several rotors, name an interface")
     if first.shapes is None:
         raise ValueError(
-            f"at: {at!r}: mesh nodes need a rotor with mode shapes; reduce with "
-            "keep_shapes=True, or name an interface"
+            f"at: {at!r}: mesh nodes need a rotor with its mode shapes, not one "
+            "without_shapes(); name an interface"
         )
     nodes, number = first.shapes.nodes, at
     if not isinstance(at, int):

@@ -27,7 +27,6 @@ HALF_POWER = np.sqrt(0.5)  # of the size at a peak
 STILL = 1e-6  # share of a peak below which a neighbour stands still, as at rest without a load
 _CONSTANT = 1e-12  # share of the largest frequency that is none
 _NO_MOTION = 1e-12  # of the largest amplitude
-_ROUNDING = 1e-9  # of an angle [rad]
 _DRAWN = (*DIRECTIONS, *CIRCULAR)
 
 
@@ -71,8 +70,6 @@ class Response(AtPlaces):
         last point, which the table names; NaN elsewhere. None where they are not known.
     stiffening : str or None
         Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
-    refined : bool
-        Whether points were added around resonances.
     """
 
     orders: np.ndarray = numbers("orders", dtype=int)
@@ -80,7 +77,6 @@ class Response(AtPlaces):
     frame: str
     basis_errors: np.ndarray | None = numbers("abscissa", "places", finite=False, optional=True)
     stiffening: str | None = field(default=None, kw_only=True)
-    refined: bool = field(default=False, kw_only=True)
 
     _over: ClassVar[str] = "speeds"
     _what: ClassVar[str] = "spin speed"
@@ -171,17 +167,16 @@ class Response(AtPlaces):
         """
         major, _ = self.semi_axes(place, order)
         inner = np.flatnonzero((major[1:-1] > major[:-2]) & (major[1:-1] >= major[2:])) + 1
+        name, values = self.places[self._at(place)], self.abscissa
         if inner.size == 0:
-            more = "" if self.refined else ", or compute with refine=True"
             raise ValueError(
-                f"{self.places[self._at(place)]}: the motion has no peak between "
-                f"{self.abscissa[0]:g} and {self.abscissa[-1]:g} rad/s; extend the range{more}"
+                f"{name}: the motion has no peak between {values[0]:g} and {values[-1]:g} rad/s; "
+                "extend the range, or compute with refine=True"
             )
         index = int(inner[major[inner].argmax()])
-        at, size, is_near = resolved_peak(self.abscissa, major, index)
+        at, size, is_near = resolved_peak(values, major, index)
         if not is_near:
-            peak = self.places[self._at(place)], float(self.abscissa[index])
-            warn_of_coarse_peaks([peak], self.refined)
+            warn_of_coarse_peaks([(name, float(values[index]))])
         return at, size
 
     def orbit(
@@ -225,7 +220,7 @@ class Response(AtPlaces):
         }
         for name in ("n1", "n2", "e"):
             phasor = self.phasor(place, name, order)
-            phases = np.where(np.abs(phasor) <= self._rounding, 0.0, np.degrees(_angles(phasor)))
+            phases = np.where(np.abs(phasor) <= self._rounding, 0.0, np.degrees(np.angle(phasor)))
             columns |= {f"{name} [m]": np.abs(phasor), f"{name} phase [deg]": phases}
         forward, backward = np.abs(self.whirl(place, order))
         errors = np.full(len(values), np.nan)
@@ -264,7 +259,6 @@ class Response(AtPlaces):
         directions: Sequence[str] = ("n1", "n2"),
         order: int | None = None,
         ax: Sequence[Axes] | None = None,
-        log: bool = True,
         units: str = "rpm",
     ) -> np.ndarray:
         """Draw size and phase of the displacement over speed or frequency (Bode diagram).
@@ -278,8 +272,6 @@ class Response(AtPlaces):
             Harmonic; the main one by default.
         ax : two matplotlib Axes, optional
             For size and phase; a new figure by default.
-        log : bool, optional
-            Logarithmic sizes.
         units : {'rpm', 'Hz', 'SI'}
             See :meth:`table`.
 
@@ -289,7 +281,6 @@ class Response(AtPlaces):
             Size and phase, as ``plt.subplots(2)`` returns them.
         """
         names = checks.labels(directions, "directions", _DRAWN)
-        checks.flag(log, "log")
         values, unit = self._shown(units)
         place, order = self.places[self._at(place)], self._order(order)
         if ax is None:
@@ -308,7 +299,7 @@ class Response(AtPlaces):
             phase.plot(values, _phase(curve), color=color, ls=line, **style)
         # nothing is nowhere on a log scale
         moves = any(np.any(np.nan_to_num(curve)) for curve in curves.values())
-        size.set_yscale("log" if log and moves else "linear")
+        size.set_yscale("log" if moves else "linear")
         size.set_ylabel("amplitude [µm]")
         size.set_title(self._title(place, order), loc="right", fontsize=10)
         phase.set_ylabel("phase [deg]")
@@ -326,12 +317,12 @@ class Response(AtPlaces):
         direction: str = "n1",
         order: int | None = None,
         ax: Axes | None = None,
-        marks: int = 5,
         units: str = "rpm",
     ) -> Axes:
         """Draw the complex amplitude [µm] as a curve in its plane (Nyquist diagram).
 
-        A damped resonance is a loop; its place across from the start is the critical speed.
+        A damped resonance is a loop; its place across from the start is the critical speed. Five
+        points are labelled with their speed or frequency.
 
         Parameters
         ----------
@@ -340,11 +331,9 @@ class Response(AtPlaces):
         direction : {'n1', 'n2', 'e', 'forward', 'backward'}
         ax : matplotlib.axes.Axes, optional
             A new figure by default.
-        marks : int, optional
-            How many points are labelled with their speed or frequency.
         """
         checks.choice(direction, "direction", _DRAWN)
-        marks, shown = checks.count(marks, "marks"), self._shown(units)
+        shown = self._shown(units)
         place, order = self.places[self._at(place)], self._order(order)
         ax = axes_or_new(ax, (5.5, 5.5))
         amplitudes = self._drawn(direction, place, order)
@@ -352,7 +341,7 @@ class Response(AtPlaces):
         at, curve = shown[0][known], 1e6 * amplitudes[known]
         ax.plot(curve.real, curve.imag, color=COLORS[0], lw=1.4)
         path = np.cumsum(np.abs(np.diff(curve, prepend=curve[:1])))
-        even = np.searchsorted(path, np.linspace(0.0, path[-1], marks)) if path.size else []
+        even = np.searchsorted(path, np.linspace(0.0, path[-1], 5)) if path.size else []
         for index in np.unique(even).astype(int):
             point = curve.real[index], curve.imag[index]
             ax.plot(*point, "o", color=COLORS[1], ms=4)
@@ -538,35 +527,23 @@ def resolved_peak(at: np.ndarray, size: np.ndarray, index: int) -> tuple[float, 
     return float(at[1] + place), float(size[1] / np.sqrt(max(least, 0.25))), is_near
 
 
-def warn_of_coarse_peaks(coarse: Sequence[tuple[str, float]], was_refined: bool) -> None:
+def warn_of_coarse_peaks(coarse: Sequence[tuple[str, float]]) -> None:
     """Warn of peaks [rad/s] at places whose neighbours are too far apart, once for all."""
     if not coarse:
         return
-    advice = "compute the response with refine=True"
-    if was_refined:
-        advice = "refine=True adds no more: give more of them there, or add damping"
     name, at = coarse[0]
     more = f" (and {len(coarse) - 1} more)" if len(coarse) > 1 else ""
     warnings.warn(
         f"{name}: the points around the peak at {at:g} rad/s{more} are too far apart to give its "
-        f"size and width; {advice}",
+        "size and width; compute the response with refine=True, or give more points there",
         UserWarning,
         stacklevel=user_level(),
     )
-
-
-# ------------------------------------------------------------------ phases
 
 
 def _phase(values: np.ndarray) -> np.ndarray:
     """Return phases [deg] without jumps; none where there is no motion."""
     phase, sizes = np.full(len(values), np.nan), np.nan_to_num(np.abs(values))
     moving = sizes > _NO_MOTION * sizes.max(initial=0.0)
-    phase[moving] = np.degrees(np.unwrap(_angles(values[moving])))
+    phase[moving] = np.unwrap(np.angle(values[moving], deg=True), period=360.0)
     return phase
-
-
-def _angles(values: np.ndarray) -> np.ndarray:
-    """Return angles above −π up to π; what is −π but for rounding is π."""
-    found = np.angle(values)
-    return np.where(found <= _ROUNDING - np.pi, found + 2.0 * np.pi, found)

@@ -6,7 +6,6 @@ Both are steady motions: they are reached in time only where the rotor is stable
 from __future__ import annotations
 
 import warnings
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
@@ -220,7 +219,7 @@ def _check(frame: str, tolerance: float, refine: bool, accuracy: float | None) -
 
 
 @dataclass(frozen=True, eq=False)
-class _Sweep(ABC):
+class _Sweep:
     """Steady motions of a model at places, over speeds or frequencies.
 
     Attributes
@@ -248,14 +247,6 @@ class _Sweep(ABC):
     speed: float = field(default=1.0, kw_only=True)
     unit: ClassVar[str]
 
-    @abstractmethod
-    def coordinates(self, model: LinearModel, values: np.ndarray) -> Coordinates:
-        """Return the harmonics (s, k) of the coordinates of a model at values (s,)."""
-
-    @abstractmethod
-    def joined(self, motions: Motions, values: np.ndarray) -> Motions:
-        """Return motions in which no two harmonics have one frequency."""
-
     def over(
         self, values: np.ndarray, refine: bool, accuracy: float | None
     ) -> tuple[np.ndarray, dict[str, object]]:
@@ -279,7 +270,6 @@ class _Sweep(ABC):
             "motion": motion,
             "basis_errors": errors,
             "stiffening": model.stiffening,
-            "refined": refine,
         }
 
     def _seen(self, observed: Sequence[Place], found: Coordinates) -> Motions:
@@ -287,10 +277,8 @@ class _Sweep(ABC):
         frame = self.frame if self.speed else "inertial"  # at θ = 0 the axes are the same
         parts = [one.motion(found, frame) for one in observed]
         none = np.zeros((len(next(iter(found.values()))), 6), dtype=complex)
-        return {
-            n: np.stack([part.get(n, none) for part in parts], axis=1)
-            for n in sorted({n for part in parts for n in part})
-        }
+        orders = sorted({n for part in parts for n in part})
+        return {n: np.stack([part.get(n, none) for part in parts], axis=1) for n in orders}
 
     def _at_places(self, model: LinearModel, values: np.ndarray) -> Motions:
         """Return the motions that a model has at values."""
@@ -305,20 +293,16 @@ class _Sweep(ABC):
         ValueError
             Where there is no motion at all.
         """
-        missing = ~np.all([np.all(np.isfinite(X), axis=1) for X in found.values()], axis=0)
-        untold = missing & ~np.isin(values, self.told)
-        if not np.any(untold):
+        missing = np.any([np.isnan(X).any(axis=1) for X in found.values()], axis=0)
+        untold = values[missing & ~np.isin(values, self.told)]
+        if not untold.size:
             return
         why = "a constant load acts on a motion that nothing holds, or nothing damps a resonance"
-        shown = ", ".join(f"{value:.5g}" for value in values[untold][:5])
-        shown += " …" if untold.sum() > 5 else ""
+        shown = ", ".join(f"{value:.5g}" for value in untold[:5]) + " …" * (untold.size > 5)
         if np.all(missing):
             raise ValueError(f"no steady motion at {shown} rad/s: {why}")
-        warnings.warn(
-            f"no steady motion at {shown} rad/s, NaN there: {why}",
-            UserWarning,
-            stacklevel=user_level(),
-        )
+        text = f"no steady motion at {shown} rad/s, NaN there: {why}"
+        warnings.warn(text, UserWarning, stacklevel=user_level())
 
     def _refined(
         self, values: np.ndarray, found: Coordinates, observed: Sequence[Place]
@@ -328,23 +312,35 @@ class _Sweep(ABC):
         No point is added where there is no steady motion, as at a resonance without damping, nor
         beside such a value.
         """
-
-        def phasors() -> np.ndarray:
-            motions = self._seen(observed, found).values()
-            return np.hstack([each[..., :3].reshape(len(each), -1) for each in motions])
-
         given, narrowest = values, _NARROWEST * np.ptp(values)
         for _ in range(_MOST_ROUNDS):
-            wide = (np.diff(values) > narrowest) & (_turns(phasors()) > _MOST_TURN)
+            wide = (np.diff(values) > narrowest) & (self._turns(observed, found) > _MOST_TURN)
             between = np.flatnonzero(wide)[: len(given) + _MOST_ADDED - len(values)]
             if between.size == 0:
                 break
             added = 0.5 * (values[between] + values[between + 1])
-            order = np.argsort(np.r_[values, added], kind="stable")
-            found = _merged(found, self.coordinates(self.model, added), order)
-            values = np.r_[values, added][order]
-        known = np.all(np.isfinite(phasors()), axis=1) | np.isin(values, given)
+            values, found = (
+                np.r_[values, added],
+                _stacked(found, self.coordinates(self.model, added)),
+            )
+            order = np.argsort(values)
+            values, found = values[order], {n: X[order] for n, X in found.items()}
+        known = np.isfinite(sum(X.sum(axis=1) for X in found.values())) | np.isin(values, given)
         return values[known], {n: X[known] for n, X in found.items()}
+
+    def _turns(self, observed: Sequence[Place], found: Coordinates) -> np.ndarray:
+        """Return the largest change of phase between neighbours, shape (s − 1,) [rad].
+
+        Half a turn beside rest without a load, where there is no phase and may be a resonance.
+        """
+        moved = [
+            each[..., :3].reshape(len(each), -1) for each in self._seen(observed, found).values()
+        ]
+        phasors = np.hstack(moved)
+        size, product = np.abs(phasors), phasors[1:] * phasors[:-1].conj()
+        matters = np.maximum(size[1:], size[:-1]) > _SMALL * np.nan_to_num(size).max()
+        turned = np.where(product == 0.0, np.pi, np.abs(np.angle(product)))
+        return np.where(matters, turned, 0.0).max(axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -356,13 +352,14 @@ class _OverSpeed(_Sweep):
     unit: ClassVar[str] = "rpm"
 
     def coordinates(self, model: LinearModel, values: np.ndarray) -> Coordinates:
+        """Return the harmonics (s, k) of the coordinates of a model at speeds (s,)."""
         # no unbalance acts along the axis, where nothing may hold the rotor
         load, basis = unbalance_load(model, self.unbalances, self.own), model.moving_basis
         found = {0: np.zeros((len(values), model.size), dtype=complex)}
         moving = np.flatnonzero(values)  # at rest there is no load
         if not moving.size:
             return found
-        stack = model.at_all(values[moving], "moving")
+        stack = model.at_all(values[moving])
         model.warn_beyond(np.abs(values[moving]))
         lost, rows = moving[~stack.known], moving[stack.known]
         self.told.extend(values[lost].tolist())
@@ -397,6 +394,7 @@ class _OverFrequency(_Sweep):
     unit: ClassVar[str] = "Hz"
 
     def coordinates(self, model: LinearModel, values: np.ndarray) -> Coordinates:
+        """Return the harmonics (s, k) of the coordinates of a model at frequencies (s,)."""
         load = total(self.loads, model, self.speed)
         model.warn_beyond(np.abs(np.add.outer(values, self.speed * np.array(list(load)))))
         options = {"driven": model.free_spins, "tolerance": self.tolerance}
@@ -418,14 +416,11 @@ class _OverFrequency(_Sweep):
         twice = 2.0 * values / self.speed
         whole = np.abs(twice - np.round(twice)) <= _WHOLE * np.maximum(np.abs(twice), 1.0)
         for row in np.flatnonzero(whole):
-            total = round(twice[row])  # the harmonics n and −total − n have opposite rates
-            for n in motions:
-                partner = -total - n
-                if (n + 0.5 * total) * self.speed < 0.0:
-                    added = motions[n][row].conj()
-                    if partner not in joined:
-                        joined[partner] = np.zeros_like(motions[n])
-                    joined[partner][row] += added
+            opposite = -round(twice[row])  # the harmonics n and opposite − n have opposite rates
+            for n, a in motions.items():
+                if (2 * n - opposite) * self.speed < 0.0:
+                    partner = joined.setdefault(opposite - n, np.zeros_like(a))
+                    partner[row] += a[row].conj()
                     joined[n][row] = 0.0
         return joined
 
@@ -434,14 +429,18 @@ class _OverFrequency(_Sweep):
 def _in_parts(solve: Callable[[slice], Coordinates], count: int, size: int) -> Coordinates:
     """Return harmonics (count, size), solved for some of the rows at a time: for memory."""
     most = max(1, _AT_ONCE // size**2)
-    if count <= most:
-        return solve(slice(count))
-    found: Coordinates = {}
-    for first in range(0, count, most):
-        part = slice(first, first + most)
-        for n, X in solve(part).items():
-            found.setdefault(n, np.zeros((count, size), dtype=complex))[part] = X
-    return found
+    return _stacked(*(solve(slice(first, first + most)) for first in range(0, count, most)))
+
+
+def _stacked(*parts: Coordinates) -> Coordinates:
+    """Return harmonics at all values of parts; one may be in some of them only."""
+    if len(parts) == 1:
+        return parts[0]
+    none = [np.zeros_like(next(iter(part.values()))) for part in parts]
+    return {
+        n: np.concatenate([part.get(n, zero) for part, zero in zip(parts, none, strict=True)])
+        for n in sorted({n for part in parts for n in part})
+    }
 
 
 def _collected(
@@ -458,28 +457,3 @@ def _collected(
         keep[np.argmin(np.abs(orders))] = True
     full[:, [one.is_node for one in observed], :, 3:] = np.nan
     return orders[keep], full[:, :, keep]
-
-
-def _merged(first: Coordinates, second: Coordinates, order: np.ndarray) -> Coordinates:
-    """Return solutions of some values and of others, in order; a harmonic may be in one of them."""
-    parts = [(each, np.zeros_like(next(iter(each.values())))) for each in (first, second)]
-    return {
-        n: np.concatenate([each.get(n, none) for each, none in parts])[order]
-        for n in sorted({*first, *second})
-    }
-
-
-def _turns(phasors: np.ndarray) -> np.ndarray:
-    """Return the largest change of phase between neighbours, shape (s − 1,) [rad].
-
-    Half a turn beside rest without a load, where there is no phase and may be a resonance.
-    """
-    known = np.all(np.isfinite(phasors), axis=1)
-    size = np.abs(np.where(known[:, None], phasors, 0.0))
-    matters = np.maximum(size[1:], size[:-1]) > _SMALL * size.max(initial=0.0)
-    moves = np.minimum(size[1:], size[:-1]) > 0.0
-    turned = np.abs(
-        np.angle(np.where(matters & moves, phasors[1:] * phasors[:-1].conj(), 1.0))
-    ).max(axis=1, initial=0.0)
-    beside_rest = ~np.any(moves, axis=1) & np.any(matters, axis=1)
-    return np.where(known[1:] & known[:-1], np.where(beside_rest, np.pi, turned), 0.0)

@@ -12,7 +12,7 @@ solves both together, from the forces of bearings that hold their journals in th
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -34,17 +34,10 @@ _RIGID = 1e-7  # compliance of a rigid bearing, over that of the rotor's highest
 _SHORTEST = 1e-6  # share of a step below which a film is taken not to carry
 
 
-@dataclass(frozen=True, eq=False)
-class Journal:
-    """A nonlinear bearing and what it acts on.
+class Journal(NamedTuple):
+    """A nonlinear bearing at its speed [rad/s], and what it acts on, along (n1, n2).
 
-    Attributes
-    ----------
-    bearing : Bearing, MagneticBearing or RigidBearing
-    speed : float
-        Its spin speed [rad/s].
-    U, U_s : ndarray, shape (2, k)
-        Motion of the journal in the bearing, and of its sensor, along (n1, n2).
+    Motions (2, k) of the journal in the bearing, and of its sensor.
     """
 
     bearing: Nonlinear
@@ -54,22 +47,12 @@ class Journal:
 
 
 def equilibrium(
-    K: np.ndarray,
-    load: np.ndarray,
-    journals: Sequence[Journal],
-    driven: np.ndarray,
+    K: np.ndarray, load: np.ndarray, journals: Sequence[Journal], driven: np.ndarray
 ) -> tuple[np.ndarray | None, np.ndarray]:
     """Return the coordinates (k,), and the forces of the journals' bearings on them (b, 2) [N].
 
-    None for the coordinates where a load acts on a motion that nothing holds.
-
-    Parameters
-    ----------
-    K : ndarray, shape (k, k)
-    load : ndarray, shape (k,)
-    journals : sequence of Journal
-    driven : ndarray, shape (k, d)
-        Momenta of the spins that a drive holds.
+    None for the coordinates where a load acts on a motion that nothing holds. Drives hold the spins
+    with the momenta `driven` (k, d).
 
     Raises
     ------
@@ -80,41 +63,32 @@ def equilibrium(
     """
     basis = others(driven)
     K, load = basis.T @ K @ basis, basis.T @ load
-    rows = [(one.U @ basis, one.U_s @ basis) for one in journals]
-
-    def equations_at(places: Sequence, forces: np.ndarray) -> list[Resting]:
-        return [
-            resting(one.bearing, one.speed, u, u_s, R)
-            for one, (u, u_s), R in zip(journals, places, forces, strict=True)
-        ]
-
+    journals = [one._replace(U=one.U @ basis, U_s=one.U_s @ basis) for one in journals]
     begin = [held() if one.bearing.carries else unloaded() for one in journals]
-    y, R = _solved(K, load, rows, begin)
+    y, R = _solved(K, load, journals, begin)
     if y is None or all(isinstance(one.bearing, RigidBearing) for one in journals):
         return (None if y is None else basis @ y), R
-    places = [
-        (starting_place(one.bearing, one.speed, force), U_s @ y)
-        for one, (_, U_s), force in zip(journals, rows, R, strict=True)
-    ]
-    equations = equations_at(places, R)
+    pairs = zip(journals, R, strict=True)
+    places = [(starting_place(one.bearing, one.speed, F), one.U_s @ y) for one, F in pairs]
+    equations = _equations(journals, places, R)
     for step in range(_MOST):
-        new_y, new_R = _solved(K, load, rows, equations)
+        new_y, new_R = _solved(K, load, journals, equations)
         if new_y is None:
             return None, R
         share = 1.0 if step < _SLOW else 0.5
         while True:
-            tried = y + share * (new_y - y), R + share * (new_R - R)
-            places = [(U @ tried[0], U_s @ tried[0]) for U, U_s in rows]
+            tried, forces = y + share * (new_y - y), R + share * (new_R - R)
+            places = [(one.U @ tried, one.U_s @ tried) for one in journals]
             try:
-                equations = equations_at(places, tried[1])
+                equations = _equations(journals, places, forces)
                 break
             except (ValueError, ArithmeticError):
                 share *= 0.5
                 if share < _SHORTEST:
                     raise
-        changes = [(tried[1] - R, tried[1])]
-        changes += [(U @ (tried[0] - y), U @ tried[0]) for U, _ in rows]
-        y, R = tried
+        changes = [(forces - R, forces)]
+        changes += [(one.U @ (tried - y), one.U @ tried) for one in journals]
+        y, R = tried, forces
         # the first equations are those of journals in the centre
         if step and all(
             np.abs(d).max() <= _CONVERGED * np.abs(x).max(initial=1e-12) for d, x in changes
@@ -126,19 +100,27 @@ def equilibrium(
     )
 
 
+def _equations(journals: Sequence[Journal], places: Sequence, forces: np.ndarray) -> list[Resting]:
+    """Return the equations of bearings at places of journals and sensors, and forces."""
+    return [
+        resting(one.bearing, one.speed, u, u_s, R)
+        for one, (u, u_s), R in zip(journals, places, forces, strict=True)
+    ]
+
+
 def _solved(
     K: np.ndarray,
     load: np.ndarray,
-    rows: Sequence[tuple[np.ndarray, np.ndarray]],
+    journals: Sequence[Journal],
     equations: Sequence[Resting],
 ) -> tuple[np.ndarray | None, np.ndarray]:
     """Return coordinates and forces of the linear equations, forces in units of a stiffness."""
-    k, count = len(K), 2 * len(rows)
-    most = max((np.abs(U).max(initial=0.0) for U, _ in rows), default=0.0)
+    k, count = len(K), 2 * len(journals)
+    most = max((np.abs(one.U).max(initial=0.0) for one in journals), default=0.0)
     unit = max(np.abs(K).max(initial=0.0), 1.0) / (most or 1.0)
     A, b = np.zeros((k + count, k + count)), np.zeros(k + count)
     A[:k, :k], b[:k] = K, load
-    for i, ((U, U_s), one) in enumerate(zip(rows, equations, strict=True)):
+    for i, ((*_, U, U_s), one) in enumerate(zip(journals, equations, strict=True)):
         own = slice(k + 2 * i, k + 2 * i + 2)
         # the equation of a compliance counts as many times as its forces do
         scale = unit if np.array_equal(one.A + one.A_s, np.eye(2)) else 1.0
@@ -150,5 +132,5 @@ def _solved(
         b[own] = -scale * one.c
     x = static_motion(A, b)
     if np.any(np.isnan(x)):
-        return None, np.zeros((len(rows), 2))
+        return None, np.zeros((len(journals), 2))
     return x[:k], unit * x[k:].reshape(-1, 2)

@@ -20,7 +20,7 @@ from exudyn_rotor.bearings.resting import Nonlinear
 from exudyn_rotor.bearings.series import FloatingRingBearing, SeriesSupport
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.equations import Terms, turned
-from exudyn_rotor.linear.model.assembly import Element
+from exudyn_rotor.linear.model.assembly import Assembly
 from exudyn_rotor.linear.model.body import RotorBody
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
@@ -51,17 +51,11 @@ def with_supports(
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A rotor on its supports under loads that stand still.
+    """A rotor on its supports under loads that stand still in the axes of a `frame`.
 
-    Attributes
-    ----------
-    model : LinearModel
-        With the linear supports; a bearing is a spring without stiffness there, its sensor another.
-    acting : sequence
-        What each element is: a Support or link, a bearing, None for a rigid bearing, or the number
-        of the element whose sensor it is.
-    speed : float
-    frame : str
+    The `model` has the linear supports; a bearing is a spring without stiffness there, its sensor
+    another. What each element is stands in `acting`: a support or link, a bearing, or the number of
+    the element whose sensor it is.
     """
 
     model: LinearModel
@@ -101,6 +95,10 @@ class Problem:
         axes = "inertial" if frame == "inertial" and speed else "rotor"
         return cls(replace(model, supports=plain, wanted_axes=axes), tuple(acting), speed, frame)
 
+    @property
+    def _assembly(self) -> Assembly:
+        return self.model.assembly(self.speed)
+
     @cached_property
     def stiffness(self) -> np.ndarray:
         """K (k, k) in the axes of the loads.
@@ -139,7 +137,10 @@ class Problem:
             For a moment at a node, and gravity across a rotor in axes that turn with it.
         """
         model, axes = self.model, self.axes
-        total = self._of_rotation()
+        total = np.zeros(model.size)
+        for body, place_of in zip(self._assembly.bodies, self._assembly.slices, strict=True):
+            if isinstance(body, RotorBody) and 0 in body.unbalance:
+                total[place_of] = (body.ratio * self.speed) ** 2 * body.unbalance[0].real
         for key, wrench in loads.items():
             point = place(model, key, self.speed)
             if point.is_node and np.any(wrench[3:]):
@@ -157,16 +158,6 @@ class Problem:
             total -= base[0].real.T @ (axes.T @ gravity)
         return total
 
-    def _of_rotation(self) -> np.ndarray:
-        """Return the centrifugal load (k,) that stands still."""
-        total = np.zeros(self.model.size)
-        if self.speed:
-            assembly = self.model.assembly(self.speed)
-            for body, place_of in zip(assembly.bodies, assembly.slices, strict=True):
-                if isinstance(body, RotorBody) and 0 in body.unbalance:
-                    total[place_of] = (body.ratio * self.speed) ** 2 * body.unbalance[0].real
-        return total
-
     @property
     def axes(self) -> np.ndarray:
         """(n1, n2, e) of the first rotor as columns."""
@@ -175,11 +166,7 @@ class Problem:
     @cached_property
     def _motions(self) -> list[np.ndarray]:
         """Motion (p, k) of each element in the axes of the loads."""
-        return [self._still(U) for U in self.model.assembly(self.speed).motions]
-
-    @property
-    def _elements(self) -> tuple[Element, ...]:
-        return self.model.assembly(self.speed).elements
+        return [self._still(U) for U in self._assembly.motions]
 
     @cached_property
     def journals(self) -> dict[int, Journal]:
@@ -188,9 +175,9 @@ class Problem:
         found = {}
         for i, one in enumerate(self.acting):
             if isinstance(one, Nonlinear):
-                speed = self.model.ratios[self._elements[i].ends[0][0]] * self.speed
+                owner, _ = self._assembly.elements[i].ends[0]
                 moved = self._motions[i][:2], self._motions[sensors.get(i, i)][:2]
-                found[i] = Journal(one, speed, *moved)
+                found[i] = Journal(one, self.model.ratios[owner] * self.speed, *moved)
         return found
 
     def solved(self, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -199,9 +186,11 @@ class Problem:
         Raises
         ------
         ValueError, ArithmeticError
-            Where something acts on a motion that nothing holds, or a film does not carry.
+            Where something acts on a motion that nothing holds, a film does not carry, or the
+            rotor buckles.
         """
         journals = list(self.journals.values())
+        self._check_buckling(journals)
         y, forces = equilibrium(self.stiffness, load, journals, self.model.free_spins)
         if y is None:
             free = " or ".join(self.model.free_motions) or "a combination of rigid motions"
@@ -211,21 +200,34 @@ class Problem:
             )
         return y, forces
 
+    def _check_buckling(self, journals: Sequence[Journal]) -> None:
+        """Refuse a rotor at rest whose supports do not hold it under the loads of its prestress."""
+        loaded = any(one.invariants.K0 is not None for one in self.model.rotors.values())
+        if loaded and not self.speed and not journals:
+            values = np.linalg.eigvalsh(0.5 * (self.stiffness + self.stiffness.T))
+            if values[0] < -_ROUNDING * values[-1]:
+                raise ValueError(
+                    "supports: the rotor buckles on them under the loads of its prestress; "
+                    "rotor.prestress(loads=…, supports=…) with them finds the buckling load"
+                )
+
     def seen(self, y: np.ndarray, forces: np.ndarray, at: Sequence[At] | None) -> dict[str, object]:
         """Return the fields of a result that are known of coordinates and forces of bearings."""
-        observed = places(self.model, at, self.speed)
+        observed, elements = places(self.model, at, self.speed), self._assembly.elements
         motion = np.array([self._still(one.seen) @ y for one in observed])
         motion[[one.is_node for one in observed], 3:] = np.nan
         own = dict(zip(self.journals, forces, strict=True))
         shown = [i for i, one in enumerate(self.acting) if not isinstance(one, int)]
         reactions, moved = np.zeros((2, len(shown), 6))
         for row, i in enumerate(shown):
-            element, u = self._elements[i], self._motions[i] @ y
-            moved[row] = u[:6]
-            reactions[row] = -(self._resistance(element) @ u)[:6]
+            u = self._motions[i] @ y
+            # in axes that turn past an element its damping resists, too
+            K, D = elements[i].matrices(self.speed, 0.0)
+            K = K + (self._turns - elements[i].turns) * self.speed * D @ axial_skew(len(D))
+            moved[row], reactions[row] = u[:6], -(K @ u)[:6]
             reactions[row, :2] += own.get(i, 0.0)
-        names = [self._label(self._elements[i].ends) for i in shown]
-        begins = [self._label(self._elements[i].ends[:1]) for i in shown]
+        names = [self._label(elements[i].ends) for i in shown]
+        begins = [self._label(elements[i].ends[:1]) for i in shown]
         return {
             "places": tuple(one.label for one in observed),
             "motion": motion,
@@ -236,11 +238,6 @@ class Problem:
             "support_heights": np.array([self._height(name) for name in begins]),
             "axes": self.axes,
         }
-
-    def _resistance(self, element: Element) -> np.ndarray:
-        """Return the stiffness of an element in the axes of the loads, past which it may turn."""
-        K, D = element.matrices(self.speed, 0.0)
-        return K + (self._turns - element.turns) * self.speed * D @ axial_skew(len(D))
 
     def _label(self, ends: Sequence[tuple[str, str]]) -> str:
         """Return the rotors and interfaces that an element acts on, without foundations."""
@@ -256,7 +253,7 @@ class Problem:
             body, name = self.model.owner(label)
             rotor = body.alone.rotor if isinstance(body, RotorBody) else rotor
             point = rotor.interfaces[name].reference
-        return float((point - rotor.axis.point) @ rotor.axis.direction)
+        return float(point @ rotor.axis.direction)
 
     def mesh(self, y: np.ndarray, stress: bool) -> dict[str, np.ndarray]:
         """Return the fields of a result at the nodes of the only rotor, as far as they are known.
@@ -266,7 +263,7 @@ class Problem:
         ValueError
             For the stress of several rotors, or of a rotor without stress modes.
         """
-        body = self.model.assembly(self.speed).bodies[0]
+        body = self._assembly.bodies[0]
         rotor, several = body.alone.rotor, len(self.model.rotors) > 1
         if stress and several:
             raise ValueError("stress: is found for one rotor alone, not for a train")
@@ -274,19 +271,14 @@ class Problem:
             return {}
         columns = body.spin.about_axis(body.alone.Q) if body.is_apart else body.alone.Q
         x = columns @ y[: body.size]
-        nodes = rotor.shapes.nodes
-        fields = {
-            "nodes": nodes,
+        return {
+            "nodes": rotor.shapes.nodes,
             "displacement": (rotor.shapes.matrix @ x).reshape(-1, 3),
-            "along": (nodes - rotor.axis.point) @ rotor.axis.direction,
-            "triangles": rotor.shapes.triangles,
+            "stress": rotor.stress_of(x, self.speed) if stress else None,
         }
-        if stress:
-            fields["stress"] = rotor.stress_of(x, self.speed)
-        return fields
 
 
 def _different(names: Sequence[str]) -> tuple[str, ...]:
     """Return names with a number behind each that came before."""
-    numbers = [names[: i + 1].count(name) for i, name in enumerate(names)]
-    return tuple(name if n == 1 else f"{name}, {n}" for name, n in zip(names, numbers, strict=True))
+    numbered = ((name, names[: i + 1].count(name)) for i, name in enumerate(names))
+    return tuple(name if n == 1 else f"{name}, {n}" for name, n in numbered)

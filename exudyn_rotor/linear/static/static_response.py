@@ -18,7 +18,7 @@ from exudyn_rotor.linear.model.rotor_train import RotorTrain
 from exudyn_rotor.linear.response.loads import At, checked_places
 from exudyn_rotor.linear.static.problem import Problem, with_supports
 from exudyn_rotor.linear.static.static_result import StaticResponse
-from exudyn_rotor.reduction.reduce import reduce_rotor, reduced_for_loads
+from exudyn_rotor.reduction.reduce import reduce, reduced_for_loads
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.rotating_axes import FRAMES
@@ -118,8 +118,7 @@ def static_response(
     at = checked_places(at)
     if isinstance(target, SolidRotor):
         check_interfaces(given, target.interfaces)
-        named = _at_nodes(target, named)
-        nodes = [key for key in named if isinstance(key, int)]
+        nodes = _loaded_nodes(target, named)
         target = reduced_for_loads(target, nodes, spins=speed != 0.0, stress=stress)
         accuracy = None  # nothing is left out at rest
     problem = Problem.of(with_supports(target, given, stiffening), speed, frame)
@@ -131,9 +130,9 @@ def static_response(
         richer = replace(problem, model=problem.model.richer)
         better = richer.seen(*richer.solved(richer.load(named, g)), at)
         fields["basis_errors"] = motion_error({0: fields["motion"]}, {0: better["motion"]})
-        worst = max((abs(fields["reactions"] - better["reactions"])).max(initial=0.0), 0.0)
-        worst = worst / max(np.abs(better["reactions"]).max(initial=0.0), 1e-300)
-        errors = np.append(fields["basis_errors"], worst)
+        away = np.abs(fields["reactions"] - better["reactions"]).max(initial=0.0)
+        most = np.abs(better["reactions"]).max(initial=1e-300)
+        errors = np.append(fields["basis_errors"], away / most)
         warn(errors, "a static deflection or reaction", problem.model, accuracy)
     return StaticResponse(**fields, **problem.mesh(y, stress), speed=speed, frame=frame)
 
@@ -157,18 +156,14 @@ def _checked_loads(loads: Loads | None) -> dict[At, np.ndarray]:
     return found
 
 
-def _at_nodes(rotor: SolidRotor, loads: Mapping[At, np.ndarray]) -> dict[str | int, np.ndarray]:
-    """Return loads by interfaces and numbers of nodes."""
-    found: dict[str | int, np.ndarray] = {}
-    for key, value in loads.items():
-        if isinstance(key, tuple):
-            key = rotor.nearest_node(key)
-        if isinstance(key, int) and key >= rotor.node_count:
-            raise ValueError(
-                f"loads: {key}: no such node; the mesh has 0 to {rotor.node_count - 1}"
-            )
-        found[key] = found.get(key, 0.0) + value
-    return found
+def _loaded_nodes(rotor: SolidRotor, loads: Mapping[At, np.ndarray]) -> list[int]:
+    """Return the numbers of the nodes that are loaded."""
+    named = {rotor.nearest_node(at) if isinstance(at, tuple) else at for at in loads}
+    nodes = sorted(at for at in named if isinstance(at, int))
+    if nodes and nodes[-1] >= rotor.node_count:
+        most = rotor.node_count - 1
+        raise ValueError(f"loads: {nodes[-1]}: no such node; the mesh has 0 to {most}")
+    return nodes
 
 
 def bearing_loads(
@@ -231,7 +226,7 @@ def bearing_loads(
     ]
     if isinstance(rotor, SolidRotor):
         if len(given) <= 2 and len(names) == len(given):
-            rotor = reduce_rotor(rotor, 0, prestress=False)
+            rotor = reduce(rotor, 0, prestress=False)
         else:
             rotor = reduced_for_loads(rotor, (), spins=speed != 0.0, stress=False)
     e = rotor.axis.direction

@@ -9,7 +9,7 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear.response.response import AtPlaces
-from exudyn_rotor.plotting import axes_or_new, draw_surface, legend_above
+from exudyn_rotor.plotting import axes_or_new, legend_above
 from exudyn_rotor.results import numbers, storable, text_table, words
 from exudyn_rotor.solid.elements import von_mises
 from exudyn_rotor.theory.rotating_axes import FRAMES
@@ -17,10 +17,8 @@ from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from mpl_toolkits.mplot3d import Axes3D
 
 _SLICES = 40  # of a rotor along its axis, whose mean displacements are drawn
-_SEEN = 0.1  # share of the rotor's length as which the largest displacement is drawn
 
 
 @storable
@@ -44,7 +42,7 @@ class StaticResponse(AtPlaces):
     journals : ndarray, shape (b, 6)
         Displacement [m] and rotation [rad] of the rotor in each support.
     heights : ndarray, shape (p,)
-        Positions of the places along the axis, from :attr:`SpinAxis.point` [m].
+        Positions of the places along the axis, from the origin of the mesh [m].
     support_heights : ndarray, shape (b,)
     speed : float
         Spin speed [rad/s].
@@ -55,10 +53,6 @@ class StaticResponse(AtPlaces):
     nodes, displacement : ndarray, shape (n, 3), or None
         Mesh nodes and their displacement, mesh axes [m]; None of several rotors, and of a rotor
         that was reduced without its shapes.
-    along : ndarray, shape (n,), or None
-        Positions of the nodes along the axis [m].
-    triangles : ndarray of int, shape (t, c), or None
-        Surface of the rotor.
     axes : ndarray, shape (3, 3)
         (n1, n2, e) as columns, mesh coordinates.
     stress : ndarray, shape (n, 6), or None
@@ -92,8 +86,6 @@ class StaticResponse(AtPlaces):
     basis_errors: np.ndarray | None = numbers("places", optional=True)
     nodes: np.ndarray | None = numbers("nodes", 3, optional=True)
     displacement: np.ndarray | None = numbers("nodes", 3, optional=True)
-    along: np.ndarray | None = numbers("nodes", optional=True)
-    triangles: np.ndarray | None = numbers("triangles", "corners", dtype=int, optional=True)
     stress: np.ndarray | None = numbers("nodes", 6, optional=True)
 
     def __post_init__(self) -> None:
@@ -178,37 +170,12 @@ class StaticResponse(AtPlaces):
         if self.nodes is None:
             order = np.argsort(self.heights, kind="stable")
             return self.heights[order], self.motion[order, :2]
-        edges = np.linspace(self.along.min(), self.along.max(), _SLICES + 1)[1:-1]
-        index = np.searchsorted(edges, self.along)
-        values = np.column_stack([self.along, self.displacement @ self.axes[:, :2]])
+        along = self.nodes @ self.axes[:, 2]
+        edges = np.linspace(along.min(), along.max(), _SLICES + 1)[1:-1]
+        index = np.searchsorted(edges, along)
+        values = np.column_stack([along, self.displacement @ self.axes[:, :2]])
         means = np.array([values[index == i].mean(axis=0) for i in np.unique(index)])
         return means[:, 0], means[:, 1:]
-
-    def plot_surface(self, scale: float | None = None, ax: Axes3D | None = None) -> Axes3D:
-        """Draw the deflected surface and the size of the displacement on it.
-
-        Parameters
-        ----------
-        scale : float, optional
-            Of the displacement; by default the largest is drawn as a tenth of the rotor's size.
-        ax : Axes3D, optional
-            Axes to draw in; those of a new figure by default.
-
-        Raises
-        ------
-        ValueError
-            Without a mesh surface.
-        """
-        if self.nodes is None or self.triangles is None or not self.triangles.size:
-            raise ValueError("plot_surface: there is no mesh surface; plot() draws the centre line")
-        sizes = np.linalg.norm(self.displacement, axis=1)
-        if scale is None:
-            most = sizes.max() or 1.0
-            scale = _SEEN * np.linalg.norm(np.ptp(self.nodes, axis=0)) / most
-        scale = checks.number(scale, "scale")
-        moved = self.nodes + scale * self.displacement
-        label = f"displacement [µm], drawn {scale:.3g} times"
-        return draw_surface(moved, self.triangles, 1e6 * sizes, label, ax)
 
 
 def _six(values: np.ndarray, along: str, about: str) -> dict[str, np.ndarray]:

@@ -9,76 +9,18 @@ from typing import Any
 
 import exudyn
 import numpy as np
-from exudyn.itemInterface import SensorSuperElement, SensorUserFunction
+from exudyn.itemInterface import SensorUserFunction
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor.frame import LOCKS, driving_force
+from exudyn_rotor.multibody.rotor.frame import LOCKS
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.formulation import ConstantSpeed
 
 _KINDS = exudyn.OutputVariableType
-_AT_MESH_NODE = (
-    _KINDS.Position,
-    _KINDS.Displacement,
-    _KINDS.DisplacementLocal,
-    _KINDS.Velocity,
-    _KINDS.VelocityLocal,
-    _KINDS.Acceleration,
-)
-AT_MARKER = {
-    "position": (_KINDS.Position, _KINDS.Displacement, _KINDS.Velocity),
-    "rigid": (
-        _KINDS.Position,
-        _KINDS.Displacement,
-        _KINDS.Velocity,
-        _KINDS.Rotation,
-        _KINDS.RotationMatrix,
-        _KINDS.AngularVelocity,
-        _KINDS.AngularVelocityLocal,
-        _KINDS.HomogeneousTransformation,
-    ),
-}
 
 
-def add_node_sensor(
-    body: RotorItems, node: int, output: exudyn.OutputVariableType, **options: Any
-) -> exudyn.SensorIndex:
-    """Add a ``SensorSuperElement`` at mesh node `node`, stored internally by default."""
-    marker_body, count = body.objects["marker_body"], body.mesh_node_count
-    if checks.count(node, "node", least=-1) not in range(count):
-        raise ValueError(
-            f"node: rotor {body.name!r} has mesh nodes 0 … {count - 1}, not {node}"
-            + ("" if count else "; it was reduced without shapes (keep_shapes=False)")
-        )
-    stress = body.mbs.GetObjectParameter(marker_body, "outputVariableModeBasis")
-    with_stress = np.size(stress) > 0
-    check_output(
-        output,
-        (*_AT_MESH_NODE, _KINDS.StressLocal) if with_stress else _AT_MESH_NODE,
-        "at a mesh node" + ("" if with_stress else ", of a rotor reduced without stress"),
-    )
-    settings = settings_of(body, options)
-    _warn_of_static_stress(body, output)
-    return body.mbs.AddSensor(
-        SensorSuperElement(
-            bodyNumber=marker_body,
-            meshNodeNumber=int(node),
-            outputVariableType=output,
-            **settings,
-        )
-    )
-
-
-def settings_at_mesh_node(
-    body: RotorItems, output: exudyn.OutputVariableType, options: Mapping[str, Any]
-) -> dict[str, Any]:
-    """Return the settings of a sensor at a mesh node of a full body; stress is none of them."""
-    check_output(output, _AT_MESH_NODE, "at a mesh node of a full body (stress: body.stress())")
-    return settings_of(body, options)
-
-
-def _warn_of_static_stress(body: RotorItems, output: exudyn.OutputVariableType) -> None:
+def warn_of_static_stress(body: RotorItems, output: exudyn.OutputVariableType) -> None:
     """Warn where a native stress sensor leaves out a static stress that the rotor was given."""
     spin = body.formulation.spin
     at_rest = isinstance(spin, ConstantSpeed) and spin.speed == 0.0
@@ -90,36 +32,11 @@ def _warn_of_static_stress(body: RotorItems, output: exudyn.OutputVariableType) 
         "the static centrifugal stress that they do not hold; record the modal coordinates and use "
         "StressField.of(reduced, body) with stress_history",
         UserWarning,
-        stacklevel=4,
+        stacklevel=3,
     )
 
 
-def add_drive_torque_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
-    """Add a sensor of the drive torque about e [N m].
-
-    The torque is the rotor's own share (the row of θ in (84–86)) minus the moment of all external
-    forces, which the locked coordinate of the marker body collects, and minus the friction of
-    bearings and stops, which the motion of a prescribed spin does not feel. Not in static
-    solutions: Exudyn's static solver returns multipliers with the opposite sign. Explicit solvers
-    have no accelerations at the first instant, so the first value is wrong with them.
-    """
-    if body.formulation.has_spin:
-        raise ValueError(
-            f"rotor {body.name!r} spins freely and has no drive; a prescribed spin has one"
-        )
-    external = _external_moment(body)
-
-    def torque(mbs, t, sensors, factors, configuration):
-        q, q_t, q_tt = body.coordinates(configuration)
-        modes = slice(body.motion.formulation.translation_count, None)
-        needed = body.motion.drive_torque(t, q, q_t, q_tt[modes])
-        given = external(t, configuration) + _deflected_weight(body, t, q[modes])
-        return [needed - given - _friction(body, configuration)]
-
-    return add_function_sensor(body, torque, options)
-
-
-def _friction(body: RotorItems, configuration: exudyn.ConfigurationType) -> float:
+def friction(body: RotorItems, configuration: exudyn.ConfigurationType) -> float:
     """Return the torque of bearings and stops on a rotor that does not feel it [N m]."""
     total = 0.0
     for made in (one.connector for one in body.supports):
@@ -128,7 +45,7 @@ def _friction(body: RotorItems, configuration: exudyn.ConfigurationType) -> floa
     return total
 
 
-def _deflected_weight(body: RotorItems, t: float, zeta: np.ndarray) -> float:
+def deflected_weight(body: RotorItems, t: float, zeta: np.ndarray) -> float:
     """Return the moment about e of gravity by the deflection Sζ, which Exudyn's load leaves out."""
     if body.gravity_load is None:
         return 0.0
@@ -139,23 +56,18 @@ def _deflected_weight(body: RotorItems, t: float, zeta: np.ndarray) -> float:
     return float(turn @ axis.skew @ (motion.invariants.S @ zeta) @ gravity)
 
 
-def _external_moment(body: RotorItems):
-    """Return a function that reads the external moment about e from the locked spin."""
+def external_moment(body: RotorItems, t: float, configuration: exudyn.ConfigurationType) -> float:
+    """Return the external moment about e, which the locked spin collects [N m]."""
     node, mbs, spin = body.nodes["rigid"], body.mbs, body.locks.spin
-    mass, drive = body.layout.lock_mass, driving_force(body.locks, body.layout.lock_mass)
-    own = "spin" in body.constraints
-    constraint = body.constraints.get("spin", body.constraints.get(LOCKS))
-    share = np.ones(1) if own else body.locks.rows[0][:, spin]
-
-    def moment(t, configuration) -> float:
-        acceleration = mbs.GetNodeOutput(node, _KINDS.Coordinates_tt, configuration)[spin]
-        reaction = mass[spin] * float(acceleration)
-        if constraint is not None:
-            reaction += float(share @ np.ravel(mbs.GetObjectOutput(constraint, _KINDS.Force)))
-        if drive is not None and constraint is None:
-            reaction -= drive(t)[spin]
-        return reaction
-
+    acceleration = mbs.GetNodeOutput(node, _KINDS.Coordinates_tt, configuration)[spin]
+    moment = body.layout.lock_mass[spin] * float(acceleration)
+    if body.guide is not None:
+        moment -= body.guide(t)[spin]
+    if "spin" in body.constraints:
+        moment += float(np.ravel(mbs.GetObjectOutput(body.constraints["spin"], _KINDS.Force))[0])
+    elif body.constraints:
+        share = body.locks.rows[0][:, spin]
+        moment += float(share @ mbs.GetObjectOutput(body.constraints[LOCKS], _KINDS.Force))
     return moment
 
 
@@ -167,16 +79,12 @@ def add_function_sensor(
     return body.mbs.AddSensor(SensorUserFunction(sensorUserFunction=function, **settings))
 
 
-def check_output(
-    output: exudyn.OutputVariableType, known: tuple[exudyn.OutputVariableType, ...], where: str
-) -> None:
-    """Refuse what Exudyn would refuse as late as in ``mbs.Assemble()``."""
-    names = ", ".join(kind.name for kind in known)
-    checks.instance(
-        output, "output", _KINDS, f"{where} there are, of exudyn.OutputVariableType: {names}"
-    )
-    if output not in known:
-        raise ValueError(f"output: {output.name} is not available {where}; there are: {names}")
+def native_settings(
+    body: RotorItems, output: exudyn.OutputVariableType, options: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the settings of a native sensor; Exudyn refuses unsuited outputs in Assemble."""
+    checks.instance(output, "output", _KINDS)
+    return {"outputVariableType": output} | settings_of(body, options)
 
 
 def settings_of(body: RotorItems, options: Mapping[str, Any]) -> dict[str, Any]:

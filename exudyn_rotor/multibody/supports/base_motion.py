@@ -131,7 +131,7 @@ def _add_load(
 
 def _add_forces(body: RotorItems, load: Callable) -> exudyn.ObjectIndex:
     """Add an object of forces, without inertia or stiffness, on the nodes of a rotor."""
-    motion, layout = body.plan.motion, body.plan.layout
+    motion, layout = body.motion, body.layout
     empty = container(sp.csr_array((layout.size, layout.size)))
     held = [place for place in body.locks.fixed if place < 3]
 

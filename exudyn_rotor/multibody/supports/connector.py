@@ -61,19 +61,10 @@ class Force(NamedTuple):
 
 
 class Connector(ABC):
-    """A law between a rotor and what carries it.
+    """A law between the end of a rotor and that of its base, None for the ground.
 
-    Attributes
-    ----------
-    end : RotorEnd
-    base : FoundationEnd, MarkerEnd or None
-        None for the ground.
-    nodes : tuple of NodeIndex
-        Of the rotor, of the base, and of coordinates of the law's own.
-    own : int
-        Number of these.
-    muted : bool
-        Whether its object has no force, as where linear equations take the law itself.
+    Its coordinates are those of the `nodes` of both, and `own` more of the law. `muted` its object
+    has no force, as where linear equations take the law itself.
     """
 
     has_mass = False  # whether a mass goes with the rotor across the axis
@@ -379,10 +370,6 @@ class MagneticConnector(Connector):
         return Force(np.array([fx, fy, 0.0, 0.0, *own]), J, L, K, D)
 
 
-_SPEED_STEP = 1e-6  # of the speed, or of 1 rad/s: differences of friction by it
-FilmPoint = tuple[tuple[float, ...], np.ndarray, np.ndarray, np.ndarray | None]
-
-
 class BearingConnector(Connector):
     """A bearing across the axis, or the films of pads, whose tilts are own coordinates.
 
@@ -470,43 +457,31 @@ class BearingConnector(Connector):
         total, own = forces.sum(axis=0).tolist(), -(forces[:, :2] * self.levers).sum(axis=1)
         return *total[:2], 0.0, (0.0, 0.0, total[2] if self.brakes else 0.0), own
 
-    def tangent(self, t: float) -> Force:
-        """Return the force, its tangent, and rows: across the axis, of the spin, and of pads."""
-        parts = zip(self.parts, self.motions(), strict=True)
-        return self.assembled([self._point(*each) for each in parts])
+    def tangent(self, t: float, cage: float | None = None) -> Force:
+        """Return the force, its tangent, and rows: across the axis, of the spin, and of pads.
 
-    def _point(self, part: Bearing, motion: tuple[float, ...]) -> FilmPoint:
-        """Return values of a law, K and D (2, 2); with a torque less the slopes by speed, too."""
-        if not self.brakes:
-            return part.law(*motion), *part.slopes(*motion), None
-        step = _SPEED_STEP * max(abs(motion[5]), 1.0)
-        ahead = part.law_with_torque(*motion[:5], motion[5] + step)
-        values = part.law_with_torque(*motion)
-        faster = (np.array(values) - ahead) / step
-        return values, *part.slopes(*motion), faster
-
-    def assembled(self, parts: list[FilmPoint]) -> Force:
-        """Return force and tangent on the ports, from the values and K, D (2, 2) of each film.
-
-        A third value is a torque, with less its derivative, and that of the force, by the speed.
+        Cages of rolling bearings stand as at the spin angle `cage`, if it is given. How forces
+        change with the spin speed is left out: within a step it hardly changes.
         """
         count = 3 + self.own
         force, (K, D) = np.zeros(count), np.zeros((2, count, count))
-        for number, (values, k, d, by_speed) in enumerate(parts):
+        parts = zip(self.parts, self.laws, self.motions(), strict=True)
+        for number, (part, law, motion) in enumerate(parts):
+            if cage is not None:
+                motion = *motion[:4], cage, motion[5]
+            values, (k, d) = np.array(law(*motion)), part.slopes(*motion)
             if self.feels:
                 k = k + self.base.speed * d @ np.array([[0.0, 1.0], [-1.0, 0.0]])
                 if self._turn is not None:
                     c, s = self._turn
                     R = np.array([[c, -s], [s, c]])
-                    k, d, values = R @ k @ R.T, R @ d @ R.T, [*(R @ values[:2]), *values[2:]]
+                    k, d, values[:2] = R @ k @ R.T, R @ d @ R.T, R @ values[:2]
             S = np.eye(3, count)[: len(values)]  # of what this film sees, by the ports
             if self.levers is not None:
                 S[:2, 3 + number] = -self.levers[number]
             force += values @ S
             K += S[:2].T @ k @ S[:2]
             D += S[:2].T @ d @ S[:2]
-            if by_speed is not None:
-                D[:, 2] += by_speed @ S
         J, L = np.zeros((2, count, self.size))
         J[:3], L[:3] = self.rows()[[0, 1, 5]], self.rate_rows()[[0, 1, 5]]
         J[3:, self._second :] = np.eye(self.own)
@@ -527,7 +502,8 @@ class BearingConnector(Connector):
 
 def has_torque(bearing: Bearing) -> bool:
     """Return whether a bearing has a torque about the axis in scenes."""
-    return isinstance(bearing, TiltingPadBearing) or bearing.law_with_torque is not None
+    with_torque = bearing.law_with_torque is not None and getattr(bearing, "friction", None) != 0.0
+    return with_torque or isinstance(bearing, TiltingPadBearing)
 
 
 def watch_clearance(body: RotorItems, connector: BearingConnector | MagneticConnector) -> None:

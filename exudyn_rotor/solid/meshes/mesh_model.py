@@ -81,9 +81,7 @@ def import_model(
 def _read(mesh: str | os.PathLike | meshio.Mesh, refusals: Refusals) -> MeshData:
     if hasattr(mesh, "cells_dict"):
         return by_meshio.convert(mesh)
-    path = checks.path(mesh, "mesh")
-    if not path.is_file():
-        raise ValueError(f"mesh: there is no file {str(path)!r}")
+    path = checks.file(mesh, "mesh")
     reader = _READERS.get(path.suffix.lower())
     return by_meshio.convert(by_meshio.load(path)) if reader is None else reader(path, refusals)
 

@@ -16,11 +16,10 @@ from typing import NamedTuple
 import exudyn
 import numpy as np
 
-from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating, without_forces
-from exudyn_rotor.multibody.rotor.record import spin_at_start
-from exudyn_rotor.multibody.supports.connector import BearingConnector, Connector, FilmPoint, Force
+from exudyn_rotor.multibody.rotor.rotor_body import spin_at_start
+from exudyn_rotor.multibody.supports.connector import BearingConnector, Connector, Force
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.stiffening import stiffening
@@ -51,17 +50,9 @@ class Attached:
     def force(self, t: float) -> Force:
         """Return the law's forces on its ports where it has been read, and its tangent."""
         made = self.connector
-        if not isinstance(made, BearingConnector):
-            return made.tangent(t)
-        parts = zip(made.parts, made.motions(), strict=True)
-        return made.assembled([self._point(*each) for each in parts])
-
-    def _point(self, part: Bearing, motion: tuple[float, ...]) -> FilmPoint:
-        if part.uses_angle:  # cages of rolling bearings stand
-            motion = *motion[:4], self._cage, motion[5]
-        brakes = self.connector.brakes
-        law = part.law_with_torque if brakes else part.law
-        return law(*motion), *part.slopes(*motion), np.zeros(3) if brakes else None
+        return (
+            made.tangent(t, self._cage) if isinstance(made, BearingConnector) else made.tangent(t)
+        )
 
 
 class Forces(NamedTuple):
@@ -97,6 +88,10 @@ class Probe:
         self.rotor = np.arange(scene.modal.stop)
         self.rotor_terms = lru_cache(_KEPT)(self._rotor_terms)
         self.turn = lru_cache(_KEPT)(scene.turn)
+
+    def at_rest(self) -> Probe:
+        """Return the same scene without spin."""
+        return Probe(self.scene, 0.0, self.solver, self.laws)
 
     # ------------------------------------------------------------------ constraints and masses
 

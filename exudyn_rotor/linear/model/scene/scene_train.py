@@ -15,9 +15,8 @@ from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.linear.model.rotor_train import Link, RotorTrain
 from exudyn_rotor.linear.model.scene.scene_checks import check_body, rotors_in
-from exudyn_rotor.multibody.drives.connect_rotors import SceneConnection
-from exudyn_rotor.multibody.rotor.record import spin_at_start
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.drives import SceneConnection
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, spin_at_start
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 
 _PARALLEL = 1e-9  # entries of axes by which rounding may set rotors apart
@@ -79,7 +78,7 @@ def _check_all_rotors(mbs: exudyn.MainSystem, bodies: Sequence[RotorBody]) -> No
 
 def _check_alike(first: RotorBody, body: RotorBody) -> None:
     """Refuse rotors whose equations have no common axes, speed or level, and what trains lack."""
-    setup, connections = body.plan.setup, [isinstance(d, SceneConnection) for d in body.drives]
+    connections = [isinstance(drive, SceneConnection) for drive in body.drives]
     for fault, is_there in (
         ("starts without a spin speed, on which ratios depend", spin_at_start(body)[1] == 0.0),
         (
@@ -87,7 +86,7 @@ def _check_alike(first: RotorBody, body: RotorBody) -> None:
             np.abs(body.standing_axes - first.standing_axes).max() > _PARALLEL,
         ),
         (f"has another stiffening than {first.name!r}", body.stiffening != first.stiffening),
-        ("has damping from add_rotor", setup.mass_damping or setup.stiffness_damping),
+        ("has damping from add_rotor", body.mass_damping or body.stiffness_damping),
         ("has a drive, whose torque trains do not have", not all(connections)),
     ):
         if is_there:
