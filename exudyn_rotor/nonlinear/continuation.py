@@ -221,14 +221,13 @@ class Family:
         low, high = limits or (values[0], values[-1])
         for _ in range(_MOST_POINTS):
             try:
-                after, step = self._next(point, step)
+                *changes, after, step = self._next(point, step)
             except UnconvergedError:
                 self.lost.append(f"{point.value:.6g}")
                 return
             if until is not None and until(point, after):
                 return
-            section = [point, *self._changes(point, after), after]
-            for first, second in pairwise(section):
+            for first, second in pairwise([point, *changes, after]):
                 yield from self._landed(first, second, values)
                 if second is not after or low <= after.value <= high:
                     yield second
@@ -237,8 +236,11 @@ class Family:
             point = after
         self.lost.append(f"{point.value:.6g}")
 
-    def _next(self, point: Point, step: float) -> tuple[Point, float]:
-        """Return the next point, measured, and the step after it."""
+    def _next(self, point: Point, step: float) -> tuple:
+        """Return changes of the motion, the next point, measured, and the step after it.
+
+        A step over a change that is not found between its ends has gone to another branch.
+        """
         while step > _SHORTEST:
             (tc, tp), row = point.tangent, self._row(point.tangent, point.c)
             c, p = point.c + step * tc, point.p + step * tp
@@ -258,8 +260,13 @@ class Family:
             if step > _SMOOTH and (is_far or turn < _TURN):
                 step *= 0.5
                 continue
+            after = self.measure(after)
+            changes = self._changes(point, after)
+            if step > _SMOOTH and changes is None:
+                step *= 0.5
+                continue
             factor = np.clip(_WANTED / count, 0.5, 2.0) * (0.7 if turn < 0.97 else 1.0)
-            return self.measure(after), min(factor * step, _LONGEST)
+            return *(changes or ()), after, min(factor * step, _LONGEST)
         raise UnconvergedError("a branch ends")
 
     def aside(self, point: Point) -> tuple[Point, int] | None:
@@ -308,18 +315,18 @@ class Family:
         start, row = self._chord(first, second, share)
         return self.corrected(start, row)[0]
 
-    def _changes(self, first: Point, second: Point) -> list[Point]:
-        """Return folds, or else changes of stability, between two points of a branch."""
+    def _changes(self, first: Point, second: Point) -> list[Point] | None:
+        """Return folds, or else changes of stability, between two points; None if not found."""
         if first.tangent[1][-1] * second.tangent[1][-1] < 0.0:
             return self._change(first, second, lambda one: float(one.tangent[1][-1]), "fold")
         if (first.growth > 0.0) != (second.growth > 0.0):
             found = self._change(first, second, lambda one: self.measure(one).growth, "")
-            return [replace(one, kind=_kind(one.multiplier)) for one in found]
+            return found and [replace(one, kind=_kind(one.multiplier)) for one in found]
         return []
 
     def _change(
         self, first: Point, second: Point, of: Callable[[Point], float], kind: str
-    ) -> list[Point]:
+    ) -> list[Point] | None:
         ends = {0.0: of(first), 1.0: of(second)}
 
         def at(share: float) -> float:
@@ -329,7 +336,7 @@ class Family:
             share = brentq(at, 0.0, 1.0, xtol=_IN_PARAMETER)
             found = self.measure(self._between(first, second, share))
         except FAILS:
-            return []
+            return None
         return [replace(found, kind=kind, error=second.error)]
 
     def _landed(self, first: Point, second: Point, values: np.ndarray) -> Iterator[Point]:
