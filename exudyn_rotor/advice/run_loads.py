@@ -1,7 +1,7 @@
 """Loads of a run, and the static response to them that the modes leave out.
 
 The loads on a rotor are what its equations leave over, ``f = M q̈ − Q(q, q̇)``. Forces and moments F
-at the places where something acts (:mod:`exudyn_rotor.multibody.load_places`) follow from them by
+at the places where something acts (`load_places`) follow from them by
 ``Uᵀ F = f`` with the motion U of these places, in the sense of least squares. They, and the
 centrifugal load of the rotor itself, deform it by more than the run shows: by what the response of
 attachment modes has beyond the response of the modes. The inertia of modes that are left out does
@@ -12,9 +12,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.multibody.load_places import load_places
-from exudyn_rotor.multibody.rotor.record import Record
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.connections import load_places
+from exudyn_rotor.multibody.rotor.rotor_body import Record, RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.axis import SpinAxis, skew
 
@@ -71,7 +70,7 @@ def _without_weight(body: RotorBody, record: Record, index: int) -> np.ndarray:
     motion, inv, weight = body.motion, body.motion.invariants, np.zeros(3)
     t, places = float(record.time[index]), body.layout.unknowns
     q, q_t, q_tt = (rows[index][places] for rows in (record.q, record.q_t, record.q_tt))
-    external = motion.mass_matrix(t, q, q_t) @ q_tt - motion.forces(t, q, q_t)
+    external = motion.mass_matrix(t, q) @ q_tt - motion.forces(t, q, q_t)
     if body.gravity_load is not None:
         gravity = body.mbs.GetLoadParameter(body.gravity_load, "loadVector")
         weight = inv.mass * np.asarray(gravity)

@@ -20,8 +20,7 @@ from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.connections import lost_items
-from exudyn_rotor.multibody.rotor.record import Record, implicit_step
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import Record, RotorBody, implicit_step
 from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
 from exudyn_rotor.solid.elements import von_mises
 from exudyn_rotor.theory.invariants import Invariants, inertia_tensor

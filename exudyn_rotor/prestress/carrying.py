@@ -29,7 +29,6 @@ from exudyn_rotor.solid.rotor import FiniteElementRotor, Rotor, check_unstressed
 from exudyn_rotor.solvers.factor import TooLittleMemoryError
 from exudyn_rotor.solvers.inertia_relief import (
     InertiaRelief,
-    Way,
     free_motions_of,
     inertia_relief,
 )
@@ -138,7 +137,7 @@ def estimated_stiffness(rotor: FiniteElementRotor) -> sp.csr_array | None:
     try:
         rigid = inertia_relief(rotor).rigid
         truss = _truss(rotor, i, j, bars, stiffness)
-        relief = InertiaRelief(truss, rotor.mass, rigid, Way())
+        relief = InertiaRelief(truss, rotor.mass, rigid)
     except (ValueError, TooLittleMemoryError):
         return None
     moved = relief.solve(rotor.centrifugal_load).reshape(-1, 3)
@@ -146,7 +145,7 @@ def estimated_stiffness(rotor: FiniteElementRotor) -> sp.csr_array | None:
     network = sp.csr_array((-tension, (i, j)), shape=(count, count))
     network = network - sp.diags_array(np.asarray(network.sum(axis=1)).ravel())
     network = 0.5 * (network + network.T)
-    return sp.csr_array(sp.kron(network, sp.eye_array(3), format="csr"))
+    return matrices.in_all_directions(network)
 
 
 def _truss(

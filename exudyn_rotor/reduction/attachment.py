@@ -26,9 +26,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from exudyn_rotor.reduction.component import ModeBasis, numbered, rigid_columns, unit_columns
+from exudyn_rotor.solid.model import clamped_coordinates
 from exudyn_rotor.solid.rotor import FiniteElementRotor, Interface
 from exudyn_rotor.solvers.inertia_relief import (
-    clamped_coordinates,
     coordinates,
     held_inverse,
     inertia_relief,

@@ -127,7 +127,7 @@ def free_modes(rotor: FiniteElementRotor, count: int) -> ModeBasis:
     >>> from exudyn_rotor import SolidRotor, free_modes
     >>> spring = 1e6 * np.kron([[1, -1], [-1, 1]], np.diag([0, 0, 1]))
     >>> ends = [[0, 0, 0], [0, 0, 1]]
-    >>> rotor = SolidRotor.from_matrices(np.eye(6), spring, ends, "z", grounded=False)
+    >>> rotor = SolidRotor.from_matrices(np.eye(6), spring, ends, "z")
     >>> modes = free_modes(rotor, 1)
     >>> print(modes.labels, np.round(modes.frequencies**2))
     ('eigenmode 1',) [2000000.]
@@ -143,14 +143,20 @@ def free_modes(rotor: FiniteElementRotor, count: int) -> ModeBasis:
         if eigen.is_small(size, number) and not (graded and 4 * number <= size):
             dense = stiffness.toarray(), mass.toarray()
             return eigen.dense_modes(*dense, number, skip=rigid_count)
-        inverse = inertia_relief(rotor, rigid)
+        inverse = inertia_relief(rotor)
         return eigen.lowest_modes(stiffness, mass, inverse, number)
 
     values, modes = lowest_with_pairs(solve, count, size - rigid_count)
     precision = relative_rounding(stiffness, rigid)
     eigen.check_modes(stiffness, mass, values, modes, precision=precision)
-    modes = eigen.with_fixed_sign(modes)
+    modes = with_fixed_sign(modes)
     return ModeBasis(modes, numbered("eigenmode", count), rotor.nodes, np.sqrt(values))
+
+
+def with_fixed_sign(modes: np.ndarray) -> np.ndarray:
+    """Return the modes with the largest component of each positive."""
+    largest = np.argmax(np.abs(modes), axis=0)
+    return modes * np.sign(modes[largest, np.arange(modes.shape[1])])
 
 
 def lowest_with_pairs(

@@ -20,6 +20,7 @@ from exudyn_rotor.reduction.component import (
     check_rotor,
     lowest_with_pairs,
     numbered,
+    with_fixed_sign,
 )
 from exudyn_rotor.solid.rotor import FiniteElementRotor, Interface
 from exudyn_rotor.solvers import modes as eigen
@@ -101,7 +102,7 @@ def craig_bampton_modes(
     static, values, eigenmodes = _COUPLINGS[coupling](rotor, count, chosen)
     labels = sum((_labels(interface) for interface in chosen), ()) + numbered("eigenmode", count)
     return ModeBasis(
-        np.hstack([static, eigen.with_fixed_sign(eigenmodes)]),
+        np.hstack([static, with_fixed_sign(eigenmodes)]),
         labels,
         rotor.nodes,
         np.concatenate([np.full(static.shape[1], np.nan), np.sqrt(values)]),

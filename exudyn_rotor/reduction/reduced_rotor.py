@@ -218,7 +218,7 @@ class ReducedRotor:
     >>> from exudyn_rotor import SolidRotor
     >>> spring = 1e6 * np.kron([[1, -1], [-1, 1]], np.diag([0, 0, 1]))
     >>> ends = [[0, 0, 0], [0, 0, 1]]
-    >>> rotor = SolidRotor.from_matrices(np.eye(6), spring, ends, "z", grounded=False)
+    >>> rotor = SolidRotor.from_matrices(np.eye(6), spring, ends, "z")
     >>> reduced = rotor.reduce(1)
     >>> reduced
     ReducedRotor(5 rigid + 1 flexible modes, 2 kg, interfaces: none)

@@ -95,7 +95,7 @@ def select_modes(reduced: ReducedRotor, formulation: Formulation) -> Selection:
     >>> from exudyn_rotor import Formulation, SolidRotor, select_modes
     >>> spring = 1e6 * np.kron([[1, -1], [-1, 1]], np.diag([0, 0, 1]))
     >>> ends = [[0, 0, 0], [0, 0, 1]]
-    >>> rotor = SolidRotor.from_matrices(np.eye(6), spring, ends, "z", grounded=False)
+    >>> rotor = SolidRotor.from_matrices(np.eye(6), spring, ends, "z")
     >>> select_modes(rotor.reduce(1), Formulation("free", 300.0)).labels
     ('tilt 1', 'tilt 2', 'mode 1 (225.1 Hz)')
     """
@@ -269,7 +269,7 @@ def keep_modes(reduced: ReducedRotor, indices: Sequence[int]) -> ReducedRotor:
     >>> from exudyn_rotor import SolidRotor, keep_modes
     >>> spring = 1e6 * np.kron([[1, -1], [-1, 1]], np.diag([0, 0, 1]))
     >>> ends = [[0, 0, 0], [0, 0, 1]]
-    >>> rotor = SolidRotor.from_matrices(np.eye(6), spring, ends, "z", grounded=False)
+    >>> rotor = SolidRotor.from_matrices(np.eye(6), spring, ends, "z")
     >>> keep_modes(rotor.reduce(1), [])
     ReducedRotor(5 rigid + 0 flexible modes, 2 kg, interfaces: none)
     """

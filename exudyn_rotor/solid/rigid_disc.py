@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 from scipy.sparse.linalg import spsolve
 
 from exudyn_rotor import checks
-from exudyn_rotor.solid.matrices import as_node_numbers
+from exudyn_rotor.solid.matrices import as_node_numbers, in_all_directions
 from exudyn_rotor.theory.axis import SpinAxis, rotations, translations
 
 
@@ -210,7 +210,7 @@ class RigidDisc:
         rows, columns = np.meshgrid(some, some, indexing="ij")
         entries = scalar.ravel(), (rows.ravel(), columns.ravel())
         matrix = sp.csr_array(entries, shape=(node_count, node_count))
-        return sp.csr_array(sp.kron(matrix, sp.eye_array(3), format="csr"))
+        return in_all_directions(matrix)
 
     def stiffness_matrix(self, node_count: int) -> sp.csr_array:
         """Return the springs that hold the section rigid, shape (3n, 3n) [N/m]."""

@@ -106,8 +106,7 @@ def test_motors_and_shaken_ground_are_resisted(reduced, translation):
 
 
 @pytest.mark.parametrize("translation", ["free", "in-plane", "none"])
-@pytest.mark.parametrize("locking", ["mass", "constraints"])
-@pytest.mark.parametrize("markers", ["rigid", "position"])
+@pytest.mark.parametrize(("locking", "markers"), [("mass", "rigid"), ("constraints", "position")])
 def test_every_formulation_keeps_all_loads(reduced, translation, locking, markers):
     """Weight, unbalance and bearings reach the equations; the axis lies askew to gravity."""
     turn = [[0, 0, 1], [1, 0, 0], [0, 1, 0]]

@@ -49,7 +49,7 @@ def small_rotor_in_millimetres(beam):
     """A shaft of 6 mm × 30 mm, which would be of 6.7e6 kg."""
     corners = np.array([[x, y, z] for x in (-3.0, 3.0) for y in (-3.0, 3.0) for z in (0.0, 30.0)])
     mass = 7850.0 * np.pi * 3.0**2 * 30.0 / 8.0
-    SolidRotor.from_matrices(mass * np.eye(24), np.zeros((24, 24)), corners, "z", allow_parts=True)
+    SolidRotor.from_matrices(mass * np.eye(24), np.zeros((24, 24)), corners, "z")
 
 
 def mass_on_balls(speed, tolerance=1e-2, **bearing):

@@ -147,11 +147,12 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     checks.choice(markers, "markers", MARKER_KINDS)
     options, offsets = checked_options(given), superElementRigidMarkersOffsets
     if offsets is not None:
-        count = len(femInterface.nodeSets)
-        name_of = "superElementRigidMarkersOffsets"
-        offsets = checks.array(offsets, name_of, "m", shape=(count, 3))
+        shape = (len(femInterface.nodeSets), 3)
+        offsets = checks.array(offsets, "superElementRigidMarkersOffsets", "m", shape=shape)
         if markers != "rigid":
-            raise ValueError(f"{name_of}: needs markers='rigid', got {markers!r}")
+            raise ValueError(
+                f"superElementRigidMarkersOffsets: needs markers='rigid', got {markers!r}"
+            )
     body = add_swapped_body(
         mbs,
         name,

@@ -215,20 +215,17 @@ class SceneModel(LinearModel):
         return powers
 
     def _systems(
-        self, speeds: np.ndarray, within: str = "", frequencies: np.ndarray | None = None
+        self, speeds: np.ndarray, frequencies: np.ndarray | None
     ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         if self._is_list:
-            return super()._systems(speeds, within, frequencies)
+            return super()._systems(speeds, frequencies)
         found, refused = [], {}
-        basis = getattr(self, f"{within}_basis") if within else None
         rates = [None] * len(speeds) if frequencies is None else frequencies.tolist()
         for place, (speed, rate) in enumerate(zip(speeds.tolist(), rates, strict=True)):
             try:
-                one = self.at(speed, rate)
+                found.append(self.at(speed, rate))
             except NO_EQUATIONS as error:
                 refused[place] = error
-            else:
-                found.append(one if basis is None else one.projected(basis))
         return joined(found) if found else None, refused
 
     @property
