@@ -26,7 +26,7 @@ from exudyn_rotor.linear.modal.critical_speeds import (
 from exudyn_rotor.linear.modal.resonance import NO_EQUATIONS, Search
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS
 from exudyn_rotor.linear.model.build import linear_model, warn_of_left_out_stiffening
-from exudyn_rotor.linear.model.linear_model import AXES, LinearModel, warn_of_refused
+from exudyn_rotor.linear.model.linear_model import AXES, warn_of_refused
 from exudyn_rotor.linear.over import ModelResult, basis_column, table_lines
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import numbers, storable
@@ -39,7 +39,6 @@ if TYPE_CHECKING:
 
 _CURVE = 200  # speeds of a bearing's own curve
 _FILM = 1e-3  # error of a critical speed on films
-_UNIT = 1e15  # N/m, beside which all others are rounding
 
 
 @storable
@@ -239,24 +238,20 @@ def critical_speed_map(
     checks.accuracy(accuracy)
     checks.flag(progress, "progress")
     curve = None if bearing is None else _as_support(bearing)
-    kept = tuple(map(_made_once, given_supports(supports)))
+    kept = given_supports(supports)
     first = linear_model(
         target, supports=_with(kept, names, values[0]), foundation=foundation,
         stiffening=stiffening, axes=axes,
     ).undamped()  # fmt: skip
-    # a map takes what a film is within its own smoothness, for films are solved at each speed
-    allowed = 1e-7 if first.table_speeds.size else _FILM
-    search = Search(first, *given, _added(first, names), allowed)
     judged = set() if accuracy is None else set(points(len(values)).tolist())
     solved: dict[int, CriticalSpeeds] = {}
     failed: list[tuple[str, Exception]] = []
     for row, stiffness in enumerate(tqdm(values, "critical speed map", disable=not progress)):
-        model = first
-        if row in judged:
-            model = replace(first, supports={"": _with(kept, names, stiffness)})
-        search.stiffness.factor = stiffness - values[0]
+        model = replace(first, supports={"": _with(kept, names, stiffness)})
+        # a map takes what a film is within its own smoothness
+        search = Search(model, *given, 1e-7 if model.table_speeds.size else _FILM)
         try:
-            solved[row] = collected(search, model, row in judged)
+            solved[row] = collected(search, row in judged)
         except ValueError as error:  # as of a support whose stiffness is negative
             failed.append((f"{stiffness:.4g} N/m", error))
     warn_of_refused(failed, len(values))
@@ -270,25 +265,6 @@ def critical_speed_map(
 
 def _with(supports: tuple[Given, ...], names: Sequence[str], stiffness: float) -> tuple[Given, ...]:
     return (*supports, *(Support(name, float(stiffness)) for name in names))
-
-
-def _added(model: LinearModel, names: Sequence[str]) -> dict[int, np.ndarray]:
-    """Return the Fourier terms of what supports of 1 N/m add, in the coordinates of H."""
-    given = {"wanted_axes": model.axes, "largest_unevenness": np.inf}
-    stiff, none = (
-        replace(model, supports={"": supports}, **given).at(1.0).K
-        for supports in (_with((), names, _UNIT), ())
-    )
-    basis = np.eye(model.size) if model.moving_basis is None else model.moving_basis
-    added = {n: (X - none.get(n, 0.0)) / _UNIT for n, X in stiff.items()}
-    own = model.size - len(added[0])  # rings of supports in series, whose coordinates are the last
-    return {n: basis.T @ np.pad(X, (0, own)) @ basis for n, X in added.items()}
-
-
-def _made_once(given: Given) -> Given:
-    """Return a bearing as the support that it is for all stiffnesses, if it is one."""
-    made = given if isinstance(given, MagneticBearing | Support) else given.linearised()
-    return made if isinstance(made, Support) else given
 
 
 def _collected(
