@@ -135,20 +135,14 @@ def draw_orders(
     return handles
 
 
-def shade_range(
-    ax: Axes, limits: np.ndarray, margins: np.ndarray, units: Units, *, across: bool = False
-) -> list[Patch]:
-    """Shade operating speeds [rad/s] and the margins beside them; return what the legend needs.
-
-    Upright where the speed runs to the right, `across` where it runs upwards.
-    """
-    shade = ax.axhspan if across else ax.axvspan
+def shade_range(ax: Axes, limits: np.ndarray, margins: np.ndarray, units: Units) -> list[Patch]:
+    """Shade operating speeds [rad/s] and the margins beside them; return what the legend needs."""
     low, high = units.speeds(limits)
-    handles = [shade(low, high, color=plotting.COLORS[2], alpha=0.15, lw=0.0)]
+    handles = [ax.axvspan(low, high, color=plotting.COLORS[2], alpha=0.15, lw=0.0)]
     handles[0].set_label("operating range")
     if np.any(margins > 0.0):
         beside = [((1.0 - margins[0]) * low, low), (high, (1.0 + margins[1]) * high)]
-        drawn = [shade(*span, color="0.75", alpha=0.5, lw=0.0) for span in beside]
+        drawn = [ax.axvspan(*span, color="0.75", alpha=0.5, lw=0.0) for span in beside]
         drawn[0].set_label("separation margin")
         handles.append(drawn[0])
     return handles
