@@ -97,7 +97,7 @@ def test_operating_range_and_margins_are_shaded(diagram):
     np.testing.assert_allclose(spans, [(40.0, 80.0), (36.0, 40.0), (80.0, 100.0)])
     for given, message in (
         ({"operating_range": (80.0, 40.0)}, "operating_range: needs the lowest and the highest"),
-        ({"margins": (0.1, 0.1)}, "margins: are beside an operating range"),
+        ({"margins": (0.1, 0.1)}, "margins: are beside operating_range"),
         ({"margins": (-0.1, 0.1), "operating_range": (4.0, 8.0)}, "margins: needs shares"),
         ({"orders": [1.0, 0.0]}, "orders: needs positive numbers"),
     ):

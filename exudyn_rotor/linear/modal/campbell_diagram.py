@@ -56,18 +56,14 @@ def checked_range(values: ArrayLike | None) -> np.ndarray | None:
     return np.array([low, high])
 
 
-def checked_margins(margins: ArrayLike | None, has_range: bool) -> np.ndarray:
+def checked_margins(margins: ArrayLike | None) -> np.ndarray:
     """Return the shares of separation below and above the range; zeros for None."""
-    if margins is None:
-        return np.zeros(2)
-    values = checks.vector(margins, "margins", size=2)
+    values = checks.vector((0.0, 0.0) if margins is None else margins, "margins", size=2)
     if np.any(values < 0.0) or values[0] >= 1.0:
         raise ValueError(
             "margins: needs shares of the lowest and of the highest speed, as (0.16, 0.26), got "
             + checks.shown(margins)
         )
-    if not has_range:
-        raise ValueError("margins: are beside an operating range; give operating_range=(low, high)")
     return values
 
 
@@ -118,20 +114,19 @@ def draw_orders(
 
     `speeds`, `values` and `continued` are those of :func:`crossings`.
     """
-    handles, last = [], speeds[np.argmax(np.abs(speeds))]
-    for number, order in enumerate(orders):
+    handles, last, places = [], speeds[np.argmax(np.abs(speeds))], []
+    for order, style in zip(orders, itertools.cycle(plotting.LINES)):
         label = "spin speed" if order == 1.0 else f"{order:g} × spin speed"
-        style = plotting.LINES[number % len(plotting.LINES)]
         drawn = units.frequencies(order * np.abs(speeds))
         handles += ax.plot(units.speeds(speeds), drawn, color="0.6", lw=0.8, ls=style, label=label)
         ax.annotate(f"{order:g}×", (units.speeds(last), units.frequencies(order * abs(last))),
                     textcoords="offset points", xytext=(2, 0), fontsize=8, color="0.4",
                     annotation_clip=True)  # fmt: skip
-    at = [crossings(speeds, values, continued, order)[0] for order in orders]
-    if sum(map(len, at)):
-        x = units.speeds(np.concatenate(at))
-        y = [units.frequencies(p * np.abs(one)) for p, one in zip(orders, at, strict=True)]
-        handles += ax.plot(x, np.concatenate(y), "o", mfc="none", mec="0.2", ms=6, label="crossing")
+        met, _ = crossings(speeds, values, continued, order)
+        places += zip(units.speeds(met), units.frequencies(order * np.abs(met)), strict=True)
+    if places:
+        style = {"mfc": "none", "mec": "0.2", "ms": 6, "label": "crossing"}
+        handles += ax.plot(*zip(*places, strict=True), "o", **style)
     return handles
 
 

@@ -250,7 +250,7 @@ def critical_speed_map(
     if known:
         warn_of_critical(first, speeds, errors, accuracy)
     top = max_speed or float(np.nanmax(speeds, initial=1.0))
-    own = (None, None) if bearing is None else _curve(_as_support(bearing), top)
+    own = (None, None) if bearing is None else _curve(bearing, top)
     return CriticalSpeedMap(
         values,
         speeds,
@@ -269,21 +269,17 @@ def _with(supports: tuple[Given, ...], names: Sequence[str], stiffness: float) -
     return (*supports, *(Support(name, float(stiffness)) for name in names))
 
 
-def _as_support(bearing: Given) -> Support:
-    """Return what has the stiffness of a bearing over the speed."""
+def _curve(bearing: Given, top: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return speeds up to the largest [rad/s], and the direct stiffnesses (b, 2) of a bearing."""
     one = bearing if isinstance(bearing, Support) else bearing.linearised()
-    return one if isinstance(one, Support) else Support(one.interface, one.static_stiffness)
-
-
-def _curve(bearing: Support, top: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return speeds up to the largest [rad/s], and the direct stiffnesses (b, 2) of a support."""
+    if not isinstance(one, Support):  # it has states of its own
+        one = Support(one.interface, one.static_stiffness)
     speeds, stiffnesses = [], []
     for speed in np.linspace(top / _CURVE, top, _CURVE).tolist():
         try:
-            bearing.check_range(speed)
-            K, _ = bearing.matrices(speed)
+            one.check_range(speed)
+            stiffnesses.append(np.diag(one.matrices(speed)[0])[:2])
+            speeds.append(speed)
         except NO_EQUATIONS:
             continue
-        speeds.append(speed)
-        stiffnesses.append(np.diag(K)[:2])
     return np.array(speeds), np.array(stiffnesses).reshape(-1, 2)
