@@ -70,25 +70,10 @@ def checked_margins(margins: ArrayLike | None) -> np.ndarray:
 def crossings(
     speeds: np.ndarray, values: np.ndarray, continued: np.ndarray, order: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return where modes have the frequency pΩ, between two speeds by linear interpolation.
+    """Return where modes have the frequency pΩ, (c,) ascending [rad/s], and their columns, (c,).
 
-    Parameters
-    ----------
-    speeds : ndarray, shape (s,)
-        Spin speeds Ω [rad/s].
-    values : ndarray, shape (s, k)
-        Frequencies of each mode in the frame of the diagram [rad/s].
-    continued : ndarray of bool, shape (s, k)
-        Where a column is the same mode as at the speed before.
-    order : float
-        p.
-
-    Returns
-    -------
-    speeds : ndarray, shape (c,)
-        Ascending [rad/s].
-    columns : ndarray of int, shape (c,)
-        Which mode.
+    Frequencies `values` (s, k) [rad/s] of modes that are `continued` (s, k) since the speed before,
+    are straight lines between speeds (s,); p is the `order`.
     """
     line = order * np.abs(speeds)[:, None]
     apart = values - line
@@ -153,18 +138,8 @@ def draw_campbell(
 ) -> list[Line2D]:
     """Draw modes over the spin speed, coloured by whirl; return what the legend needs.
 
-    Parameters
-    ----------
-    ax : matplotlib.axes.Axes
-    speeds : ndarray, shape (s,)
-    values : ndarray, shape (s, k)
-        Each column one mode.
-    codes : ndarray of int, shape (s, k)
-        Index into :data:`WHIRLS`.
-    continued : ndarray of bool, shape (s, k)
-        Where a column is the same mode as at the speed before.
-    unstable : ndarray of bool, shape (s, k)
-        Where a mode is marked by a cross.
+    Each column of `values` (s, k) is a mode of whirl `codes`, the same as at the speed before where
+    it is `continued`; `unstable` ones are marked by a cross.
     """
     from matplotlib.lines import Line2D
 
