@@ -24,11 +24,11 @@ from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper as SqueezeFilmD
 from exudyn_rotor.bearings.support import Support as Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing as TiltingPadBearing
 from exudyn_rotor.drives.coupling import FlexibleCoupling as FlexibleCoupling
+from exudyn_rotor.drives.drive import DirectCurrentMotor as DirectCurrentMotor
 from exudyn_rotor.drives.drive import Drag as Drag
+from exudyn_rotor.drives.drive import InductionMotor as InductionMotor
 from exudyn_rotor.drives.drive import TorqueCurve as TorqueCurve
 from exudyn_rotor.drives.gear_mesh import GearMesh as GearMesh
-from exudyn_rotor.drives.motors import DirectCurrentMotor as DirectCurrentMotor
-from exudyn_rotor.drives.motors import InductionMotor as InductionMotor
 from exudyn_rotor.evaluation.level_one import StabilityLevelOne as StabilityLevelOne
 from exudyn_rotor.evaluation.level_one import (
     anticipated_cross_coupling as anticipated_cross_coupling,
