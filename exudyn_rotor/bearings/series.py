@@ -234,6 +234,8 @@ class FloatingRingBearing:
         ------
         TypeError, ValueError
         """
+        speed = checks.number(speed, "speed", "rad/s")
+        ring_speed = checks.number(ring_speed, "ring_speed", "rad/s")
         carried, slips = (speed + ring_speed, ring_speed), (speed - ring_speed, -ring_speed)
         total = 0.0
         for film, whirl, slip in zip((self.inner, self.outer), carried, slips, strict=True):

@@ -238,6 +238,7 @@ class SupportConnector(Connector):
         self.support, self._turns = support, support.frame == "rotor"
         self.has_mass = acts(support.mass)
         self._between = on_rotor  # tables are over the difference of both speeds
+        self._known = None, None  # the last speed, and matrices
 
     @property
     def _motion(self) -> tuple[np.ndarray, np.ndarray]:
@@ -251,8 +252,10 @@ class SupportConnector(Connector):
     def _matrices(self) -> tuple[np.ndarray, np.ndarray]:
         end, base = self.end, self.base
         speed = end.speed - base.speed if self._between else end.speed
-        self.support.check_range(speed)
-        K, D = self.support.matrices(speed)
+        if speed != self._known[0]:
+            self.support.check_range(speed)
+            self._known = speed, self.support.matrices(speed)
+        K, D = self._known[1]
         if self._turns:
             R = np.kron(np.eye(2), axial_rotation(end.angle))
             K, D = R @ K @ R.T, R @ D @ R.T
