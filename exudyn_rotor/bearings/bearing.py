@@ -19,9 +19,10 @@ from exudyn_rotor.bearings.support import COEFFICIENTS, NoCoefficientsError, Sup
 
 _REMEMBERED = 1000  # coefficients of a bearing
 _INSIDE = 1.0 - 1e-9  # of the way to the last film, by rounding
-_DIFFERENCE = 1e-4  # of a motion
+_DIFFERENCE, _STILL = 1e-4, 1e-6  # of a motion, which is at least that in SI units
 HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a bearing holds count
 
+Numbers = float | np.ndarray
 LawWithTorque = Callable[[float, float, float, float, float, float], tuple[float, float, float]]
 
 
@@ -157,11 +158,21 @@ class Bearing(LoadedBearing):
         """Return the force on the journal [N] by x, y, ẋ, ẏ, θ and Ω, anywhere, unchecked."""
         return self.law_with_torque(x, y, vx, vy, angle, speed)[:2]
 
-    @abstractmethod
     def slopes(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
+        """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity.
+
+        By central differences in this class.
+        """
+        motion, size = np.array([x, y, vx, vy]), max(hypot(x, y), _STILL)
+        steps = _DIFFERENCE * np.repeat([size, max(size * abs(speed), hypot(vx, vy), size)], 2)
+        ends = [
+            [self.law(*(motion + move), angle, speed) for move in (-each, each)]
+            for each in np.diag(steps)
+        ]
+        found = np.array([np.subtract(*pair) for pair in ends]).T / (2.0 * steps)
+        return found[:, :2], found[:, 2:]
 
     def law_along(
         self, motion: np.ndarray, angles: np.ndarray, speed: float
@@ -244,19 +255,6 @@ class Bearing(LoadedBearing):
         gx, gy = (self.slopes(a, b, vx, vy, angle, speed)[0] @ (x - a, y - b)).tolist()
         return fx - gx, fy - gy
 
-    def _slopes_beyond(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Return :meth:`slopes` where there is no film, by central differences."""
-        motion, size = np.array([x, y, vx, vy]), hypot(x, y)
-        steps = _DIFFERENCE * np.repeat([size, max(size * abs(speed), hypot(vx, vy), size)], 2)
-        ends = [
-            [self.law(*(motion + move), angle, speed) for move in (-each, each)]
-            for each in np.diag(steps)
-        ]
-        found = np.array([np.subtract(*pair) for pair in ends]).T / (2.0 * steps)
-        return found[:, :2], found[:, 2:]
-
     def coefficients(
         self, speed: float, load: ArrayLike | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
@@ -337,3 +335,10 @@ def check_clearance(clearance: float, radius: float) -> None:
             f"clearance: needs the radial clearance, far below the radius of {radius:g} m, got "
             f"{clearance:g} m"
         )
+
+
+def turned(c: Numbers, s: Numbers, *entries: Numbers) -> list[Numbers]:
+    """Return the four entries of ``R M Rᵀ``, row by row as M's, R the rotation of (c, s)."""
+    a, b, d, e = entries
+    a, b, d, e = c * a - s * d, c * b - s * e, s * a + c * d, s * b + c * e
+    return [c * a - s * b, s * a + c * b, c * d - s * e, s * d + c * e]

@@ -90,7 +90,7 @@ class JournalBearing(Bearing):
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
         if hypot(x, y) > self._edge(x, y):
-            return self._slopes_beyond(x, y, vx, vy, angle, speed)
+            return super().slopes(x, y, vx, vy, angle, speed)
         return self._film_at(x, y, vx, vy, speed).coefficients()
 
     def _film_at(self, x: float, y: float, vx: float, vy: float, speed: float) -> FilmState:

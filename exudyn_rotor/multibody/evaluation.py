@@ -21,21 +21,6 @@ _NO_FORCES = {
     "jacobianUserFunction": 0,
 }
 
-Saved = list[tuple]
-
-
-def saved_states(mbs: exudyn.MainSystem) -> Saved:
-    """Return what :func:`restore_states` needs."""
-    data = mbs.systemData
-    return [(state, data.GetSystemState(state), data.GetTime(state)) for state in STATES]
-
-
-def restore_states(mbs: exudyn.MainSystem, saved: Saved) -> None:
-    """Put coordinates and times of all configurations back."""
-    for state, values, time in saved:
-        mbs.systemData.SetSystemState(values, state)
-        mbs.systemData.SetTime(time, state)
-
 
 @contextmanager
 def evaluating(mbs: exudyn.MainSystem) -> Iterator[exudyn.MainSolverStatic]:
@@ -44,13 +29,16 @@ def evaluating(mbs: exudyn.MainSystem) -> Iterator[exudyn.MainSolverStatic]:
     settings.staticSolver.verboseMode = 0
     settings.solution.file.write = False
     settings.solution.sensors.active = False
-    saved, solver = saved_states(mbs), exudyn.MainSolverStatic()
+    data, solver = mbs.systemData, exudyn.MainSolverStatic()
+    saved = [(state, data.GetSystemState(state), data.GetTime(state)) for state in STATES]
     try:
         solver.InitializeSolver(mbs, settings)
         yield solver
     finally:
         solver.FinalizeSolver(mbs, settings)
-        restore_states(mbs, saved)
+        for state, values, time in saved:
+            data.SetSystemState(values, state)
+            data.SetTime(time, state)
 
 
 @contextmanager

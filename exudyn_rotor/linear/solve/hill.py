@@ -21,7 +21,7 @@ _OVER = 3.0  # decay over Ω, and over the own frequency, beyond which nobody lo
 # energy at the edge of the sum that counts as none, over the tolerance, which is the error of λ
 # where no two motions meet; and energy that is too much
 _EDGE, _LOST = 1.0, 3e-3
-_COPY, _ALIKE = 2e-3, 0.7  # of pΩ, and of a shape: how near a copy of a motion is
+_COPY, _ALIKE = 1e-6, 0.7  # of pΩ, and of a shape: how near a copy of a motion is
 
 
 class Exponents(NamedTuple):
@@ -146,13 +146,13 @@ def _copies(
     apart = values - value
     steps = np.round(apart.imag / base).astype(int)
     near = np.abs(apart - 1j * steps * base) <= allowed
-    found, h = [], len(shape)
-    for j in np.flatnonzero(near & (np.abs(steps) < h)):
-        n = steps[j]
-        a, b = (shape[n:], shapes[: h - n, :, j]) if n >= 0 else (shape[:n], shapes[-n:, :, j])
-        if abs(np.vdot(a, b)) > _ALIKE:
-            found.append(j)
-    return np.array(found, dtype=int)
+    h = len(shape)
+    found = np.flatnonzero(near & (np.abs(steps) < h))
+    around = np.zeros((3 * h, shape.shape[1]), dtype=complex)
+    around[h : 2 * h] = shape
+    lowered = np.array([around[h + n : 2 * h + n] for n in steps[found]])
+    likeness = np.einsum("jhk,hkj->j", lowered.reshape(-1, *shape.shape).conj(), shapes[..., found])
+    return found[np.abs(likeness) > _ALIKE]
 
 
 def _solved(made: States, orders: np.ndarray, speed: float) -> tuple[np.ndarray, np.ndarray]:

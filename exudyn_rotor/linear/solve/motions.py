@@ -25,6 +25,7 @@ from exudyn_rotor.linear.solve.hill import Exponents, hill_motions
 
 METHODS = ("auto", "hill", "floquet")
 _ROUNDING = 100.0 * EPSILON  # of the size of a state matrix: what a real part may be off by
+_PERIODIC = 10.0  # times that of periodic equations, which have many harmonics
 REAL = 1e-9  # share of |λ|: a frequency that is rounding
 _AT_ONCE = 2_000_000  # entries of matrices that are solved at once
 
@@ -179,7 +180,7 @@ def _periodic(
             parts += [(places, part) for _, part in _constant(joined_at_rest(system))]
             continue
         made = states_of(system)
-        bound = float(_bounds(made))
+        bound = _PERIODIC * float(_bounds(made))
         if method == "floquet":
             exponents = floquet_motions(system, made)
         else:

@@ -1,4 +1,4 @@
-"""Rotor bodies in an Exudyn ``mbs``: report, markers, sensors, recording and start."""
+"""Rotor bodies in an Exudyn ``mbs``: report, markers, sensors, motion over a run, and start."""
 
 from __future__ import annotations
 
@@ -16,23 +16,117 @@ from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor import sensors
 from exudyn_rotor.multibody.rotor.connections import ConnectionWarning, lost_connections
 from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS
-from exudyn_rotor.multibody.rotor.record import (
-    RATES,
-    SAME,
-    Record,
-    StartState,
-    keep_in_node,
-    spin_at_start,
-)
 from exudyn_rotor.multibody.rotor.rotor_items import (
+    RATES,
     Carrier,
     RotorItems,
     carrier_of,
     interface_of_nodes,
     nodes_of,
 )
+from exudyn_rotor.theory.formulation import start_values
 
 _KINDS = exudyn.OutputVariableType
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """Motion of a rotor at the recorded instants.
+
+    Attributes
+    ----------
+    time : ndarray, shape (s,)
+        [s]
+    q, q_t, q_tt : ndarray, shape (s, n)
+        Coordinates of the body's nodes, those that are locked included.
+    speed : ndarray, shape (s,)
+        Spin speed [rad/s].
+    complete : bool
+        False if only the end state is known, because nothing was recorded.
+    """
+
+    time: np.ndarray
+    q: np.ndarray
+    q_t: np.ndarray
+    q_tt: np.ndarray
+    speed: np.ndarray
+    complete: bool
+
+
+def implicit_step(body: RotorItems) -> float | None:
+    """Return the step [s] of the last dynamic solution; None before one, or of an explicit one."""
+    settings = body.mbs.sys.get("simulationSettings")
+    solver = body.mbs.sys.get("dynamicSolver")
+    if settings is None or solver is None or "Explicit" in type(solver).__name__:
+        return None
+    integration = settings.timeIntegration
+    return (integration.endTime - integration.startTime) / integration.numberOfSteps
+
+
+_VELOCITIES = ("initialVelocities", "initialCoordinates_t")  # by the kind of the node
+SAME = 1e-9  # share of the speed, and rad, by which start and prescribed spin may differ
+
+
+@dataclass(frozen=True, eq=False)
+class StartState:
+    """Coordinates and velocities of a scene at one angle of a rotor.
+
+    Attributes
+    ----------
+    q, q_t : ndarray, shape (n,)
+        All coordinates of second order of the ``mbs``, and their velocities.
+    angle : float
+        Spin angle of the rotor [rad].
+    speed : float
+        Its spin speed [rad/s].
+
+    Examples
+    --------
+    :func:`exudyn_rotor.steady_state` makes one, and so do the responses of linear analyses
+    (:meth:`UnbalanceResponse.state`); :meth:`RotorBody.start_from` takes it.
+
+    >>> from exudyn_rotor import StartState
+    >>> StartState([0.0, 1e-3], [0.0, 0.1], angle=0.0, speed=100.0).q_t
+    array([0. , 0.1])
+    """
+
+    q: np.ndarray
+    q_t: np.ndarray
+    angle: float
+    speed: float
+
+    def __post_init__(self) -> None:
+        q = checks.array(self.q, "q", "m, rad")
+        q_t = checks.array(self.q_t, "q_t", "m/s, rad/s")
+        if q.ndim != 1 or q.shape != q_t.shape:
+            raise ValueError(
+                f"q, q_t: need one velocity for each coordinate, got the shapes {q.shape} and "
+                f"{q_t.shape}"
+            )
+        object.__setattr__(self, "q", checks.read_only(q))
+        object.__setattr__(self, "q_t", checks.read_only(q_t))
+        object.__setattr__(self, "angle", checks.number(self.angle, "angle", "rad"))
+        object.__setattr__(self, "speed", checks.number(self.speed, "speed", "rad/s"))
+
+
+def spin_at_start(body: RotorItems) -> tuple[float, float]:
+    """Return angle [rad] and speed [rad/s] with which the rotor starts."""
+    if body.formulation.has_spin:
+        return body.placement.angle, body.placement.speed
+    angle, speed, _ = start_values(body.formulation.spin, "spin")
+    return angle, speed
+
+
+def keep_in_node(mbs: exudyn.MainSystem, number: int, state: StartState) -> None:
+    """Write the state into a node, so that it outlives ``mbs.Assemble()``."""
+    node = mbs.GetNode(number)
+    velocities = next((name for name in _VELOCITIES if name in node), None)
+    if velocities is None:  # a node of the ground, or of data
+        return
+    first = mbs.GetNodeODE2Index(number)
+    place = slice(first, first + len(node[velocities]))
+    mbs.SetNodeParameter(number, "initialCoordinates", state.q[place].tolist())
+    mbs.SetNodeParameter(number, velocities, state.q_t[place].tolist())
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -46,18 +140,13 @@ class SceneBody(RotorItems, ABC):
         """Return one line; :meth:`report` says more."""
         return (
             f"{type(self).__name__}({self.name!r}, Sect. {self.formulation.section}, "
-            f"stiffening {self.stiffening!r}, {self._size_in_words}, "
+            f"stiffening {self.stiffening!r}, {self._coordinates_in_words()[0]}, "
             f"markers: {', '.join(self.markers) or 'none'})"
         )
 
-    @property
     @abstractmethod
-    def _size_in_words(self) -> str:
-        """Number of modes or nodes."""
-
-    @abstractmethod
-    def _report_of_coordinates(self) -> list[str]:
-        """Return lines of :meth:`report` about modes or displacements."""
+    def _coordinates_in_words(self) -> tuple[str, list[str]]:
+        """Return the number of modes or nodes, and lines of :meth:`report` about them."""
 
     @abstractmethod
     def _nodes_carrier(self, where: Sequence[int], kind: str) -> Carrier:
@@ -78,7 +167,7 @@ class SceneBody(RotorItems, ABC):
             f"stiffening {self.stiffening!r}",
             f"  translations   {names[self.formulation.translation_count]}",
             f"  spin           {'unknown' if self.formulation.has_spin else 'prescribed'}",
-            *self._report_of_coordinates(),
+            *self._coordinates_in_words()[1],
             f"  locked         {', '.join(self.locks.locked_names) or 'none'}",
             f"  constraints    {len(self.constraints)}",
             f"  supports       {'; '.join(map(str, self.supports)) or 'none added'}",
@@ -166,12 +255,8 @@ class SceneBody(RotorItems, ABC):
     def add_interface_sensor(self, interface: str, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at an interface's marker; `options` go to ``SensorMarker``."""
         marker = self.marker(interface)
-        kind = self.marker_kinds[interface]
-        sensors.check_output(output, sensors.AT_MARKER[kind], f"at a {kind} marker")
-        settings = sensors.settings_of(self, options)
-        return self.mbs.AddSensor(
-            SensorMarker(markerNumber=marker, outputVariableType=output, **settings)
-        )
+        settings = sensors.native_settings(self, output, options)
+        return self.mbs.AddSensor(SensorMarker(markerNumber=marker, **settings))
 
     def add_spin_sensor(self, **options):
         """Add a sensor of spin angle [rad] and spin speed [rad/s]."""
@@ -297,13 +382,9 @@ class RotorBody(SceneBody):
     False
     """
 
-    @property
-    def _size_in_words(self) -> str:
-        return f"{len(self.selection.labels)} modes"
-
-    def _report_of_coordinates(self) -> list[str]:
+    def _coordinates_in_words(self) -> tuple[str, list[str]]:
         labels = self.selection.labels
-        return [f"  modes          {len(labels)}: {', '.join(labels)}"]
+        return f"{len(labels)} modes", [f"  modes          {len(labels)}: {', '.join(labels)}"]
 
     def _nodes_carrier(self, where: Sequence[int], kind: str) -> Carrier:
         """Return what moves with the mean rigid motion of mesh nodes."""
@@ -319,9 +400,10 @@ class RotorBody(SceneBody):
     def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``.
 
-        Stress in Exudyn, here and in contour plots, is that of the modal coordinates alone, without
-        the static centrifugal stress that the modes do not show; for a rotor with a prestress that
-        warns. :class:`exudyn_rotor.StressField` gives the whole.
+        ``StressLocal`` needs a rotor of ``reduce(…, stress=True)``. Stress in Exudyn, here and in
+        contour plots, is that of the modal coordinates alone, without the static centrifugal stress
+        that the modes do not show; for a rotor with a prestress that warns.
+        :class:`exudyn_rotor.StressField` gives the whole.
         """
         marker_body, count = self.objects["marker_body"], self.mesh_node_count
         if checks.count(node, "node", least=-1) not in range(count):
@@ -329,17 +411,9 @@ class RotorBody(SceneBody):
                 f"node: rotor {self.name!r} has mesh nodes 0 … {count - 1}, not {node}"
                 + ("" if count else "; it has no shapes (without_shapes)")
             )
-        known, where = sensors.AT_MESH_NODE, "at a mesh node"
-        if np.size(self.mbs.GetObjectParameter(marker_body, "outputVariableModeBasis")):
-            known = (*known, _KINDS.StressLocal)
-        else:
-            where += ", of a rotor reduced without stress"
-        sensors.check_output(output, known, where)
-        settings = sensors.settings_of(self, options)
+        settings = sensors.native_settings(self, output, options)
         sensors.warn_of_static_stress(self, output)
-        item = SensorSuperElement(
-            bodyNumber=marker_body, meshNodeNumber=int(node), outputVariableType=output, **settings
-        )
+        item = SensorSuperElement(bodyNumber=marker_body, meshNodeNumber=int(node), **settings)
         return self.mbs.AddSensor(item)
 
     def start_from(self, state: StartState) -> None:

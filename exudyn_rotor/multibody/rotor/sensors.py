@@ -18,27 +18,6 @@ from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.formulation import ConstantSpeed
 
 _KINDS = exudyn.OutputVariableType
-AT_MESH_NODE = (
-    _KINDS.Position,
-    _KINDS.Displacement,
-    _KINDS.DisplacementLocal,
-    _KINDS.Velocity,
-    _KINDS.VelocityLocal,
-    _KINDS.Acceleration,
-)
-AT_MARKER = {
-    "position": (_KINDS.Position, _KINDS.Displacement, _KINDS.Velocity),
-    "rigid": (
-        _KINDS.Position,
-        _KINDS.Displacement,
-        _KINDS.Velocity,
-        _KINDS.Rotation,
-        _KINDS.RotationMatrix,
-        _KINDS.AngularVelocity,
-        _KINDS.AngularVelocityLocal,
-        _KINDS.HomogeneousTransformation,
-    ),
-}
 
 
 def warn_of_static_stress(body: RotorItems, output: exudyn.OutputVariableType) -> None:
@@ -100,16 +79,12 @@ def add_function_sensor(
     return body.mbs.AddSensor(SensorUserFunction(sensorUserFunction=function, **settings))
 
 
-def check_output(
-    output: exudyn.OutputVariableType, known: tuple[exudyn.OutputVariableType, ...], where: str
-) -> None:
-    """Refuse what Exudyn would refuse as late as in ``mbs.Assemble()``."""
-    names = ", ".join(kind.name for kind in known)
-    checks.instance(
-        output, "output", _KINDS, f"{where} there are, of exudyn.OutputVariableType: {names}"
-    )
-    if output not in known:
-        raise ValueError(f"output: {output.name} is not available {where}; there are: {names}")
+def native_settings(
+    body: RotorItems, output: exudyn.OutputVariableType, options: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the settings of a native sensor; Exudyn refuses unsuited outputs in Assemble."""
+    checks.instance(output, "output", _KINDS)
+    return {"outputVariableType": output} | settings_of(body, options)
 
 
 def settings_of(body: RotorItems, options: Mapping[str, Any]) -> dict[str, Any]:

@@ -90,9 +90,6 @@ class Connector(ABC):
 
     def read(self, q: list[float], q_t: list[float]) -> None:
         """Take the motion of the ends from coordinates and their rates."""
-        if self.size == self._first:
-            self.end.read(q, q_t)
-            return
         first, second = self._first, self._second
         self.end.read(q[:first], q_t[:first])
         if self.base is not None:
@@ -131,6 +128,8 @@ class Connector(ABC):
         own: np.ndarray | None = None,
     ) -> list[float]:
         """Return the forces on all coordinates by a force and a moment on the rotor."""
+        if fx == fy == fz == 0.0 and own is None and not any(moment):  # as of an open stop
+            return [0.0] * self.size
         found = self.end.pull(fx, fy, fz, moment).tolist()
         if self.base is not None:
             load = [-fx, -fy, -fz, *(-m for m in moment)]
@@ -307,7 +306,7 @@ class MagneticConnector(Connector):
         super().__init__(*ends, own, 2 * len(realised.inertia))
         self.bearing, self.parts = bearing, [bearing]
         self._sensor, self.sensor_base = sensors
-        self._turn, self._offset = bearing.control_axes, bearing.sensor_offset
+        self._turn = bearing.control_axes
         parts = realised.by_place, realised.by_rate
         self._by_place, self._by_rate = (np.kron(part, self._turn) for part in parts)
         self._shares = bearing.scale * realised.place
@@ -351,7 +350,7 @@ class MagneticConnector(Connector):
         seen = np.array(self._sensor.place[:2])
         if self.sensor_base is not None:
             seen = seen - self.sensor_base.place[:2]
-        own = np.outer(self._shares, seen + self._offset).ravel()
+        own = np.outer(self._shares, seen).ravel()
         return float(force[0]), float(force[1]), 0.0, (0.0, 0.0, 0.0), own
 
     def tangent(self, t: float) -> Force:

@@ -18,7 +18,7 @@ import numpy as np
 
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating, without_forces
-from exudyn_rotor.multibody.rotor.record import spin_at_start
+from exudyn_rotor.multibody.rotor.rotor_body import spin_at_start
 from exudyn_rotor.multibody.supports.connector import BearingConnector, Connector, Force
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
