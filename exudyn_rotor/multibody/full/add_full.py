@@ -100,11 +100,8 @@ def make_full_plan(rotor: SolidRotor, setup: Setup) -> Plan:
     held = conditions(whole, setup.formulation, rotor.grounded, NEGLIGIBLE)
     inv = replace(held.invariants, K2=None, K4=None)
     fields = NodalFields(checks.read_only(origin), inv, rotor, held)
-    start = {
-        name: _start(getattr(setup, name), name, held)
-        for name in ("modal_coordinates", "modal_velocities")
-    }
-    return laid_out(replace(setup, **start), fields, partial(FullMotion, inv), second)
+    start = partial(_start, held=held)
+    return laid_out(setup, fields, partial(FullMotion, inv), second, start)
 
 
 def _invariants(rotor: SolidRotor, origin: np.ndarray) -> Invariants:

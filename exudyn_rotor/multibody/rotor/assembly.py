@@ -230,10 +230,6 @@ def mean_motion(body: RotorItems) -> np.ndarray:
 
     in which rigid modes have a share alone, and Craig–Bampton modes, which hold Exudyn's frame at a
     boundary (:mod:`exudyn_rotor.reduction.mean_axis`).
-
-    Tilts about the node's place in the basis, ``S ≠ 0``, would move the node itself, but not tilt
-    it; they couple translations and tilts by ``A S``, so that no matrix is constant, and a step
-    takes five times as long with a free spin and twelve times at constant speed.
     """
     selection, B = body.selection, body.frame.B
     reduced = selection.source

@@ -108,16 +108,13 @@ def placement(
 
 def _check_direction(formulation: Formulation, velocity: np.ndarray, axis: np.ndarray) -> None:
     """Refuse a velocity that the formulation cannot have; `axis` in inertial axes."""
-    if np.any(velocity) and formulation.translation_count == 0:
+    lost = {3: 0.0 * velocity, 2: axis * (axis @ velocity), 0: velocity}
+    missing = np.linalg.norm(lost[formulation.translation_count])
+    if missing > 1e-9 * np.linalg.norm(velocity):
         raise ValueError(
-            f"initial_velocity {velocity.tolist()} m/s: translation='none' holds the rotor"
-        )
-    along = abs(axis @ velocity)
-    if formulation.translation_count == 2 and along > 1e-9 * np.linalg.norm(velocity):
-        raise ValueError(
-            f"initial_velocity {velocity.tolist()} m/s has {along:.3g} m/s along the spin axis: "
-            "translation='in-plane' has no such motion; give it as a modal velocity of "
-            "'translation along axis', or use translation='free'"
+            f"initial_velocity: translation={formulation.translation!r} has no such motion, "
+            f"{missing:.3g} m/s of {velocity.tolist()} m/s; use translation='free', or velocities "
+            "of translation modes in modal_velocities"
         )
 
 
@@ -145,12 +142,7 @@ def marker_kinds(
         markers = "rigid"
     if isinstance(markers, str):
         return dict.fromkeys(interfaces, checks.choice(markers, "markers", MARKER_KINDS))
-    if not isinstance(markers, Mapping):
-        raise TypeError(
-            "markers: needs 'rigid', 'position' or a mapping of interface to one of them, got "
-            f"{checks.shown(markers)}"
-        )
-    checks.mapping(markers, "markers", "kind", interfaces)
+    checks.mapping(markers, "markers", "'rigid' or 'position'", interfaces)
     return {
         name: checks.choice(kind, f"markers: kind of {name!r}", MARKER_KINDS)
         for name, kind in markers.items()
@@ -177,15 +169,9 @@ def marker_name(name: str | None, interface: str) -> str:
 def check_free_names(mbs: exudyn.MainSystem, setup: Setup) -> None:
     """Refuse a name that an item of `mbs` already has."""
     name = setup.name
-    taken = [
-        (mbs.GetMarkerNumber, marker_name(name, interface)) for interface in setup.marker_kinds
-    ]
+    taken = [(mbs.GetMarkerNumber, marker_name(name, one)) for one in setup.marker_kinds]
     if name is not None:
-        taken += [
-            (mbs.GetObjectNumber, name),
-            (mbs.GetNodeNumber, item_name("NodeRigidBody:", name)),
-            (mbs.GetNodeNumber, item_name("NodeGeneric:", name)),
-        ]
+        taken.append((mbs.GetObjectNumber, name))
     for find, item in taken:
         if int(find(item)) != -1:
             raise ValueError(
@@ -255,11 +241,8 @@ def make_plan(reduced: ReducedRotor, setup: Setup) -> Plan:
     if setup.stiffening != "none":
         invariants = invariants.loaded
     second = second_order(invariants, setup.stiffening)
-    start = {
-        name: _modal_values(getattr(setup, name), name, selection.labels)
-        for name in ("modal_coordinates", "modal_velocities")
-    }
-    return laid_out(replace(setup, **start), selection, partial(Motion, invariants), second)
+    start = partial(_modal_values, labels=selection.labels)
+    return laid_out(setup, selection, partial(Motion, invariants), second, start)
 
 
 def laid_out(
@@ -267,11 +250,20 @@ def laid_out(
     selection: Selection,
     motions: Callable[..., Motion],
     second: Stiffening,
+    start: Callable[[ArrayLike | None, str], np.ndarray],
 ) -> Plan:
-    """Return a plan with frame, locks, layout and motion; `motions` knows the invariants."""
+    """Return a plan with frame, locks, layout and motion.
+
+    `motions` knows the invariants, and `start` makes initial coordinates of what was given.
+    """
     formulation, place = setup.formulation, setup.placement
     turned = turned_origin(selection, place.rotation, place.angle)
-    setup = replace(setup, placement=replace(place, translation=place.translation + turned))
+    setup = replace(
+        setup,
+        placement=replace(place, translation=place.translation + turned),
+        modal_coordinates=start(setup.modal_coordinates, "modal_coordinates"),
+        modal_velocities=start(setup.modal_velocities, "modal_velocities"),
+    )
     direction = selection.invariants.direction
     frame = BodyFrame.of(direction, selection.origin, place.position, place.rotation)
     locks = Locks.of(formulation, place.rotation @ direction, frame.spin)

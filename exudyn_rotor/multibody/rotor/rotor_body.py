@@ -17,6 +17,7 @@ from exudyn_rotor.multibody.rotor import sensors
 from exudyn_rotor.multibody.rotor.connections import ConnectionWarning, lost_connections
 from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS
 from exudyn_rotor.multibody.rotor.rotor_items import (
+    RATES,
     Carrier,
     RotorItems,
     carrier_of,
@@ -26,7 +27,6 @@ from exudyn_rotor.multibody.rotor.rotor_items import (
 from exudyn_rotor.theory.formulation import start_values
 
 _KINDS = exudyn.OutputVariableType
-RATES = (_KINDS.Coordinates, _KINDS.Coordinates_t, _KINDS.Coordinates_tt)
 
 
 @dataclass(frozen=True, eq=False)

@@ -37,6 +37,8 @@ from exudyn_rotor.solid.rotor import Interface, rotation_moments
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.rotating_axes import axes_of
 
+_KINDS = exudyn.OutputVariableType
+RATES = (_KINDS.Coordinates, _KINDS.Coordinates_t, _KINDS.Coordinates_tt)
 _FLAT = 1e-6  # smallest second moment of nodes over the largest for which they show a rotation
 
 
@@ -316,15 +318,13 @@ class RotorItems(Plan):
             known = ", ".join(kind.name for kind in STATES)
             raise ValueError(f"configuration: needs one of {known}, got {configuration.name}")
         self.check_assembled()
-        kinds = exudyn.OutputVariableType
-        place = self.layout
-
-        def values(kind: exudyn.OutputVariableType) -> np.ndarray:
-            nodes = self.nodes.values()
-            parts = [self.mbs.GetNodeOutput(node, kind, configuration) for node in nodes]
-            return np.hstack(parts)[place.unknowns]
-
-        return tuple(map(values, (kinds.Coordinates, kinds.Coordinates_t, kinds.Coordinates_tt)))
+        nodes = self.nodes.values()
+        return tuple(
+            np.hstack([self.mbs.GetNodeOutput(node, kind, configuration) for node in nodes])[
+                self.layout.unknowns
+            ]
+            for kind in RATES
+        )
 
     def check_present(self) -> None:
         """Raise ValueError where the system no longer holds this rotor."""

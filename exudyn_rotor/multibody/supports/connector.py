@@ -130,6 +130,8 @@ class Connector(Between, ABC):
         own: np.ndarray | None = None,
     ) -> list[float]:
         """Return the forces on all coordinates by a force and a moment on the rotor."""
+        if fx == fy == fz == 0.0 and own is None and not any(moment):  # as of an open stop
+            return [0.0] * self.size
         found = self.end.pull(fx, fy, fz, moment).tolist()
         if self.base.size:
             load = [-fx, -fy, -fz, *(-m for m in moment)]
