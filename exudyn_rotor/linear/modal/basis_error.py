@@ -117,21 +117,10 @@ def basis_errors(
     motions: Amplitudes,
     solve: Callable[[LinearModel, np.ndarray], Amplitudes],
 ) -> np.ndarray | None:
-    """Return relative errors (s, p) by the basis, NaN where none is looked at.
+    """Return relative errors (s, p) by the basis, NaN where none is looked at; None if not known.
 
-    None where they are not known.
-
-    Parameters
-    ----------
-    model : LinearModel
-    accuracy : float or None
-        None for no estimate.
-    values : ndarray, shape (s,)
-        Speeds or frequencies [rad/s].
-    motions : mapping of int to ndarray, shape (s, p, 6)
-        Harmonics there.
-    solve : callable
-        Takes a model, and speeds or frequencies; gives the motions.
+    Of `motions`, harmonics (s, p, 6), at speeds or frequencies `values` (s,) [rad/s]; `solve` takes
+    a model and such values, and gives the motions.
     """
     if not is_known(model, accuracy):
         return None

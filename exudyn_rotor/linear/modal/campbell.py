@@ -235,7 +235,9 @@ class Campbell(ModelResult):
         frame = self.frame if frame is None else checks.choice(frame, "frame", FRAMES)
         shown, inertial = Units.of(units), frame == "inertial"
         limits = diagram.checked_range(operating_range)
-        shares = diagram.checked_margins(margins, limits is not None)
+        shares = diagram.checked_margins(margins)
+        if margins is not None and limits is None:
+            raise ValueError("margins: are beside operating_range=(low, high), got none")
         if orders is not None:
             orders = diagram.checked_orders(orders)
         ax = plotting.axes_or_new(ax)

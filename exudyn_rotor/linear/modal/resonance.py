@@ -44,7 +44,7 @@ _CONJUGATE = 0.25
 _SAME = 1e-7  # relative distance of speeds that are one
 # relative distance of the speeds of one motion in the two planes of a rotor that counts as round,
 # and likeness of the two motions
-_PLANES, _ALIKE = 0.5 * EVEN, 0.95
+_PLANES, _ALIKE = 0.5 * EVEN, 0.975
 _FINE, _DIGITS = 1e-9, 7  # of a place between two speeds, and digits of places that are one
 _AT_REST = 1e-8  # rad/s: a rotor runs, and its inertia is below the rounding of any stiffness
 _FREE = 1e-13  # share of the largest stiffness that is rounding
@@ -162,21 +162,10 @@ def dynamic_stiffness(system: PeriodicSystem, multiples: np.ndarray) -> np.ndarr
 class Search:
     """The search for critical speeds of an undamped model.
 
-    Attributes
-    ----------
-    model : LinearModel
-    order : float
-        p ≥ 0.
-    diameters : sequence of int
-        Nodal diameters that may be excited.
-    limit : float or None
-        Largest speed [rad/s]; needed where the stiffness varies with it.
-    error : float
-        Relative change of a critical speed in the last step, which errs by its square.
-    lost, jumps : list of float
-        Speeds that did not settle, and at which a film jumps.
-    refused : mapping of float to Exception
-        Speeds [rad/s] at which there are no equations, of those that are looked at.
+    Of order p ≥ 0 and nodal `diameters`, up to the speed `limit` [rad/s], which has to be given
+    where the stiffness varies with it. The `error` is the relative change of a critical speed in
+    the last step, which errs by its square. What is left out stands in `lost`, speeds that did not
+    settle, in `jumps`, where a film jumps, and in `refused`, speeds without equations.
     """
 
     model: LinearModel
@@ -255,38 +244,29 @@ class Search:
 
     def _bracketed(self, multiples: np.ndarray) -> list[Pair]:
         """Return where H is singular, by its eigenvalues over the grid, and null vectors."""
-        speeds, lost = self.grid.speed.tolist(), np.array(list(self.refused))
         stack, found = dynamic_stiffness(self.grid, multiples), []
-        signs = _eigenvalues(stack)
-        changes = (signs[:-1] < 0.0) != (signs[1:] < 0.0)
-        for row, (low, high) in enumerate(pairwise(speeds)):
+        lost, signs = np.array(list(self.refused)), _eigenvalues(stack) < 0.0
+        for row, (low, high) in enumerate(pairwise(self.grid.speed.tolist())):
             if np.any((low < lost) & (lost < high)):
                 continue
-            A, change = stack[row], stack[row + 1] - stack[row]
-            for j in np.flatnonzero(changes[row]):
+            A, B = stack[row], stack[row + 1]
+            for j in np.flatnonzero(signs[row] != signs[row + 1]):
+                at = brentq(_between, 0.0, 1.0, args=(A, B, j), xtol=_FINE)
+                at = np.round(at, _DIGITS)  # of zeros that are one, orthogonal vectors
+                guess = low + (high - low) * at, np.linalg.eigh((1.0 - at) * A + at * B)[1][:, j]
+                exact, slack = self._exact(guess, multiples), _BEYOND * (high - low)
+                if low - slack < exact[0] < high + slack:
+                    found.append(exact)
+                else:
+                    self.jumps.append(guess[0])
+        return found
 
-                def value(
-                    at: float, j: int = j, A: np.ndarray = A, B: np.ndarray = change
-                ) -> float:
-                    return _eigenvalues(A + at * B)[j]
-
-                # of zeros that are one, orthogonal vectors
-                at = np.round(brentq(value, 0.0, 1.0, xtol=_FINE), _DIGITS)
-                guess = low + (high - low) * at, np.linalg.eigh(A + at * change)[1][:, j]
-                found.append(self._exact(guess, multiples, low, high))
-        return [pair for pair in found if not np.isnan(pair[0])]
-
-    def _exact(self, found: Pair, multiples: np.ndarray, low: float, high: float) -> Pair:
-        """Return a zero with the equations that are there; NaN where they jump."""
-        slack = _BEYOND * (high - low)
+    def _exact(self, found: Pair, multiples: np.ndarray) -> Pair:
+        """Return a zero with the equations that are there."""
         try:
-            speed, x = self.stiffness.refined(found, multiples, self._before(found[0]), self.error)
+            return self.stiffness.refined(found, multiples, self._before(found[0]), self.error)
         except NO_EQUATIONS:  # beyond the end of a table, by rounding
             return found
-        if low - slack < speed < high + slack:
-            return speed, x
-        self.jumps.append(found[0])
-        return np.nan, x
 
     def _before(self, speed: float) -> float:
         """Return a slower speed, for the slope of H."""
@@ -359,29 +339,26 @@ class Search:
         Bending modes of which a basis holds one half alone make both planes of a round rotor
         differ. The motion seen from outside is the same in both; the softer plane has more modes.
         """
-        kept: list[Resonance] = []
-        if not self.model.turns:
-            return found
+        kept: list[tuple[Resonance, np.ndarray]] = []
         for one in found:
-            near = [other for other in kept if one.speed - other.speed < _PLANES * one.speed]
-            near = [other for other in near if one.speed - other.speed > _SAME * one.speed]
-            if not any(self._likeness(one, other) > _ALIKE for other in near):
-                kept.append(one)
-        return kept
-
-    def _likeness(self, one: Resonance, other: Resonance) -> float:
-        """Return the likeness of two motions as they are seen from outside with the excitation."""
-        x, y = (self._seen(each) for each in (one, other))
-        return abs(np.vdot(x, y)) ** 2 / max((np.vdot(x, x) * np.vdot(y, y)).real, 1e-300)
+            seen = self._seen(one)
+            for other, before in kept if self.model.turns else ():
+                near = _SAME < 1.0 - other.speed / one.speed < _PLANES
+                if near and abs(np.vdot(before, seen)) > _ALIKE:
+                    break
+            else:
+                kept.append((one, seen))
+        return [one for one, _ in kept]
 
     def _seen(self, one: Resonance) -> np.ndarray:
-        """Return the amplitudes of all waves that turn with the excitation."""
+        """Return the amplitudes of all waves that turn with the excitation, of unit length."""
         content, parts = self.content, []
         shifts, rows = [*content.shifts, 0.0], [*content.rows[:-5], content.rows[-1]]
         for shift, R in zip(shifts, rows, strict=True):
             at = np.isclose(one.multiples + shift, self.order, rtol=0.0, atol=1e-9)
             parts.append(R @ one.vectors[at].sum(axis=0))
-        return np.concatenate(parts)
+        seen = np.concatenate(parts)
+        return seen / max(np.linalg.norm(seen), 1e-300)
 
     # ------------------------------------------------------------------ what is left out
 
@@ -428,6 +405,11 @@ def _eigenvalues(H: np.ndarray) -> np.ndarray:
     values = np.linalg.eigvalsh(H)
     rounding = _FREE * np.abs(values).max(axis=-1, initial=0.0, keepdims=True)
     return np.where(np.abs(values) <= rounding, 0.0, values)
+
+
+def _between(at: float, A: np.ndarray, B: np.ndarray, j: int) -> float:
+    """Return an eigenvalue of what lies between two matrices, at a share from 0 to 1."""
+    return _eigenvalues((1.0 - at) * A + at * B)[j]
 
 
 def _direct(stiffness: Stiffness, multiples: np.ndarray) -> list[Pair]:

@@ -265,7 +265,7 @@ class _Margin:
 
 
 def stability_threshold(
-    target: Target | Callable[[float], Target],
+    target: Target,
     low: float,
     high: float,
     *,
@@ -289,10 +289,9 @@ def stability_threshold(
 
     Parameters
     ----------
-    target : as in :func:`stability`, or callable
-        A callable takes the parameter and returns such a target.
+    target : as in :func:`stability`
     low, high : float
-        Range of the parameter; spin speeds [rad/s] unless `target` or `supports` are callable.
+        Range of the parameter; spin speeds [rad/s] unless `supports` is callable.
     supports : sequence of Support or bearings, or callable, optional
         Of a rotor; a callable takes the parameter and returns them.
     speed : float, optional
@@ -337,7 +336,7 @@ def stability_threshold(
     high = checks.number(high, "high", above=low)
     samples = checks.count(samples, "samples", least=2)
     check_options(tolerance, accuracy)
-    is_speed = not callable(target) and not callable(supports)
+    is_speed = not callable(supports)
     if label is None:
         label = "speed [rad/s]" if is_speed else "parameter"
     checks.label(label, "label")
@@ -351,15 +350,13 @@ def stability_threshold(
     else:
         if speed is None:
             raise ValueError(
-                "speed: needs the spin speed [rad/s], since target or supports, a function, says "
-                "that it is not the parameter"
+                "speed: needs the spin speed [rad/s], since supports, a function, says that it is "
+                "not the parameter"
             )
         speed = checks.number(speed, "speed", "rad/s", least=0.0)
 
         def model_at(point: float) -> tuple[LinearModel, float]:
-            chosen = target(point) if callable(target) else target
-            held = supports(point) if callable(supports) else supports
-            return linear_model(chosen, supports=held, **made), speed
+            return linear_model(target, supports=supports(point), **made), speed
 
         margin, kinks = _Margin(model_at, tolerance, False), np.zeros(0)
         model = model_at(0.5 * (low + high))[0]
@@ -384,7 +381,7 @@ def _found(
     values, errors = np.array([value for value, _ in found]), None
     if accuracy is not None and None not in shifts:
         errors = np.array(shifts) / np.maximum(np.abs(values), _SMALL * (high - low))
-    if np.size(errors) and errors is not None:
+    if found and errors is not None:
         worst = float(values[np.argmax(errors)])
         what = f"the limit of stability at {worst:.5g}, {label},"
         basis_error.warn(errors, what, margin.model_at(worst)[0], accuracy)
@@ -411,7 +408,7 @@ def _limit(
 ) -> tuple[float, int, int, float | None]:
     """Return frequency, whirl and n of what grows within the unstable range beside a limit.
 
-    And how far the limit moves by what the basis lacks; None where that is not known.
+    And by how much the limit moves by what the basis lacks; None where that is not known.
     """
     ends, (value, onset) = [-np.inf, *(value for value, _ in found), np.inf], found[place]
     width = ends[place + 2 if onset else place] - value
@@ -419,13 +416,12 @@ def _limit(
     model, speed = margin.model_at(value + aside)
     named = Content.of(model).named(margin.motions(model, speed))
     which = 0, int(least_stable_of(named.motions)[0])
-    slope, shift = named.motions.values[which].real / aside, None
-    if basis_error.is_known(model, accuracy):
+    shift = 0.0 if basis_error.is_known(model, accuracy) else None
+    if shift is not None and not model.is_full:
         there, speed = margin.model_at(value)
-        shift = 0.0
-        if not model.is_full:
-            richer = margin.motions(there.richer, speed)
-            shift = abs(margin.of(richer.values.real[0], richer.bounds[0]) / slope)
+        richer = margin.motions(there.richer, speed)
+        slope = named.motions.values[which].real / aside
+        shift = abs(margin.of(richer.values.real[0], richer.bounds[0]) / slope)
     return named.inertial[which], named.codes[which], named.diameters[which], shift
 
 
