@@ -7,7 +7,6 @@ from dataclasses import replace
 from functools import cache, partial
 
 import numpy as np
-import scipy.linalg
 import scipy.sparse as sp
 from exudyn.FEM import FEMinterface
 
@@ -195,11 +194,7 @@ def _rigid_motions(
     rigid = rigid_columns(rotor.nodes, rotor.axis, center)
     if not rotor.grounded:
         return rigid, RIGID_KINDS
-    if rotor.rigid_motions == 0:
-        return rigid[:, :0], ()
-    scaled = rigid / np.maximum(np.linalg.norm(rigid, axis=0), 1e-300)
-    _, _, vt = scipy.linalg.svd(rotor.stiffness @ scaled, full_matrices=False)
-    free = scaled @ vt[6 - rotor.rigid_motions :].T
+    free = free_motions_of(rotor)
     return free, (ModeKind.FREE,) * free.shape[1]
 
 
@@ -287,7 +282,11 @@ def _centrifugal(rotor: FiniteElementRotor) -> Centrifugal | None:
     carried = rotor.carried_prestress
     if carried is None or carried.displacement is None:
         return None
-    return Centrifugal(carried.displacement, carried.stress, carried.yield_stress)
+    return Centrifugal(
+        displacement=carried.displacement,
+        stress=carried.stress,
+        yield_stress=carried.yield_stress,
+    )
 
 
 def _interfaces(rotor: FiniteElementRotor, basis: np.ndarray) -> dict[str, ReducedInterface]:
@@ -315,4 +314,4 @@ def _shapes(
                 "give a FEMinterface with post-processing modes"
             )
         columns = rotor.stress_recovery(basis.matrix)
-    return ModeShapes(rotor.nodes, basis.matrix, rotor.triangles, columns)
+    return ModeShapes(rotor.nodes, basis.matrix, rotor.triangles, stress=columns)

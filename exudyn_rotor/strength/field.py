@@ -26,6 +26,7 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import Selection
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.solid.elements import von_mises
+from exudyn_rotor.solid.matrices import as_triangles
 from exudyn_rotor.units import Units
 from exudyn_rotor.vtk import write_surface
 
@@ -72,7 +73,7 @@ class StressField(Result):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_triangles(self.triangles, len(self.positions))
+        as_triangles(self.triangles, len(self.positions))
 
     @classmethod
     def of(cls, reduced: ReducedRotor, selection: Selection | RotorBody) -> StressField:
@@ -210,15 +211,6 @@ class StressField(Result):
         warn_without_static(self, speed)
         values = {"stress": stress[:, _PARAVIEW], "von Mises": von_mises(stress)}
         write_surface(path, self.positions, self.triangles, values)
-
-
-def check_triangles(triangles: np.ndarray, count: int) -> None:
-    """Refuse triangles that do not belong to `count` nodes."""
-    if triangles.size and (triangles.shape[1] not in (3, 6) or triangles.max() >= count):
-        raise ValueError(
-            f"triangles: needs 3 or 6 node numbers below {count} each, got the shape "
-            f"{triangles.shape} with numbers up to {triangles.max()}"
-        )
 
 
 def warn_without_static(field: StressField, speed: ArrayLike) -> None:
