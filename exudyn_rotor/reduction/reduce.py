@@ -98,7 +98,7 @@ def reduced_for_loads(
     Its deflection under these loads is that of the solid model. One that `spins` has free modes,
     too, and the static centrifugal displacement. ValueError if it has loose parts.
     """
-    columns = [attachment_modes(rotor, np.zeros((rotor.nodes.size, 0))).matrix]
+    columns = [attachment_modes(rotor, np.zeros((rotor.nodes.size, 0)))]
     loads = [np.eye(1, rotor.nodes.size, 3 * n + i)[0] for n in nodes for i in range(3)]
     if rotor.grounded:
         loads += list((rotor.mass @ translations(rotor.node_count)).T)
@@ -133,24 +133,20 @@ def _reduced(
         basis.momenta,
     )
     invariants = _cleaned(invariants, basis)
-    mode_mass = _mode_mass(component, basis)
-    if rotor.mass_damping:
-        invariants = replace(invariants, D=invariants.D + rotor.mass_damping * mode_mass)
-    if rotor.structural_damping:
-        invariants = replace(invariants, H=rotor.structural_damping * invariants.K)
     if network is not None:
         estimate = basis.matrix.T @ (network @ basis.matrix)
         invariants = replace(invariants, K2_estimated=0.5 * (estimate + estimate.T))
-    return ReducedRotor(
+    reduced = ReducedRotor(
         axis=rotor.axis,
         center_of_mass=center,
         invariants=_stiffened(rotor, invariants, basis.matrix),
         rigid_kinds=basis.rigid_kinds,
         interfaces=_interfaces(rotor, basis.matrix),
-        mode_mass=mode_mass,
+        mode_mass=_mode_mass(component, basis),
         dropped=basis.dropped,
         grounded=rotor.grounded,
     )
+    return reduced.with_damping(mass=rotor.mass_damping, loss=rotor.structural_damping)
 
 
 def _with_attachments(
@@ -165,13 +161,12 @@ def _with_attachments(
     stiffness = np.maximum(basis.stiffness, 0.0)
     with one_thread():
         try:
-            added = _joined(
-                attachment_modes(rotor, component.matrix),
-                inertial_modes(rotor, component.matrix, basis.matrix, stiffness),
-            )
+            static = attachment_modes(rotor, component.matrix)
+            inertial = inertial_modes(rotor, component.matrix, basis.matrix, stiffness)
         except ValueError:  # loose parts; the given modes may do without them
             return None
-        every = _joined(component, added)
+        matrix = np.hstack([component.matrix, static, inertial])
+        every = ModeBasis(matrix, numbered("column", matrix.shape[1]), rotor.nodes)
         finer = _basis(rotor, every)
         reduced = _reduced(rotor, every, finer)
         return reduced, finer.matrix.T @ basis.momenta
@@ -180,11 +175,6 @@ def _with_attachments(
 def _basis(rotor: FiniteElementRotor, modes: ModeBasis) -> OrthonormalBasis:
     rigid = _rigid_motions(rotor, rotor.center_of_mass)
     return OrthonormalBasis.of(rigid, modes, rotor.mass, rotor.stiffness)
-
-
-def _joined(first: ModeBasis, second: ModeBasis) -> ModeBasis:
-    columns = np.hstack([first.matrix, second.matrix])
-    return ModeBasis(columns, first.labels + second.labels, first.nodes)
 
 
 def _rigid_motions(
@@ -220,7 +210,7 @@ def _with_turned_displacement(rotor: FiniteElementRotor, component: ModeBasis) -
     labels = tuple(f"static displacement turned {i + 1}" for i in range(len(turns)))
     stress = component.stress
     if stress is not None:
-        stress = np.concatenate([stress, rotor.stress_recovery(columns)], axis=2)
+        stress = np.concatenate([stress, rotor.elements.nodal_stress(columns)], axis=2)
     matrix = np.hstack([component.matrix, columns])
     return ModeBasis(matrix, component.labels + labels, rotor.nodes, stress=stress)
 
@@ -308,10 +298,10 @@ def _shapes(
     if component.stress is not None:
         columns = component.stress @ basis.from_modes
     elif stress:
-        if rotor.stress_recovery is None:
+        if rotor.elements is None:
             raise ValueError(
                 "stress=True: this rotor has no stress recovery; make it with from_ngsolve, or "
                 "give a FEMinterface with post-processing modes"
             )
-        columns = rotor.stress_recovery(basis.matrix)
+        columns = rotor.elements.nodal_stress(basis.matrix)
     return ModeShapes(rotor.nodes, basis.matrix, rotor.triangles, stress=columns)

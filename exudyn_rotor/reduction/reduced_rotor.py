@@ -262,12 +262,6 @@ class ReducedRotor:
         object.__setattr__(self, "attached", known)
         return (None, None) if found is None else found
 
-    def changed_attached(self, change: Callable) -> Callable | None:
-        """Return :attr:`attached` of another rotor: `change` of the finer rotor and the columns."""
-        if self.attached is None:
-            return None
-        return lambda: None if self.with_attachments is None else change(*self._finer)
-
     def __getstate__(self) -> dict[str, object]:
         """Send to other processes what is known of the finer rotor, not the full model."""
         self._finer  # noqa: B018
@@ -360,7 +354,7 @@ class ReducedRotor:
         return replace(
             self,
             invariants=replace(inv, D=damping, H=structural),
-            attached=self.changed_attached(lambda rotor, T: (rotor.with_damping(**factors), T)),
+            attached=attached_by(self, lambda rotor, T: (rotor.with_damping(**factors), T)),
         )
 
     def static_displacement(self, speed: float) -> np.ndarray:
@@ -499,3 +493,15 @@ class ReducedRotor:
 def _check_columns(matrix: np.ndarray, name: str, size: int) -> None:
     if matrix.shape[1] != size:
         raise ValueError(f"{name}: needs one column for each of {size}, got {matrix.shape[1]}")
+
+
+def attached_by(reduced: ReducedRotor, change: Callable) -> Callable | None:
+    """Return ``attached`` of another rotor: `change` of the finer rotor and its columns."""
+    if reduced.attached is None:
+        return None
+
+    def finer() -> tuple[ReducedRotor, np.ndarray] | None:
+        rotor, columns = reduced.with_attachments, reduced.in_attached
+        return None if rotor is None else change(rotor, columns)
+
+    return finer

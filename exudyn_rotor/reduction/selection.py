@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
+from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor, attached_by
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.invariants import Invariants
 
@@ -221,7 +221,7 @@ def without_spin(reduced: ReducedRotor) -> ReducedRotor:
         U = _beside_spin(rotor)
         return _without_kind(rotor, U), U.T @ columns @ T
 
-    return replace(_without_kind(reduced, T), attached=reduced.changed_attached(finer))
+    return replace(_without_kind(reduced, T), attached=attached_by(reduced, finer))
 
 
 def _beside_spin(reduced: ReducedRotor) -> np.ndarray:
@@ -279,5 +279,5 @@ def keep_modes(reduced: ReducedRotor, indices: Sequence[int]) -> ReducedRotor:
         raise ValueError("keep_modes: this rotor has no rigid motions; keep at least one mode")
 
     kept = in_basis(reduced, np.eye(reduced.size)[:, columns], reduced.rigid_kinds)
-    attached = reduced.changed_attached(lambda rotor, shares: (rotor, shares[:, columns]))
+    attached = attached_by(reduced, lambda rotor, shares: (rotor, shares[:, columns]))
     return replace(kept, attached=attached)
