@@ -39,7 +39,7 @@ from exudyn_rotor.evaluation.placement import standard_unbalances as standard_un
 from exudyn_rotor.evaluation.separation import SeparationMargins as SeparationMargins
 from exudyn_rotor.evaluation.separation import separation_margins as separation_margins
 from exudyn_rotor.foundations.foundation import Foundation as Foundation
-from exudyn_rotor.foundations.mount import Mount as Mount
+from exudyn_rotor.foundations.foundation import Mount as Mount
 from exudyn_rotor.foundations.record import BaseRecord as BaseRecord
 from exudyn_rotor.html_report import report as report
 from exudyn_rotor.linear.modal.campbell import Campbell as Campbell
