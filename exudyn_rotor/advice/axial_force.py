@@ -14,8 +14,7 @@ import scipy.linalg as la
 
 from exudyn_rotor.advice.run_loads import instants, interface_loads
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
-from exudyn_rotor.multibody.rotor.record import Record
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import Record, RotorBody
 from exudyn_rotor.prestress.given_loads import HeldRotor
 from exudyn_rotor.prestress.static_solution import stress_stiffness
 from exudyn_rotor.reduction.reduced_rotor import ModeKind

@@ -26,12 +26,7 @@ class Request:
 
     @classmethod
     def of(cls, speeds: ArrayLike, load_frequencies: ArrayLike | None, accuracy: float) -> Request:
-        """Check the values; without load frequencies everything happens at the spin speed.
-
-        Raises
-        ------
-        TypeError, ValueError
-        """
+        """Check the values; without load frequencies everything happens at the spin speed."""
         values = _frequencies(speeds, "speeds")
         if len(values) > 2 or np.any(np.diff(values) < 0.0):
             raise ValueError(

@@ -105,9 +105,9 @@ class RunCheck:
         """What a record of few instants lacks; empty for a complete one."""
         if self.complete:
             return ""
-        known = "the end state is" if self.instants == 1 else f"{self.instants} instants are"
         return (
-            f"only {known} known: call body.start_recording() before mbs.Assemble(), and lower "
+            f"only {self.instants} of at least {_ENOUGH} instants are known: call "
+            "body.start_recording() before mbs.Assemble(), and lower "
             "solution.sensors.writePeriod of the settings"
         )
 
@@ -177,6 +177,9 @@ def check_run(
                                   vibrations over their displacements; larger for slow motion in
                                   space that is integrated in the rotor frame; next to a resonance
                                   amplitudes err by more, by the amplification
+    ``growth``           0.75     change of the growth of a lightly damped motion by the step,
+                                  towards the other sign, over the growth: above 1 the sign is
+                                  wrong; of scenes at constant speed with translation 'none'
     ``film``             1        displacement of a journal at the end over that beyond which its
                                   film is too thin and the law goes on by its tangent
     ``unresisted load``  0.01     what ``connections`` counts, as a share of the largest load

@@ -45,12 +45,12 @@ class Actuator(ABC):
         """Return the derivatives of :meth:`law` by current [N/A] and place [N/m], unchecked."""
 
     @abstractmethod
-    def _current_for(self, force: float, place: float) -> float:
-        """Return the current [A] that makes a force [N] at a place [m]."""
+    def _current_for(self, force: float) -> float:
+        """Return the current [A] that makes a force [N] in the centre."""
 
     @abstractmethod
-    def _place_under(self, load: float, gain: float, offset: float) -> float:
-        """Return where ``F(−gain (x + offset), x) + load = 0`` [m], next to the centre."""
+    def _place_under(self, load: float, gain: float) -> float:
+        """Return where ``F(−gain x, x) + load = 0`` [m], next to the centre."""
 
 
 @dataclass(frozen=True)
@@ -90,12 +90,11 @@ class LinearActuator(Actuator):
         """Return K_i and K_s."""
         return self.force_current, self.negative_stiffness
 
-    def _current_for(self, force: float, place: float) -> float:
-        return (force - self.negative_stiffness * place) / self.force_current
+    def _current_for(self, force: float) -> float:
+        return force / self.force_current
 
-    def _place_under(self, load: float, gain: float, offset: float) -> float:
-        held = self.force_current * gain
-        return (load - held * offset) / (held - self.negative_stiffness)
+    def _place_under(self, load: float, gain: float) -> float:
+        return load / (self.force_current * gain - self.negative_stiffness)
 
 
 @dataclass(frozen=True)
@@ -169,19 +168,19 @@ class SaturatingActuator(Actuator):
         by_place = [i**2 / gap**3 for i, gap in magnets]
         return 2.0 * self.constant * sum(by_current), 2.0 * self.constant * sum(by_place)
 
-    def _current_for(self, force: float, place: float) -> float:
+    def _current_for(self, force: float) -> float:
         most = max(self.bias_current, self.current_limit - self.bias_current)
-        least, largest = self.law(-most, place), self.law(most, place)
-        if not least < force < largest:
+        largest = self.law(most, 0.0)
+        if not abs(force) < largest:
             raise ValueError(
-                f"load: the magnets pull between {least:.4g} N and {largest:.4g} N at "
-                f"{place:g} m from the centre, not {force:.4g} N; give a larger current_limit"
+                f"load: the magnets pull with less than {largest:.4g} N in the centre, not "
+                f"{abs(force):.4g} N; give a larger current_limit"
             )
-        return brentq(lambda i: self.law(i, place) - force, -most, most, xtol=1e-15, rtol=1e-14)
+        return brentq(lambda i: self.law(i, 0.0) - force, -most, most, xtol=1e-15, rtol=1e-14)
 
-    def _place_under(self, load: float, gain: float, offset: float) -> float:
+    def _place_under(self, load: float, gain: float) -> float:
         def left(place: float) -> float:
-            return self.law(-gain * (place + offset), place) + load
+            return self.law(-gain * place, place) + load
 
         side = 1.0 if left(0.0) >= 0.0 else -1.0
         places = side * self.gap * _PLACES

@@ -22,9 +22,7 @@ from typing import ClassVar
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing
-
-Numbers = float | np.ndarray
+from exudyn_rotor.bearings.bearing import Bearing, Numbers, turned
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -142,19 +140,11 @@ class ClearanceStop(Bearing):
         T, T_n, T_a = (self.friction * share * X for X in (N, N_n, N_a))
         T_t = self.friction * (share * N_t - steep * approach / e)
         T_b = self.friction * steep
-        by_place = _in_axes(nx, ny, N_n, N_t - T / e, T_n, T_t + N / e)
-        by_rate = _in_axes(nx, ny, N_a, 0.0, T_a, T_b)
+        by_place = turned(nx, ny, N_n, N_t - T / e, T_n, T_t + N / e)
+        by_rate = turned(nx, ny, N_a, 0.0, T_a, T_b)
         force = [T * ny - N * nx, -T * nx - N * ny]
         return [*force, *by_place[:2], *by_rate[:2], *by_place[2:], *by_rate[2:]]
 
     def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return zeros, as of an open stop."""
         return np.zeros((2, 2)), np.zeros((2, 2))
-
-
-def _in_axes(
-    nx: Numbers, ny: Numbers, a: Numbers, b: Numbers, c: Numbers, d: Numbers
-) -> list[Numbers]:
-    """Return the entries of a matrix in (n1, n2) whose entries along n and t are a, b, c, d."""
-    p, q, r, s = nx * a - ny * c, nx * b - ny * d, ny * a + nx * c, ny * b + nx * d
-    return [nx * p - ny * q, ny * p + nx * q, nx * r - ny * s, ny * r + nx * s]

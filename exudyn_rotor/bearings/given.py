@@ -24,25 +24,6 @@ def given_supports(supports: Sequence[Given] | Given) -> tuple[Given, ...]:
     return checks.instances(supports, "supports", get_args(Given))
 
 
-def checked_supports(supports: Sequence[Given] | Given) -> tuple[Support, ...]:
-    """Return supports for linear analyses as a tuple, bearings linearised under their loads.
-
-    Raises
-    ------
-    TypeError, ValueError
-        For anything else, a bearing without a load, and one with states of its own.
-    """
-    linear, controlled = linear_supports(supports)
-    if controlled:
-        raise ValueError(
-            f"supports: the bearing at {controlled[0].interface!r}, magnetic, of pads with "
-            "inertia, in series or with a film that conserves mass, has states of its own, which "
-            "this analysis does not take; give a Support with its stiffness and damping, pads "
-            "without pad_inertia, or a film with 'reynolds'"
-        )
-    return linear
-
-
 def linear_supports(
     supports: Sequence[Given] | Given,
 ) -> tuple[tuple[Support, ...], tuple[Controlled, ...]]:

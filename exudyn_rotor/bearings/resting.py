@@ -100,11 +100,10 @@ def resting(
 
 def _of_magnets(bearing: MagneticBearing, place: np.ndarray, sensed: np.ndarray) -> Resting:
     """Return the equation of magnets; an integral brings what the sensors show to zero."""
-    offset = bearing.sensor_offset
     if bearing.controller.integral:
-        return Resting(_NONE, np.eye(2), _NONE, -offset)
+        return Resting(_NONE, np.eye(2), _NONE, np.zeros(2))
     axes, gain = bearing.control_axes, bearing.controller.proportional
-    at = list(zip(-gain * (axes @ (sensed + offset)), axes @ place, strict=True))
+    at = list(zip(-gain * (axes @ sensed), axes @ place, strict=True))
     force = axes.T @ [bearing.actuator.law(*one) for one in at]
     by_current, by_place = np.array([bearing.actuator.slopes(*one) for one in at]).T
     A, A_s = -axes.T @ np.diag(by_place) @ axes, axes.T @ np.diag(gain * by_current) @ axes

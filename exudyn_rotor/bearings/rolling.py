@@ -134,19 +134,6 @@ class RollingBearing(Bearing):
         """
         return self.count * self.cage_ratio * checks.number(speed, "speed", "rad/s")
 
-    def element_loads(self, displacement: ArrayLike, angle: float = 0.0) -> np.ndarray:
-        """Return the loads (2) of the elements [N], shape (Z,).
-
-        Parameters
-        ----------
-        displacement : array_like, shape (2,)
-            Of the inner ring [m].
-        angle : float, optional
-            Spin angle θ [rad].
-        """
-        place = checks.vector(displacement, "displacement", "m", size=2)
-        return contacts(self, place, checks.number(angle, "angle", "rad"))[0]
-
     def law_with_torque(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float, float]:
@@ -246,34 +233,17 @@ def _mean_stiffness(bearing: RollingBearing, *load: float) -> np.ndarray:
 
 
 def contacts(
-    bearing: RollingBearing, places: np.ndarray, angles: ArrayLike, least: float = 0.0
+    bearing: RollingBearing, places: np.ndarray, angles: ArrayLike
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return loads of the elements, force on the inner ring, and stiffness, without damping.
+    """Return loads (…, Z) of the elements, force (…, 2) and stiffness (…, 2, 2) without damping.
 
-    Parameters
-    ----------
-    bearing : RollingBearing
-    places : ndarray, shape (…, 2)
-        Of the inner ring [m].
-    angles : array_like, shape (…)
-        Spin angles θ [rad].
-    least : float
-        Depth up to which an element carries nothing [m].
-
-    Returns
-    -------
-    loads : ndarray, shape (…, Z)
-        (2) [N]
-    force : ndarray, shape (…, 2)
-        [N]
-    stiffness : ndarray, shape (…, 2, 2)
-        Less the force's derivative by the place [N/m].
+    Of the inner ring at places (…, 2) and spin angles (…); stiffness is less the force's
+    derivative.
     """
     turn = bearing.cage_ratio * np.asarray(angles)[..., None]
     turned = 2.0 * pi / bearing.count * np.arange(bearing.count) + turn
     n, exponent = np.stack([np.cos(turned), np.sin(turned)], -1), _EXPONENTS[bearing.elements]
-    depth = (n @ places[..., None])[..., 0] - bearing.clearance
-    depth = np.where(depth > least, depth, 0.0)
+    depth = np.maximum((n @ places[..., None])[..., 0] - bearing.clearance, 0.0)
     loads = bearing.stiffness * depth**exponent
     slopes = exponent * bearing.stiffness * depth ** (exponent - 1.0)
     across = np.swapaxes(n, -1, -2)

@@ -38,11 +38,10 @@ from typing import ClassVar
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, check_clearance
+from exudyn_rotor.bearings.bearing import Bearing, Numbers, check_clearance, turned
 
 _REST = 1e-6  # of Ω: the rate w of a journal at rest
 THINNEST = 1.0 - 0.01  # of the clearance: beyond, a film goes on by its tangent
-Numbers = float | np.ndarray
 
 
 def film_force(x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
@@ -86,8 +85,8 @@ def film_tangent(
         beta = 0.5 * pi + np.arctan(u / np.sqrt(1.0 - u * u - v * v))
     along, across, p, q, m, n = _integrals(u, v, beta)
     force = _in_axes([-w * (along * c - across * s), -w * (along * s + across * c)])
-    by_rate = _turned(c, s, along, p * v - q * u - across, across, m * v - n * u + along)
-    by_place = _turned(c, s, w * p, w * q, w * m, w * n)
+    by_rate = turned(c, s, along, p * v - q * u - across, across, m * v - n * u + along)
+    by_place = turned(c, s, w * p, w * q, w * m, w * n)
     if not np.all(moves):
         still = damping_at_rest(x, y)
         by_rate = [np.where(moves, one, other) for one, other in zip(by_rate, still, strict=True)]
@@ -99,12 +98,6 @@ def film_tangent(
 
 def _in_axes(numbers: list[Numbers]) -> np.ndarray:
     return np.array(numbers) if isinstance(numbers[0], float) else np.stack(numbers, axis=-1)
-
-
-def _turned(c: Numbers, s: Numbers, a: Numbers, b: Numbers, d: Numbers, e: Numbers) -> list:
-    """Return the entries of ``R [[a, b], [d, e]] Rᵀ``, R the rotation by the angle of (c, s)."""
-    a, b, d, e = c * a - s * d, c * b - s * e, s * a + c * d, s * b + c * e
-    return [c * a - s * b, s * a + c * b, c * d - s * e, s * d + c * e]
 
 
 def damping_at_rest(x: Numbers, y: Numbers) -> list[Numbers]:
@@ -138,17 +131,7 @@ def _integrals(u: Numbers, v: Numbers, beta: Numbers) -> tuple[Numbers, ...]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ShortFilmBearing(Bearing):
-    """A bearing that has a short film around its journal.
-
-    Attributes
-    ----------
-    radius, length : float
-        Of the film [m].
-    clearance : float
-        Radial clearance [m].
-    viscosity : float
-        Dynamic viscosity of the oil [Pa s].
-    """
+    """A bearing that has a short film around its journal."""
 
     _turns: ClassVar[bool] = True  # whether the film turns with the journal
     centring_stiffness: ClassVar[float] = 0.0
@@ -169,7 +152,8 @@ class ShortFilmBearing(Bearing):
         """``μ R L³/c²`` [N s], before rates that are relative to the clearance."""
         return self.viscosity * self.radius * self.length**3 / self.clearance**2
 
-    def _edge(self, x: float, y: float) -> float:
+    def film_edge(self, x: float, y: float) -> float:
+        """Return where a film is as thin as c/100 [m]."""
         return THINNEST * self.clearance
 
     def clearance_along(self, direction: np.ndarray | None = None) -> float:
@@ -192,7 +176,7 @@ class ShortFilmBearing(Bearing):
         """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
         c, whirl = self.clearance, speed if self._turns else 0.0
         if hypot(x, y) > THINNEST * c:
-            return self._slopes_beyond(x, y, vx, vy, angle, speed)
+            return super().slopes(x, y, vx, vy, angle, speed)
         found = film_tangent(x / c, y / c, vx / c, vy / c, whirl, _REST * abs(speed))[1]
         found *= self._size / c
         found[[0, 1], [0, 1]] += self.centring_stiffness

@@ -20,7 +20,6 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -28,9 +27,8 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, Linearised
+from exudyn_rotor.bearings.bearing import Bearing, Equilibria, Linearised
 from exudyn_rotor.bearings.controlled_support import ControlledSupport
-from exudyn_rotor.bearings.film.equilibria import Equilibria
 from exudyn_rotor.bearings.film.film import FilmState, OilFilm
 from exudyn_rotor.bearings.film.pads import direction
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
@@ -39,7 +37,7 @@ from exudyn_rotor.calls import user_level
 
 _STARTS = (0.3, 0.6, 0.1, 0.8, 0.01, 1e-3)  # places at which a search begins, over the clearance
 _STEPS, _NARROWER = 30, 0.6  # of Newton's method, what of a film one step may close
-_LOOSE, _FIRM = 1e-9, 1e-5  # of μ Ω L (R/c)³: no stiffness of a pad; of the largest: none at all
+_LOOSE, _FIRM = 1e-9, 1e-5  # of the largest stiffness: none of a pad; none of all
 _HELD = 1e-6  # of its stiffness: what holds the tilt of a pad that carries nothing
 _STILL, _CLOSE = 1e-11, 1e-6  # of the clearance: it stops there; of the load: what may be left
 _TILTS = 26  # tried, between those at which an edge is as thin as the grid resolves
@@ -189,10 +187,10 @@ class TiltingPadBearing(Bearing):
         held = np.array([soft, 4.0 * np.sqrt(soft * mass)])  # overdamped: no vibration of its own
         count = len(state.states)
         total = np.zeros((2, 2 + count, 2 + count))
-        for pad, (each, t) in enumerate(zip(state.coefficients, self.tangents, strict=True)):
+        for pad, (each, t) in enumerate(zip(state.states, self.tangents, strict=True)):
             seen = np.eye(2, 2 + count)
             seen[:, 2 + pad] = -t
-            film = np.multiply.outer(held, np.outer(t, t)) if each is None else each
+            film = held[:, None, None] * np.outer(t, t) if each is None else each.coefficients()
             total += [seen.T @ X @ seen for X in film]
         return total
 
@@ -227,11 +225,6 @@ class TiltingPadBearing(Bearing):
         raise refused
 
 
-def _stiffness_unit(film: OilFilm, speed: float) -> float:
-    """Return ``μ Ω L (R/c)³`` [N/m]."""
-    return film.viscosity * abs(speed) * film.length * (film.radius / film.clearance) ** 3
-
-
 def _shift_of_pad(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float) -> float:
     """Return s [m] of a pad whose film has no part along t; NaN where no tilt makes it carry.
 
@@ -248,16 +241,13 @@ def _shift_of_pad(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float)
     high = np.min(-room[lever < 0.0] / lever[lever < 0.0], initial=np.inf)
     if not low < high:
         raise pressed
-    last = None
-
-    def at(s: float) -> FilmState:
-        nonlocal last
-        empty = last and last.solution.empty
-        last = film.solved(place - s * t, np.zeros(2), speed, empty)
-        return last
+    empty = None
 
     def moment(s: float) -> float:
-        return float(t @ at(s).force)
+        nonlocal empty
+        state = film.solved(place - s * t, np.zeros(2), speed, empty)
+        empty = state.solution.empty
+        return float(t @ state.force)
 
     # beside that of a film whose edges are equally thick, next to which a light pad is
     even = float((place - film.pads[0].center) @ t)
@@ -272,7 +262,8 @@ def _shift_of_pad(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float)
             raise pressed
         return np.nan
     s = brentq(moment, tried[rises[0]], tried[rises[0] + 1], xtol=_ROOT * film.radius)
-    return s if t @ at(s).coefficients()[0] @ t > 0.0 else np.nan  # where no pressure is left
+    stiffness = film.solved(place - s * t, np.zeros(2), speed, empty).coefficients()[0]
+    return s if t @ stiffness @ t > 0.0 else np.nan  # where no pressure is left
 
 
 @dataclass(frozen=True, eq=False)
@@ -305,7 +296,6 @@ class _Pads:
         """
         place, shifts, states, still = self.place, self.shifts, list(self.states), np.zeros(2)
         films, present = self.films, [pad for pad, state in enumerate(states) if state is not None]
-        units = [_stiffness_unit(film, speed) for film in films]
         small = _STILL * min(film.clearance for film in films)
         for _ in range(_STEPS):
             left, total, moved = load.copy(), np.zeros((2, 2)), np.full((len(states), 3), np.nan)
@@ -314,7 +304,7 @@ class _Pads:
                 states[pad] = film.solved(place - shifts[pad] * t, still, speed, empty)
                 force, stiffness = states[pad].force, states[pad].coefficients()[0]
                 rise, lever = t @ stiffness @ t, stiffness @ t
-                if not rise > _LOOSE * units[pad]:
+                if not rise > _LOOSE * np.abs(stiffness).max():
                     return None
                 moved[pad] = *(t @ stiffness / rise), t @ force / rise
                 left += force - lever * moved[pad, 2]
@@ -331,15 +321,10 @@ class _Pads:
         else:
             return None
         for film, t, state in zip(films, self.tangents, states, strict=True):
-            thin = state is not None and state.solution.equation.heights.min() < film.thinnest
+            thin = state is not None and state.heights.min() < film.thinnest
             if thin or (state is None and not np.isnan(_shift_of_pad(film, place, t, speed))):
                 return None
         return replace(self, speed=speed, place=place, shifts=shifts, states=states)
-
-    @cached_property
-    def coefficients(self) -> list[tuple[np.ndarray, np.ndarray] | None]:
-        """Stiffness and damping of each film, (2, 2); None for absent pads."""
-        return [None if state is None else state.coefficients() for state in self.states]
 
     def impedance(self, whirl: float, mass: float = 0.0) -> np.ndarray:
         """Return Z_b of (2) at a frequency [rad/s], shape (2, 2); of pads with a mass I/R² [kg].
@@ -347,9 +332,9 @@ class _Pads:
         By (1) the mass takes ``mass whirl²`` from ``tᵀZ t``.
         """
         total = np.zeros((2, 2), dtype=complex)
-        for coefficients, t in zip(self.coefficients, self.tangents, strict=True):
-            if coefficients is not None:
-                K, C = coefficients
+        for state, t in zip(self.states, self.tangents, strict=True):
+            if state is not None:
+                K, C = state.coefficients()
                 Z = K + 1j * whirl * C
                 total += Z - np.outer(Z @ t, t @ Z) / (t @ Z @ t - mass * whirl**2)
         return total

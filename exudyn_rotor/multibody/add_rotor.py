@@ -12,9 +12,8 @@ from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.full.add_full import add_full
+from exudyn_rotor.multibody.full.add_full import add_full, check_memory, make_full_plan
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
-from exudyn_rotor.multibody.full.full_plan import check_memory, make_full_plan
 from exudyn_rotor.multibody.rotor.frame import LOCKINGS, LockedForce
 from exudyn_rotor.multibody.rotor.plan import (
     Plan,
@@ -28,11 +27,7 @@ from exudyn_rotor.multibody.rotor.plan import (
     placement,
 )
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.multibody.rotor.rotor_items import (
-    add_interface_markers,
-    add_locks_and_weight,
-    flexible_body,
-)
+from exudyn_rotor.multibody.rotor.rotor_items import finished, flexible_body
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.rotor import LOSS_LEFT_OUT
@@ -249,16 +244,14 @@ def _add_reduced(mbs: exudyn.MainSystem, reduced: ReducedRotor, setup: Setup) ->
     )
     marker_body = mbs.AddObject(item)
     physics = mbs.AddObject(_equations(plan, [rigid, modes]))
-    body = RotorBody(
-        **vars(plan),
-        **add_locks_and_weight(mbs, plan, rigid, marker_body),
-        mbs=mbs,
+    return finished(
+        RotorBody,
+        mbs,
+        plan,
         nodes={"rigid": rigid, "modes": modes},
         objects={"physics": physics, "marker_body": marker_body},
         mesh_node_count=0 if reduced.shapes is None else len(reduced.shapes.nodes),
     )
-    add_interface_markers(body)
-    return body
 
 
 def _add_solid(mbs: exudyn.MainSystem, rotor: SolidRotor, setup: Setup) -> FullRotorBody:

@@ -11,8 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
-from exudyn_rotor.multibody.rotor.record import StartState
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState
 from exudyn_rotor.nonlinear.scene import check_origin, foundation_below
 from exudyn_rotor.reduction.reduced_rotor import ModeKind
 from exudyn_rotor.theory.axis import skew

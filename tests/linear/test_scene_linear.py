@@ -181,15 +181,14 @@ def measured_growth(mbs, body, speed, steps, size=1e-5, revolutions=20):
     return np.polyfit(data[:, 0], np.log(np.hypot(*parts)), 1)[0]
 
 
-@pytest.mark.parametrize(("speed", "stable"), [(150.0, True), (160.0, False)])
-def test_growth_is_that_of_the_transient_simulation(speed, stable):
-    measured = []
+def test_growth_is_that_of_the_transient_simulation():
+    speed, measured = 160.0, []
     for steps in (400, 800):
         mbs, body = foundation_scene(speed)
         measured.append(measured_growth(mbs, body, speed, steps))
     [found] = motions_over(linear_model(mbs, body=body), [speed], method="floquet")
     growth = found.values.real.max()
-    assert (growth < 0.0) == stable
+    assert growth > 0.0
     # the trapezoidal rule's error falls with the square of the step
     limit = (4.0 * measured[1] - measured[0]) / 3.0
     assert abs(measured[1] / limit - 1.0) > 1e-5

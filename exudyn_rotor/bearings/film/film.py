@@ -21,7 +21,7 @@ from exudyn_rotor.bearings.film.reynolds import CAVITATION, Equation, Solution
 from exudyn_rotor.calls import kept
 
 _PEAK = 4.5  # the pressure's peak, √(2 h_min/c) wide, holds three nodes
-_STEPS, _VAIN = 100, 3  # of Newton's method, of those in vain
+_STEPS, _VAIN, _HALVES = 100, 3, 12  # of Newton's method, in vain, halvings of one
 _CLOSE = 1e-9  # of the load: it stops there
 # places at which it begins: over the clearance, and turned from the most likely side
 _STARTS = [
@@ -319,28 +319,24 @@ class OilFilm:
         """Return where Newton's method ends; None for a film thinner than the grid resolves."""
         state, vain, size = self.solved(start, np.zeros(2), speed, empty), 0, np.linalg.norm(load)
         for _ in range(_STEPS):
-            unbalanced = np.linalg.norm(state.force + load)
-            if unbalanced < _CLOSE * size or vain == _VAIN:
+            unbalanced = state.force + load
+            left = np.linalg.norm(unbalanced)
+            if left < _CLOSE * size or vain == _VAIN:
                 break
-            state = self._next(state, load)
-            if self._heights(state.position).min() < self.thinnest:
+            move = np.linalg.lstsq(state.coefficients()[0], unbalanced, rcond=1e-12)[0]
+            move *= min(1.0, 0.6 / state.closing(move))
+            for _ in range(_HALVES):
+                # the cells that are empty now: few steps from those of the next place
+                place, empty = state.position + move, state.solution.empty
+                found = self.solved(place, np.zeros(2), speed, empty)
+                if np.linalg.norm(found.force + load) < left:
+                    break
+                move *= 0.5
+            vain += np.linalg.norm(found.force + load) >= left
+            state = found
+            if state.heights.min() < self.thinnest:
                 return None
-            vain += np.linalg.norm(state.force + load) >= unbalanced
         return state
-
-    def _next(self, state: FilmState, load: np.ndarray) -> FilmState:
-        """Return the state after one step, shortened until the force comes closer to the load."""
-        unbalanced = state.force + load
-        move = np.linalg.lstsq(state.coefficients()[0], unbalanced, rcond=1e-12)[0]
-        move *= min(1.0, 0.6 / state.closing(move))
-        for _ in range(12):
-            # the cells that are empty now: few steps from those of the next place
-            motion = state.position + move, state.velocity, state.speed
-            found = self.solved(*motion, state.solution.empty)
-            if np.linalg.norm(found.force + load) < np.linalg.norm(unbalanced):
-                break
-            move *= 0.5
-        return found
 
     def solved(
         self,

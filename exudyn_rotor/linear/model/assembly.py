@@ -425,16 +425,6 @@ class Assembly:
             if key[1] == 0 or np.abs(X).max() > _SMALL * largest[key[0]]
         }
 
-    def projected(self, basis: np.ndarray) -> Assembly:
-        """Return what gives the equations of motions in a real basis (k, r)."""
-        other = Assembly(self.bodies, self.elements, self.turns)
-        vars(other).update(
-            motions=[{n: U @ basis for n, U in terms.items()} for terms in self.motions],
-            _steady={key: basis.T @ X @ basis for key, X in self._steady.items()},
-            _H=[(n, basis.T @ X @ basis) for n, X in self._H],
-        )
-        return other
-
     def system(
         self, speed: float, frequency: float | None = None, more: Powers | None = None
     ) -> PeriodicSystem:

@@ -284,16 +284,12 @@ class LinearModel:
         return self.assembly(speed).system(speed, frequency)
 
     def at_all(
-        self,
-        speeds: Sequence[float],
-        within: str = "",
-        frequencies: Sequence[float] | None = None,
+        self, speeds: Sequence[float], frequencies: Sequence[float] | None = None
     ) -> PeriodicSystem:
         """Return the equations at spin speeds (s,) [rad/s] as one stack.
 
-        NaN at speeds where there are none, of which one warning tells. Of motions `within`
-        :attr:`held_basis`, 'held', or :attr:`moving_basis`, 'moving'; of all by default. With
-        motions of the frequencies (s,) [rad/s]; those of the speeds by default.
+        NaN at speeds where there are none, of which one warning tells. With motions of the
+        frequencies (s,) [rad/s]; those of the speeds by default.
 
         Raises
         ------
@@ -305,7 +301,7 @@ class LinearModel:
         for places in (np.flatnonzero(speeds), np.flatnonzero(speeds == 0.0)):
             if places.size:
                 rates = None if frequencies is None else np.asarray(frequencies)[places]
-                part, errors = self._systems(speeds[places], within, rates)
+                part, errors = self._systems(speeds[places], rates)
                 refused |= {int(places[i]): error for i, error in errors.items()}
                 if part is not None:
                     parts.append((np.delete(places, list(errors)), part))
@@ -314,21 +310,10 @@ class LinearModel:
         return spread(speeds, parts)
 
     def _systems(
-        self, speeds: np.ndarray, within: str = "", frequencies: np.ndarray | None = None
+        self, speeds: np.ndarray, frequencies: np.ndarray | None
     ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         """Return the stack at speeds (s,), all zero or none, and why there are none at some."""
-        basis = getattr(self, f"{within}_basis") if within else None
-        if basis is None:
-            return self.assembly(speeds[0]).systems(speeds, frequencies)
-        key = within, bool(speeds[0])
-        if key not in self._projected:
-            self._projected[key] = self.assembly(speeds[0]).projected(basis)
-        return self._projected[key].systems(speeds, frequencies)
-
-    @cached_property
-    def _projected(self) -> dict[tuple[str, bool], Assembly]:
-        """What gives the equations of motions in a basis, running or at rest, once made."""
-        return {}
+        return self.assembly(speeds[0]).systems(speeds, frequencies)
 
     @property
     def pattern(self) -> tuple:

@@ -51,7 +51,7 @@ def forced_motions(
     rates : ndarray, shape (s,)
         ω [rad/s].
     held : ndarray, shape (k, r), optional
-        Basis of motions of which the equations are; loads and motions are of all coordinates.
+        Basis of motions in which the equations are solved; all motions by default.
     driven : ndarray, shape (k, d), optional
         Momenta of motions whose constant part a drive keeps at zero: free spins.
     tolerance : float, optional
@@ -59,7 +59,7 @@ def forced_motions(
     """
     if held is not None:
         loads = {n: F @ held for n, F in loads.items()}
-        found = forced_motions(system, loads, rates, tolerance=tolerance)
+        found = forced_motions(system.projected(held), loads, rates, tolerance=tolerance)
         return {n: X @ held.T for n, X in found.items()}
     if driven is not None and not driven.shape[1]:
         driven = None

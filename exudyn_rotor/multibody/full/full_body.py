@@ -12,9 +12,7 @@ from exudyn.itemInterface import SensorSuperElement
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.full.ties import Ties, add_ties
-from exudyn_rotor.multibody.rotor import sensors
-from exudyn_rotor.multibody.rotor.record import Record
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, SceneBody
+from exudyn_rotor.multibody.rotor.rotor_body import Record, RotorBody, SceneBody, native_settings
 from exudyn_rotor.multibody.rotor.rotor_items import (
     Carrier,
     append_nodes,
@@ -66,13 +64,9 @@ class FullRotorBody(SceneBody):
         """Number of nodes of the mesh."""
         return self.selection.source.node_count
 
-    @property
-    def _size_in_words(self) -> str:
-        return f"{self.node_count} nodes"
-
-    def _report_of_coordinates(self) -> list[str]:
+    def _coordinates_in_words(self) -> tuple[str, list[str]]:
         held = len(self.selection.conditions.rows)
-        return [
+        return f"{self.node_count} nodes", [
             f"  nodes          {self.node_count}, {3 * self.node_count} displacements",
             f"  conditions     {held} of the frame, in mass matrix and stiffness",
         ]
@@ -149,19 +143,17 @@ class FullRotorBody(SceneBody):
         )
 
     def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
-        """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``."""
+        """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``.
+
+        It shows no stress, which :meth:`stress` gives.
+        """
         self.check_present()
         checks.count(node, "node", most=self.node_count - 1)
-        where = "at a mesh node of a full body (stress: body.stress())"
-        sensors.check_output(output, sensors.AT_MESH_NODE, where)
-        settings = sensors.settings_of(self, options)
+        settings = native_settings(self, output, options)
         point = self._nodes_carrier([node], "position")
         (number,) = append_nodes(self.mbs, point.body, *point.virtual_nodes("position"))
-        return self.mbs.AddSensor(
-            SensorSuperElement(
-                bodyNumber=point.body, meshNodeNumber=number, outputVariableType=output, **settings
-            )
-        )
+        item = SensorSuperElement(bodyNumber=point.body, meshNodeNumber=number, **settings)
+        return self.mbs.AddSensor(item)
 
 
 def reduced_body(body: object, how: str = "add_rotor returned it") -> RotorBody:

@@ -1,4 +1,4 @@
-"""What a scene attaches to a rotor and the rotor cannot carry, found by a walk through the ``mbs``.
+"""What a scene attaches to a rotor, by a walk through the ``mbs``: what is lost, where loads act.
 
 Rigid and position markers at the node of the frame are pointed at others that move with the rotor
 (:mod:`exudyn_rotor.multibody.rotor.assembly`). Markers of its coordinates see the frame alone:
@@ -9,13 +9,15 @@ the centre of mass. Tilts are modal coordinates.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import exudyn
 import numpy as np
 
 from exudyn_rotor.multibody.rotor.frame import MODES
-from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
+from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, marker_carrier
+from exudyn_rotor.theory.axis import skew
 
 _ALONG = 1e-6  # sine of the angle up to which a direction counts as that of the spin axis
 NODE_MARKERS = ("NodeRigid", "NodePosition")
@@ -173,3 +175,61 @@ def _sensors(body: RotorItems) -> Iterator[str]:
                 f"sensor {sensor['name']!r}: {kind.name} of the frame's node is that of spin and "
                 "centre of mass alone, without tilts; take a sensor of a MarkerNodeRigid there"
             )
+
+
+_MARKERS = ("SuperElementPosition", "SuperElementRigid")
+# loads and connectors that exert no moment
+_FORCES = ("ForceVector", "ConnectorCartesianSpringDamper", "ConnectorSpringDamper")
+_SAME = 1e-6  # of the motion of an interface, by which a marker there may differ
+
+
+@dataclass(frozen=True, eq=False)
+class LoadPlace:
+    """A place of a rotor where forces act, and perhaps moments."""
+
+    point: np.ndarray  # (3,) Mesh coordinates [m]
+    # (3, m) or (6, m) Displacement, and rotation where moments act, by modal coordinates, mesh axes
+    motion: np.ndarray
+    interface: str | None  # whose mean motion this is
+
+
+def load_places(body: RotorItems) -> tuple[LoadPlace, ...]:
+    """Return where loads and connectors act on a reduced rotor."""
+    moments: dict[int, bool] = {}  # of markers, whether moments may act there
+    for is_load, _, item, markers in attached(body.mbs):
+        kind = item["loadType" if is_load else "objectType"]
+        for marker in markers if item.get("activeConnector", True) else ():
+            moments[marker] = moments.get(marker, False) or kind not in _FORCES
+    found = []
+    for number, with_moments in moments.items():
+        marker = body.mbs.GetMarker(number)
+        own = int(marker.get("bodyNumber", -1)) == int(body.objects["marker_body"])
+        if own and marker["markerType"] in _MARKERS:
+            rigid = with_moments and marker["markerType"] == "SuperElementRigid"
+            found.append(_at_marker(body, marker, 6 if rigid else 3))
+    interfaces = body.selection.source.interfaces
+    # drives and connections of rotors act by coordinates
+    driven = {one.at if one.body.token is body.token else one.other_at for one in body.drives}
+    for name in sorted(driven - {None}):
+        motion = interfaces[name].motion @ body.selection.T
+        found.append(LoadPlace(interfaces[name].reference, motion, name))
+    return tuple(found)
+
+
+def _at_marker(body: RotorItems, marker: dict, count: int) -> LoadPlace:
+    carrier, turn = marker_carrier(body.mbs, marker), body.frame.B
+    parts = np.split(carrier.motion[:count], count // 3)
+    motion = np.vstack([turn.T @ part for part in parts])
+    on_mesh = carrier.point @ turn + body.frame.origin
+    return LoadPlace(on_mesh, motion, _interface_at(body, on_mesh, motion))
+
+
+def _interface_at(body: RotorItems, point: np.ndarray, motion: np.ndarray) -> str | None:
+    """Return the interface, the nearest, that moves a point (3,) of its own by `motion`."""
+    found = {}
+    for name, interface in body.selection.source.interfaces.items():
+        mean, arm = interface.motion @ body.selection.T, point - interface.reference
+        expected = mean[:3] - skew(arm) @ mean[3:]
+        if np.abs(motion[:3] - expected).max() <= _SAME * np.abs(expected).max():
+            found[name] = float(np.linalg.norm(arm))
+    return min(found, key=found.__getitem__, default=None)

@@ -12,15 +12,7 @@ from exudyn.itemInterface import NodeGenericODE2, NodeRigidBodyRxyz, VNodeRigidB
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor.frame import (
-    MODES,
-    BodyFrame,
-    Layout,
-    LockedForce,
-    Locks,
-    driving_force,
-    lock_masses,
-)
+from exudyn_rotor.multibody.rotor.frame import MODES, BodyFrame, Layout, LockedForce, Locks
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import Selection, select_modes
 from exudyn_rotor.theory.formulation import Formulation, start_values
@@ -108,16 +100,13 @@ def placement(
 
 def _check_direction(formulation: Formulation, velocity: np.ndarray, axis: np.ndarray) -> None:
     """Refuse a velocity that the formulation cannot have; `axis` in inertial axes."""
-    if np.any(velocity) and formulation.translation_count == 0:
+    lost = {3: 0.0 * velocity, 2: axis * (axis @ velocity), 0: velocity}
+    missing = np.linalg.norm(lost[formulation.translation_count])
+    if missing > 1e-9 * np.linalg.norm(velocity):
         raise ValueError(
-            f"initial_velocity {velocity.tolist()} m/s: translation='none' holds the rotor"
-        )
-    along = abs(axis @ velocity)
-    if formulation.translation_count == 2 and along > 1e-9 * np.linalg.norm(velocity):
-        raise ValueError(
-            f"initial_velocity {velocity.tolist()} m/s has {along:.3g} m/s along the spin axis: "
-            "translation='in-plane' has no such motion; give it as a modal velocity of "
-            "'translation along axis', or use translation='free'"
+            f"initial_velocity: translation={formulation.translation!r} has no such motion, "
+            f"{missing:.3g} m/s of {velocity.tolist()} m/s; use translation='free', or velocities "
+            "of translation modes in modal_velocities"
         )
 
 
@@ -145,12 +134,7 @@ def marker_kinds(
         markers = "rigid"
     if isinstance(markers, str):
         return dict.fromkeys(interfaces, checks.choice(markers, "markers", MARKER_KINDS))
-    if not isinstance(markers, Mapping):
-        raise TypeError(
-            "markers: needs 'rigid', 'position' or a mapping of interface to one of them, got "
-            f"{checks.shown(markers)}"
-        )
-    checks.mapping(markers, "markers", "kind", interfaces)
+    checks.mapping(markers, "markers", "'rigid' or 'position'", interfaces)
     return {
         name: checks.choice(kind, f"markers: kind of {name!r}", MARKER_KINDS)
         for name, kind in markers.items()
@@ -177,15 +161,9 @@ def marker_name(name: str | None, interface: str) -> str:
 def check_free_names(mbs: exudyn.MainSystem, setup: Setup) -> None:
     """Refuse a name that an item of `mbs` already has."""
     name = setup.name
-    taken = [
-        (mbs.GetMarkerNumber, marker_name(name, interface)) for interface in setup.marker_kinds
-    ]
+    taken = [(mbs.GetMarkerNumber, marker_name(name, one)) for one in setup.marker_kinds]
     if name is not None:
-        taken += [
-            (mbs.GetObjectNumber, name),
-            (mbs.GetNodeNumber, item_name("NodeRigidBody:", name)),
-            (mbs.GetNodeNumber, item_name("NodeGeneric:", name)),
-        ]
+        taken.append((mbs.GetObjectNumber, name))
     for find, item in taken:
         if int(find(item)) != -1:
             raise ValueError(
@@ -224,9 +202,16 @@ class Plan(Setup):
 
     @property
     def guide(self) -> LockedForce | None:
-        """Forces over time that drive locked coordinates; None where constraints hold them."""
-        by_mass = self.locking == "mass"
-        return driving_force(self.locks, self.layout.lock_mass) if by_mass else None
+        """Forces (size,) over time that drive huge masses; None where none is driven."""
+        varying, masses = self.locks.varying, self.layout.lock_mass
+
+        def force(t: float) -> np.ndarray:
+            total = np.zeros(len(masses))
+            for index, motion in varying.items():
+                total[index] = masses[index] * motion.acceleration(t)
+            return total
+
+        return force if self.locking == "mass" and varying else None
 
 
 def add_nodes(mbs: exudyn.MainSystem, plan: Plan) -> tuple[exudyn.NodeIndex, exudyn.NodeIndex]:
@@ -255,11 +240,8 @@ def make_plan(reduced: ReducedRotor, setup: Setup) -> Plan:
     if setup.stiffening != "none":
         invariants = invariants.loaded
     second = second_order(invariants, setup.stiffening)
-    start = {
-        name: _modal_values(getattr(setup, name), name, selection.labels)
-        for name in ("modal_coordinates", "modal_velocities")
-    }
-    return laid_out(replace(setup, **start), selection, partial(Motion, invariants), second)
+    start = partial(_modal_values, labels=selection.labels)
+    return laid_out(setup, selection, partial(Motion, invariants), second, start)
 
 
 def laid_out(
@@ -267,11 +249,20 @@ def laid_out(
     selection: Selection,
     motions: Callable[..., Motion],
     second: Stiffening,
+    start: Callable[[ArrayLike | None, str], np.ndarray],
 ) -> Plan:
-    """Return a plan with frame, locks, layout and motion; `motions` knows the invariants."""
+    """Return a plan with frame, locks, layout and motion.
+
+    `motions` knows the invariants, and `start` makes initial coordinates of what was given.
+    """
     formulation, place = setup.formulation, setup.placement
     turned = turned_origin(selection, place.rotation, place.angle)
-    setup = replace(setup, placement=replace(place, translation=place.translation + turned))
+    setup = replace(
+        setup,
+        placement=replace(place, translation=place.translation + turned),
+        modal_coordinates=start(setup.modal_coordinates, "modal_coordinates"),
+        modal_velocities=start(setup.modal_velocities, "modal_velocities"),
+    )
     direction = selection.invariants.direction
     frame = BodyFrame.of(direction, selection.origin, place.position, place.rotation)
     locks = Locks.of(formulation, place.rotation @ direction, frame.spin)
@@ -293,15 +284,26 @@ def laid_out(
     )
 
 
+_LOCK_RATIO = 1e18  # masses of locked coordinates over those of the rotor
+# beside a constraint that explicit solvers eliminate: of what moves within one of their steps
+_ELIMINATED_RATIO = 1e9
+# of coordinates that are driven: rounding of the driving force is seen in the external one
+_DRIVEN_RATIO = 1e9
+
+
 def _layout(setup: Setup, locks: Locks, motion: Motion) -> Layout:
     """Return where the unknowns stand among the coordinates of the nodes, and what is locked."""
     inv = motion.invariants
-    size = MODES + inv.size
     # a rotor all on its axis has no inertia about it, and its locked spin still needs one
     about_axis = inv.Theta or np.trace(inv.J) or inv.mass
-    inertia = np.repeat([inv.mass, about_axis], 3)
-    unknowns = np.array([*locks.unknown, *range(MODES, size)])
-    return Layout(size, unknowns, lock_masses(locks, size, inertia, setup.locking == "mass"))
+    inertia, size = np.repeat([inv.mass, about_axis], 3), MODES + inv.size
+    masses = np.zeros(size)
+    for index in (*locks.fixed, *locks.prescribed):
+        ratio = _ELIMINATED_RATIO if locks.stand_still else 1.0
+        if setup.locking == "mass":
+            ratio = _DRIVEN_RATIO if index in locks.varying else _LOCK_RATIO
+        masses[index] = inertia[index] * ratio
+    return Layout(size, np.array([*locks.unknown, *range(MODES, size)]), masses)
 
 
 def turned_origin(selection: Selection, rotation: np.ndarray, angle: float) -> np.ndarray:

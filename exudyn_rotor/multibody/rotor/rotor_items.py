@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import exudyn
 import numpy as np
@@ -37,6 +37,8 @@ from exudyn_rotor.solid.rotor import Interface, rotation_moments
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.rotating_axes import axes_of
 
+_KINDS = exudyn.OutputVariableType
+RATES = (_KINDS.Coordinates, _KINDS.Coordinates_t, _KINDS.Coordinates_tt)
 _FLAT = 1e-6  # smallest second moment of nodes over the largest for which they show a rotation
 
 
@@ -93,15 +95,6 @@ def add_weight(
         return None
     marker = mbs.AddMarker(MarkerBodyMass(bodyNumber=body))
     return mbs.AddLoad(LoadMassProportional(markerNumber=marker, loadVector=gravity))
-
-
-def add_locks_and_weight(
-    mbs: exudyn.MainSystem, plan: Plan, rigid: exudyn.NodeIndex, body: exudyn.ObjectIndex
-) -> dict[str, Any]:
-    """Hold the frame's node by constraints, and add the weight that the equations do not hold."""
-    held = {} if plan.locking == "mass" else add_constraints(mbs, plan.locks, rigid)
-    load = add_weight(mbs, body, plan.gravity - plan.motion.gravity)
-    return {"constraints": held, "gravity_load": load}
 
 
 @dataclass(frozen=True, eq=False)
@@ -257,7 +250,7 @@ class ScriptMarkers:
 class RotorItems(Plan):
     """A rotor's items in an ``mbs``.
 
-    The attributes are those of :class:`~exudyn_rotor.multibody.rotor.Plan`, and these:
+    The attributes are those of :class:`~exudyn_rotor.multibody.rotor.plan.Plan`, and these:
 
     Attributes
     ----------
@@ -325,15 +318,13 @@ class RotorItems(Plan):
             known = ", ".join(kind.name for kind in STATES)
             raise ValueError(f"configuration: needs one of {known}, got {configuration.name}")
         self.check_assembled()
-        kinds = exudyn.OutputVariableType
-        place = self.layout
-
-        def values(kind: exudyn.OutputVariableType) -> np.ndarray:
-            nodes = self.nodes.values()
-            parts = [self.mbs.GetNodeOutput(node, kind, configuration) for node in nodes]
-            return np.hstack(parts)[place.unknowns]
-
-        return tuple(map(values, (kinds.Coordinates, kinds.Coordinates_t, kinds.Coordinates_tt)))
+        nodes = self.nodes.values()
+        return tuple(
+            np.hstack([self.mbs.GetNodeOutput(node, kind, configuration) for node in nodes])[
+                self.layout.unknowns
+            ]
+            for kind in RATES
+        )
 
     def check_present(self) -> None:
         """Raise ValueError where the system no longer holds this rotor."""
@@ -381,12 +372,21 @@ class RotorItems(Plan):
         return self.markers[interface]
 
 
-def add_interface_markers(body: RotorItems) -> None:
-    """Add the markers that ``add_rotor`` was asked for, with the axes of the mesh."""
-    for interface, kind in body.marker_kinds.items():
-        body.markers[interface] = body.interface_carrier(interface).add_marker(
-            body.mbs, kind, body.frame.B, name=marker_name(body.name, interface), show=True
+Body = TypeVar("Body", bound=RotorItems)
+
+
+def finished(kind: type[Body], mbs: exudyn.MainSystem, plan: Plan, **items: Any) -> Body:
+    """Return a body of a `kind` with its `items`, its frame held, its weight and markers added."""
+    rigid, marker_body = items["nodes"]["rigid"], items["objects"]["marker_body"]
+    held = {} if plan.locking == "mass" else add_constraints(mbs, plan.locks, rigid)
+    # what the equations do not hold
+    load = add_weight(mbs, marker_body, plan.gravity - plan.motion.gravity)
+    body = kind(**vars(plan), mbs=mbs, constraints=held, gravity_load=load, **items)
+    for name, of_marker in body.marker_kinds.items():
+        body.markers[name] = body.interface_carrier(name).add_marker(
+            mbs, of_marker, body.frame.B, name=marker_name(body.name, name), show=True
         )
+    return body
 
 
 def known_rotors(mbs: exudyn.MainSystem) -> Iterator[RotorItems]:

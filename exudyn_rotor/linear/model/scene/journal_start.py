@@ -15,8 +15,7 @@ from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.linear.model.turning import interface_motion
-from exudyn_rotor.multibody.rotor.record import spin_at_start
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, spin_at_start
 from exudyn_rotor.theory.rotating_axes import into_rotor_frame, parts_across
 
 _SOFT = 1e-8  # of the stiffest mode: resistance of free motions, which are preferred

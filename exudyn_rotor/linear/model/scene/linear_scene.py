@@ -30,8 +30,7 @@ from exudyn_rotor.linear.model.scene.probe import probing
 from exudyn_rotor.linear.model.scene.scene_checks import check_period, check_scene
 from exudyn_rotor.linear.model.scene.scene_coordinates import Motion, SceneCoordinates, nullspace
 from exudyn_rotor.linear.model.scene.steady_motion import steady_motion
-from exudyn_rotor.multibody.rotor.record import spin_at_start
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, spin_at_start
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 from exudyn_rotor.multibody.supports.ends import BaseEnd
 from exudyn_rotor.reduction.reduced_rotor import ModeKind

@@ -12,8 +12,7 @@ import scipy.linalg
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.multibody.rotor.plan import turned_origin
-from exudyn_rotor.multibody.rotor.record import StartState
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState
 from exudyn_rotor.theory.axis import SpinAxis, skew
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_rotation, axial_skew
 

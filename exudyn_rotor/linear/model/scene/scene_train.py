@@ -15,9 +15,8 @@ from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.linear.model.rotor_train import Link, RotorTrain
 from exudyn_rotor.linear.model.scene.scene_checks import check_body, rotors_in
-from exudyn_rotor.multibody.drives.connect_rotors import SceneConnection
-from exudyn_rotor.multibody.rotor.record import spin_at_start
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.drives import SceneConnection
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, spin_at_start
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 
 _PARALLEL = 1e-9  # entries of axes by which rounding may set rotors apart
