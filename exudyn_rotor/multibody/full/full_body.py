@@ -12,8 +12,7 @@ from exudyn.itemInterface import SensorSuperElement
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.full.ties import Ties, add_ties
-from exudyn_rotor.multibody.rotor import sensors
-from exudyn_rotor.multibody.rotor.rotor_body import Record, RotorBody, SceneBody
+from exudyn_rotor.multibody.rotor.rotor_body import Record, RotorBody, SceneBody, native_settings
 from exudyn_rotor.multibody.rotor.rotor_items import (
     Carrier,
     append_nodes,
@@ -150,7 +149,7 @@ class FullRotorBody(SceneBody):
         """
         self.check_present()
         checks.count(node, "node", most=self.node_count - 1)
-        settings = sensors.native_settings(self, output, options)
+        settings = native_settings(self, output, options)
         point = self._nodes_carrier([node], "position")
         (number,) = append_nodes(self.mbs, point.body, *point.virtual_nodes("position"))
         item = SensorSuperElement(bodyNumber=point.body, meshNodeNumber=number, **settings)
