@@ -40,13 +40,13 @@ from exudyn_rotor.linear.model.body import (
     RotorBody,
     StandingBody,
     foundation_body,
-    largest_radius,
     rigid_columns_of,
     rotor_alone,
     rotor_body,
 )
 from exudyn_rotor.linear.model.rotor_train import Link
 from exudyn_rotor.linear.model.spin import ARM
+from exudyn_rotor.linear.model.turning import radius_of_gyration
 from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
 from exudyn_rotor.theory.stiffening import LEVELS
 
@@ -522,7 +522,7 @@ class LinearModel:
     @cached_property
     def radius(self) -> float:
         """By which a rotation counts as a displacement [m]."""
-        return largest_radius(self.bodies)
+        return max(radius_of_gyration(b.alone.invariants) for b in rotors_of(self.bodies))
 
     @cached_property
     def interfaces(self) -> tuple[str, ...]:
