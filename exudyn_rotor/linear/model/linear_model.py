@@ -301,7 +301,7 @@ class LinearModel:
         for places in (np.flatnonzero(speeds), np.flatnonzero(speeds == 0.0)):
             if places.size:
                 rates = None if frequencies is None else np.asarray(frequencies)[places]
-                part, errors = self._systems(speeds[places], rates)
+                part, errors = self.systems(speeds[places], rates)
                 refused |= {int(places[i]): error for i, error in errors.items()}
                 if part is not None:
                     parts.append((np.delete(places, list(errors)), part))
@@ -309,7 +309,7 @@ class LinearModel:
         warn_of_refused(lost, len(speeds), " rad/s")
         return spread(speeds, parts)
 
-    def _systems(
+    def systems(
         self, speeds: np.ndarray, frequencies: np.ndarray | None
     ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         """Return the stack at speeds (s,), all zero or none, and why there are none at some."""
