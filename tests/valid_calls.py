@@ -239,7 +239,6 @@ CALLS = {
     "Motion.body_forces": {"acceleration": DOWN},
     "Motion.drive_torque": lambda w: {"zeta_tt": np.zeros(w.Motion.size)},
     "MotionShapes.animate": lambda w: {"path": w.folder / "shape.gif", "frames": 2},
-    "MotionShapes.to_vtk": lambda w: {"path": w.folder / "shape.vtu"},
     "Mount": {"stiffness": 1e6 * np.eye(3)},
     "OilFilm": {
         "length": 0.05,
@@ -316,10 +315,6 @@ CALLS = {
         "nodes": np.arange(3),
     },
     "StressField.plot": lambda w: {"modal_coordinates": w.coordinates[0]},
-    "StressField.to_vtk": lambda w: {
-        "path": w.folder / "stress.vtu",
-        "modal_coordinates": w.coordinates[0],
-    },
     "Support": {"stiffness": 1e6 * np.eye(3), "damping": 100.0},
     "FloatingRingBearing": {"inner": _FILM, "outer": _FILM},
     "FloatingRingBearing.torque": {"ring_speed": 100.0},
