@@ -2,9 +2,9 @@
 
 from exudyn_rotor.advice.proposal import Proposal as Proposal
 from exudyn_rotor.advice.proposal import propose as propose
+from exudyn_rotor.advice.request import AssumptionWarning as AssumptionWarning
 from exudyn_rotor.advice.run_check import RunCheck as RunCheck
 from exudyn_rotor.advice.run_check import check_run as check_run
-from exudyn_rotor.advice.warning import AssumptionWarning as AssumptionWarning
 from exudyn_rotor.bearings.actuator import LinearActuator as LinearActuator
 from exudyn_rotor.bearings.actuator import SaturatingActuator as SaturatingActuator
 from exudyn_rotor.bearings.annular_seal import AnnularSeal as AnnularSeal
@@ -39,7 +39,7 @@ from exudyn_rotor.evaluation.placement import standard_unbalances as standard_un
 from exudyn_rotor.evaluation.separation import SeparationMargins as SeparationMargins
 from exudyn_rotor.evaluation.separation import separation_margins as separation_margins
 from exudyn_rotor.foundations.foundation import Foundation as Foundation
-from exudyn_rotor.foundations.mount import Mount as Mount
+from exudyn_rotor.foundations.foundation import Mount as Mount
 from exudyn_rotor.foundations.record import BaseRecord as BaseRecord
 from exudyn_rotor.html_report import report as report
 from exudyn_rotor.linear.modal.campbell import Campbell as Campbell

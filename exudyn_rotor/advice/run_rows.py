@@ -278,8 +278,10 @@ def _growth(run: RecordedRun) -> float | None:
 )
 def _film(run: RecordedRun) -> float | None:
     bearings = [one for one in run.body.supports if isinstance(one.support, Bearing)]
-    shares = [one.support.film_use(one.values()[0][:2]) for one in bearings]
-    return max((share for share in shares if share is not None), default=None)
+    places = [one.values()[0][:2] for one in bearings]
+    edges = [one.support.film_edge(*place) for one, place in zip(bearings, places, strict=True)]
+    shares = np.array([np.hypot(*u) for u in places]) / edges
+    return max(shares[np.isfinite(edges)], default=None)
 
 
 @_row(

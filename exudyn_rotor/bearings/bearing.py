@@ -6,24 +6,63 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import hypot, inf
-from typing import ClassVar
+from typing import ClassVar, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.controlled_support import ControlledSupport
-from exudyn_rotor.bearings.film.equilibria import Equilibria
 from exudyn_rotor.bearings.own_table import table_of
 from exudyn_rotor.bearings.support import COEFFICIENTS, NoCoefficientsError, Support
 
 _REMEMBERED = 1000  # coefficients of a bearing
+_FAILED = ValueError, ArithmeticError
 _INSIDE = 1.0 - 1e-9  # of the way to the last film, by rounding
 _DIFFERENCE, _STILL = 1e-4, 1e-6  # of a motion, which is at least that in SI units
 HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a bearing holds count
 
 Numbers = float | np.ndarray
 LawWithTorque = Callable[[float, float, float, float, float, float], tuple[float, float, float]]
+
+
+State = TypeVar("State")
+
+
+class Equilibria(Generic[State]):
+    """The last equilibria, or what follows from them, by speed and load; or why there is none."""
+
+    def __init__(self, most: int = 64) -> None:
+        self._known: dict[tuple[float, ...], State | Exception] = {}
+        self._most = most
+
+    def at(
+        self, speed: float, load: np.ndarray, solve: Callable[[float, np.ndarray], State]
+    ) -> State:
+        """Return ``solve(speed, load)``; its errors are kept, too."""
+        key = checks.number(speed, "speed", "rad/s"), *load.tolist()
+        found = self._known.get(key)
+        if found is None:
+            try:
+                found = solve(speed, load)
+            except _FAILED as error:
+                found = error.with_traceback(None)
+            while len(self._known) >= self._most:
+                self._known.pop(next(iter(self._known)), None)
+            self._known[key] = found
+        if isinstance(found, _FAILED):
+            raise type(found)(*found.args)
+        return found
+
+    def beside(self, speed: float, load: np.ndarray) -> State | None:
+        """Return what is known at the nearest speed of the same sense, if any."""
+        known = [
+            (abs(key[0] - speed), found)
+            for key, found in list(self._known.items())
+            if key[0] * speed > 0.0 and key[1:] == (*load.tolist(),)
+            if not isinstance(found, _FAILED)
+        ]
+        return min(known, key=lambda each: each[0])[1] if known else None
 
 
 class NoEquilibriumError(NoCoefficientsError):
@@ -220,27 +259,16 @@ class Bearing(LoadedBearing):
             )
         return np.array(self.law(*place.tolist(), *rate.tolist(), 0.0, speed))
 
-    def film_use(self, displacement: ArrayLike) -> float | None:
-        """Return a displacement over the way to the end of the film there; None without a film.
+    def film_edge(self, x: float, y: float) -> float:
+        """Return how far the journal may go, on the way to a place, for a film to be there [m].
 
-        Beyond 1 the force is no longer the film's: it goes on by its tangent.
-
-        Parameters
-        ----------
-        displacement : array_like, shape (2,)
-            Of the journal from the centre of the bearing along (n1, n2) [m].
+        Beyond, the force is no longer the film's: it goes on by its tangent. Infinite without one.
         """
-        place = checks.vector(displacement, "displacement", "m", size=2)
-        edge = self._edge(*place.tolist())
-        return hypot(*place) / edge if edge < inf else None
-
-    def _edge(self, x: float, y: float) -> float:
-        """Return how far the journal may go, on the way to a place, for a film to be there [m]."""
         return inf
 
     def _inside(self, x: float, y: float) -> tuple[float, float]:
         """Return the last place with a film on the way to a place [m]."""
-        share = min(1.0, _INSIDE * self._edge(x, y) / max(hypot(x, y), 1e-300))
+        share = min(1.0, _INSIDE * self.film_edge(x, y) / max(hypot(x, y), 1e-300))
         return share * x, share * y
 
     def _beyond(
@@ -296,7 +324,7 @@ class Linearised:
         for tried in (speed, *self.bearing._tried):
             try:
                 return self._value(tried)
-            except (ValueError, ArithmeticError) as error:
+            except _FAILED as error:
                 refused = error
         raise refused
 
@@ -315,7 +343,7 @@ class Linearised:
         """
         try:
             self._value(speed)
-        except (ValueError, ArithmeticError) as error:
+        except _FAILED as error:
             name = f"bearing at {self.bearing.interface!r}"
             reason = "at 0 rad/s its film carries nothing" if speed == 0.0 else str(error)
             reason = reason if name in reason else f"{name}: {reason}"

@@ -8,8 +8,7 @@ from math import hypot
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing
-from exudyn_rotor.bearings.film.equilibria import Equilibria
+from exudyn_rotor.bearings.bearing import Bearing, Equilibria
 from exudyn_rotor.bearings.film.film import FilmState, OilFilm
 
 
@@ -58,7 +57,8 @@ class JournalBearing(Bearing):
         super().__post_init__()
         checks.instance(self.film, "film", OilFilm)
 
-    def _edge(self, x: float, y: float) -> float:
+    def film_edge(self, x: float, y: float) -> float:
+        """Return how far the grid resolves a film on the way to a place, or less [m]."""
         distance, most = hypot(x, y), self.film.clearance - self.film.thinnest
         if distance <= most:
             return most
@@ -74,7 +74,7 @@ class JournalBearing(Bearing):
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
         """Return the force on the journal [N]; a film too thin for the grid goes on straight."""
-        if hypot(x, y) > self._edge(x, y):
+        if hypot(x, y) > self.film_edge(x, y):
             return self._beyond(x, y, vx, vy, angle, speed)
         return tuple(self._film_at(x, y, vx, vy, speed).force.tolist())
 
@@ -89,7 +89,7 @@ class JournalBearing(Bearing):
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
-        if hypot(x, y) > self._edge(x, y):
+        if hypot(x, y) > self.film_edge(x, y):
             return super().slopes(x, y, vx, vy, angle, speed)
         return self._film_at(x, y, vx, vy, speed).coefficients()
 

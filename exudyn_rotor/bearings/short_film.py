@@ -152,7 +152,8 @@ class ShortFilmBearing(Bearing):
         """``μ R L³/c²`` [N s], before rates that are relative to the clearance."""
         return self.viscosity * self.radius * self.length**3 / self.clearance**2
 
-    def _edge(self, x: float, y: float) -> float:
+    def film_edge(self, x: float, y: float) -> float:
+        """Return where a film is as thin as c/100 [m]."""
         return THINNEST * self.clearance
 
     def clearance_along(self, direction: np.ndarray | None = None) -> float:

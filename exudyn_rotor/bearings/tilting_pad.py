@@ -27,9 +27,8 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, Linearised
+from exudyn_rotor.bearings.bearing import Bearing, Equilibria, Linearised
 from exudyn_rotor.bearings.controlled_support import ControlledSupport
-from exudyn_rotor.bearings.film.equilibria import Equilibria
 from exudyn_rotor.bearings.film.film import FilmState, OilFilm
 from exudyn_rotor.bearings.film.pads import direction
 from exudyn_rotor.bearings.journal_bearing import JournalBearing

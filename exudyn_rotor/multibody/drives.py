@@ -27,7 +27,7 @@ from exudyn_rotor.multibody.supports.connector import (
     SceneLaw,
     check_body,
 )
-from exudyn_rotor.multibody.supports.ends import Base, BaseEnd, RotorEnd, Seat
+from exudyn_rotor.multibody.supports.ends import Base, BaseEnd, GroundEnd, RotorEnd, Seat
 from exudyn_rotor.multibody.supports.native import symbolic_function
 from exudyn_rotor.solid.places import off_place
 from exudyn_rotor.theory.formulation import ConstantSpeed
@@ -183,15 +183,14 @@ def _on_the_spin(body: Body, drive: Drive) -> SceneDrive:
 class DriveConnector(Connector):
     """A torque about the axis by the speed of an interface against what carries the stator."""
 
-    def __init__(self, drive: Drive, end: RotorEnd, base: BaseEnd | None) -> None:
+    def __init__(self, drive: Drive, end: RotorEnd, base: BaseEnd) -> None:
         super().__init__(end, base)
         self._law = drive.law
 
     @property
     def speed(self) -> float:
         """Speed of the interface against the base [rad/s]."""
-        turning = self.end.speed + self.end.tilt_rate[2]
-        return turning - (0.0 if self.base is None else self.base.speed)
+        return self.end.speed + self.end.tilt_rate[2] - self.base.speed
 
     def wrench(self, t: float) -> tuple:
         """Return the torque on the rotor."""
@@ -355,7 +354,7 @@ class RotorConnector(Connector):
     """
 
     def __init__(self, connection: Connection, end: RotorEnd, other: RotorEnd) -> None:
-        super().__init__(end, None)
+        super().__init__(end, GroundEnd())
         self._law, self._other = connection, other
         self.nodes = (*end.nodes, *other.nodes)
         self.size = end.size + other.size

@@ -44,7 +44,7 @@ LEFT_OUT = {
 
 # methods that scenes call in every step, with the numbers of the equations
 OF_SCENES = (
-    *("law", "law_with_torque", "law_along", "slopes", "clearance_along", "coupling"),
+    *("law", "law_with_torque", "law_along", "slopes", "clearance_along", "film_edge", "coupling"),
     *("solved", "beside", "reach_along", "coefficients_at", "body_acceleration", "unbalance"),
     *("forces", "tangent", "transmitted", "energy", "loss", "check_places"),
 )
@@ -260,7 +260,7 @@ RIGHT = {
     "text": "Motion.mass_matrix.q_t at report.contents Proposal.reasons ReducedRotor.dropped",
     "entry": "SolidRotor.from_ngsolve.materials",
     "an object": "Motion.mass_matrix.q_t report.contents",
-    "None": "UFforce UFmassMatrix",
+    "None": "UFforce UFmassMatrix BaseResponse.between.place",
 }
 # functions and methods where it is wrong all the same
 WRONG = {

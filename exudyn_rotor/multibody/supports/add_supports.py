@@ -76,9 +76,9 @@ class SceneSupport(SceneLaw):
         self.body.check_assembled()
         made, mbs = self.connector, self.body.mbs
         made.read(*made.state(mbs, configuration))
-        place, rate = np.array([made.end.place, made.end.rate])
-        if made.base is not None:
-            place, rate = place - made.base.place, rate - made.base.rate
+        place, rate = np.subtract(
+            [made.end.place, made.end.rate], [made.base.place, made.base.rate]
+        )
         fx, fy, *rest = made.wrench(mbs.systemData.GetTime(configuration))
         return place, rate, np.array([fx, fy, rest[0] if rest else 0.0])
 
@@ -270,8 +270,8 @@ def _added(body: Body, support: Given, seat: Seat, sensed: Seat) -> SceneSupport
         own = _own_node(mbs, len(support.tangents)) if pads else None
         spins = body.formulation.has_spin
         # a foundation hardly turns, which a prescribed spin leaves out as linear analyses do
-        feels = base is not None and (spins or not isinstance(base, FoundationEnd))
-        made = BearingConnector(support, end, base, spins, feels, own)
+        feels = spins or not isinstance(base, FoundationEnd)
+        made = BearingConnector(support, end, base, spins, feels and base.size > 0, own)
     watch_clearance(body, made)
     number = mbs.AddObject(made.item())
     return SceneSupport(body, (number,), (PYTHON,), made, support, seat.base)

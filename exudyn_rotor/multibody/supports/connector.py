@@ -30,9 +30,8 @@ from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support, acts
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, add_function_sensor
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, entry
-from exudyn_rotor.multibody.rotor.sensors import add_function_sensor
 from exudyn_rotor.multibody.supports.ends import BaseEnd, RotorEnd
 from exudyn_rotor.theory.rotating_axes import axial_rotation, axial_skew
 
@@ -60,8 +59,38 @@ class Force(NamedTuple):
         return self.J.T @ (self.K @ self.J) + damping @ self.L, damping @ self.J
 
 
-class Connector(ABC):
-    """A law between the end of a rotor and that of its base, None for the ground.
+class Between:
+    """The motion of the end of a rotor against that of its base, by the coordinates of both."""
+
+    def __init__(self, end: RotorEnd, base: BaseEnd) -> None:
+        self.end, self.base = end, base
+        self._first, self._second = end.size, end.size + base.size
+        self.size = self._second
+
+    def read(self, q: list[float], q_t: list[float]) -> None:
+        """Take the motion of the ends from coordinates and their rates."""
+        first, second = self._first, self._second
+        self.end.read(q[:first], q_t[:first])
+        self.base.read(q[first:second], q_t[first:second])
+
+    @property
+    def relative(self) -> tuple[float, float, float, float, float, float]:
+        """Place x, y [m] and velocity of the rotor against the base, spin angle and speed."""
+        end, base = self.end, self.base
+        (x, y, _), (vx, vy, _) = end.place, end.rate
+        (a, b, _), (a_t, b_t, _) = base.place, base.rate
+        return x - a, y - b, vx - a_t, vy - b_t, end.angle, end.speed
+
+    def rows(self) -> np.ndarray:
+        """Return the rows J (6, size) of the rotor's motion against the base."""
+        J = np.zeros((6, self.size))
+        J[:, : self._first] = self.end.rows()
+        J[:, self._first : self._second] = -self.base.rows()
+        return J
+
+
+class Connector(Between, ABC):
+    """A law between the end of a rotor and that of its base.
 
     Its coordinates are those of the `nodes` of both, and `own` more of the law. `muted` its object
     has no force, as where linear equations take the law itself.
@@ -74,44 +103,16 @@ class Connector(ABC):
     def __init__(
         self,
         end: RotorEnd,
-        base: BaseEnd | None,
+        base: BaseEnd,
         own: exudyn.NodeIndex | None = None,
         count: int = 0,
     ) -> None:
-        self.end, self.base, self.own = end, base, count
-        nodes = () if base is None else base.nodes
-        self.nodes = (*end.nodes, *nodes, *(() if own is None else (own,)))
-        self._first = end.size
-        self._second = end.size + (0 if base is None else base.size)
-        self.size = self._second + count
-        self.muted = False
+        super().__init__(end, base)
+        self.nodes = (*end.nodes, *base.nodes, *(() if own is None else (own,)))
+        self.own, self.muted = count, False
+        self.size += count
 
     # ------------------------------------------------------------------ motion
-
-    def read(self, q: list[float], q_t: list[float]) -> None:
-        """Take the motion of the ends from coordinates and their rates."""
-        first, second = self._first, self._second
-        self.end.read(q[:first], q_t[:first])
-        if self.base is not None:
-            self.base.read(q[first:second], q_t[first:second])
-
-    @property
-    def relative(self) -> tuple[float, float, float, float, float, float]:
-        """Place x, y [m] and velocity of the rotor against the base, spin angle and speed."""
-        end, base = self.end, self.base
-        (x, y, _), (vx, vy, _) = end.place, end.rate
-        if base is None:
-            return x, y, vx, vy, end.angle, end.speed
-        (a, b, _), (a_t, b_t, _) = base.place, base.rate
-        return x - a, y - b, vx - a_t, vy - b_t, end.angle, end.speed
-
-    def rows(self) -> np.ndarray:
-        """Return the rows J (6, size) of the rotor's motion against the base."""
-        J = np.zeros((6, self.size))
-        J[:, : self._first] = self.end.rows()
-        if self.base is not None:
-            J[:, self._first : self._second] = -self.base.rows()
-        return J
 
     def rate_rows(self) -> np.ndarray:
         """Return the derivative (6, size) of the rotor's rate by the coordinates."""
@@ -131,7 +132,7 @@ class Connector(ABC):
         if fx == fy == fz == 0.0 and own is None and not any(moment):  # as of an open stop
             return [0.0] * self.size
         found = self.end.pull(fx, fy, fz, moment).tolist()
-        if self.base is not None:
+        if self.base.size:
             load = [-fx, -fy, -fz, *(-m for m in moment)]
             found += (load @ self.base.rows()).tolist()
         return found if own is None else found + own.tolist()
@@ -233,30 +234,29 @@ class SupportConnector(Connector):
     turns with the rotor is driven there: the reaction of its moments does not act on the spin.
     """
 
-    def __init__(
-        self, support: Support, end: RotorEnd, base: BaseEnd | None, on_rotor: bool
-    ) -> None:
+    def __init__(self, support: Support, end: RotorEnd, base: BaseEnd, on_rotor: bool) -> None:
         super().__init__(end, base)
         self.support, self._turns = support, support.frame == "rotor"
         self.has_mass = acts(support.mass)
         self._between = on_rotor  # tables are over the difference of both speeds
+        self._known = None, None  # the last speed, and matrices
 
     @property
     def _motion(self) -> tuple[np.ndarray, np.ndarray]:
         """Motion (6,) and rate (6,) against the base, the spin in the last rate alone."""
         end, base = self.end, self.base
-        x, x_t = np.array([*end.place, *end.tilt]), np.array([*end.rate, *end.tilt_rate])
-        if base is not None:
-            x -= [*base.place, *base.tilt]
-            x_t -= [*base.rate, *base.tilt_rate]
+        x = np.array([*end.place, *end.tilt]) - [*base.place, *base.tilt]
+        x_t = np.array([*end.rate, *end.tilt_rate]) - [*base.rate, *base.tilt_rate]
         x_t[5] += end.speed
         return x, x_t
 
     def _matrices(self) -> tuple[np.ndarray, np.ndarray]:
         end, base = self.end, self.base
         speed = end.speed - base.speed if self._between else end.speed
-        self.support.check_range(speed)
-        K, D = self.support.matrices(speed)
+        if speed != self._known[0]:
+            self.support.check_range(speed)
+            self._known = speed, self.support.matrices(speed)
+        K, D = self._known[1]
         if self._turns:
             R = np.kron(np.eye(2), axial_rotation(end.angle))
             K, D = R @ K @ R.T, R @ D @ R.T
@@ -298,14 +298,14 @@ class MagneticConnector(Connector):
     def __init__(
         self,
         bearing: MagneticBearing,
-        ends: tuple[RotorEnd, BaseEnd | None],
-        sensors: tuple[RotorEnd, BaseEnd | None],
+        ends: tuple[RotorEnd, BaseEnd],
+        sensors: tuple[RotorEnd, BaseEnd],
         own: exudyn.NodeIndex,
     ) -> None:
         self._realised = realised = bearing.controller.realisation()
         super().__init__(*ends, own, 2 * len(realised.inertia))
         self.bearing, self.parts = bearing, [bearing]
-        self._sensor, self.sensor_base = sensors
+        self.seen, self.sensor_base = Between(*sensors), sensors[1]
         self._turn = bearing.control_axes
         parts = realised.by_place, realised.by_rate
         self._by_place, self._by_rate = (np.kron(part, self._turn) for part in parts)
@@ -324,11 +324,9 @@ class MagneticConnector(Connector):
     def read(self, q: list[float], q_t: list[float]) -> None:
         """Take the motion of magnets, sensors and controller."""
         super().read(q, q_t)
-        first, second = self._first, self._second
-        if self._sensor is not self.end:
-            self._sensor.read(q[:first], q_t[:first])
-        if self.sensor_base is not self.base:
-            self.sensor_base.read(q[first:second], q_t[first:second])
+        second = self._second
+        if self.seen.end is not self.end:
+            self.seen.read(q, q_t)
         self._currents = -self._by_place.dot(q[second:]) - self._by_rate.dot(q_t[second:])
 
     def motions(self) -> list[tuple[float, ...]]:
@@ -347,10 +345,7 @@ class MagneticConnector(Connector):
             self.outside = True
         law = self.bearing.actuator.law
         force = self._turn.T @ [law(*state) for state in self.axes_states]
-        seen = np.array(self._sensor.place[:2])
-        if self.sensor_base is not None:
-            seen = seen - self.sensor_base.place[:2]
-        own = np.outer(self._shares, seen).ravel()
+        own = np.outer(self._shares, self.seen.relative[:2]).ravel()
         return float(force[0]), float(force[1]), 0.0, (0.0, 0.0, 0.0), own
 
     def tangent(self, t: float) -> Force:
@@ -360,9 +355,7 @@ class MagneticConnector(Connector):
         fx, fy, _, _, own = self.wrench(t)
         J = np.zeros((4 + self.own, self.size))
         J[:2] = self.rows()[:2]
-        J[2:4, : self._first] = self._sensor.rows()[:2]
-        if self.sensor_base is not None:
-            J[2:4, self._first : self._second] = -self.sensor_base.rows()[:2]
+        J[2:4, : self._second] = self.seen.rows()[:2]
         J[4:, self._second :] = np.eye(self.own)
         L = np.zeros_like(J)
         L[:2, : self._first] = self.end.rate_rows()[:2]
@@ -384,7 +377,7 @@ class BearingConnector(Connector):
         self,
         bearing: Bearing,
         end: RotorEnd,
-        base: BaseEnd | None,
+        base: BaseEnd,
         brakes: bool,
         feels: bool,
         own: exudyn.NodeIndex | None = None,

@@ -81,8 +81,8 @@ class Seat:
             )
         return cls(*where, base, origin, orientation)
 
-    def end(self, mbs: exudyn.MainSystem) -> BaseEnd | None:
-        """Return the end of the base at the place; None of the ground.
+    def end(self, mbs: exudyn.MainSystem) -> BaseEnd:
+        """Return the end of the base at the place.
 
         Raises
         ------
@@ -93,10 +93,10 @@ class Seat:
             motion = self.base.foundation.points[self.name]
             return FoundationEnd(self.base.node, motion, self.axes)
         if self.base is None:
-            return None
+            return GroundEnd()
         item = _item(mbs, self.base)
         if "bodyNumber" in item and mbs.GetObject(item["bodyNumber"])["objectType"] == "Ground":
-            return None
+            return GroundEnd()
         return MarkerEnd(mbs, item, self.place, self.axes, carrying_rotor(mbs, self.base))
 
     def marker(self, mbs: exudyn.MainSystem) -> exudyn.MarkerIndex:
@@ -299,6 +299,21 @@ class RotorEnd:
         return L
 
 
+class GroundEnd:
+    """The ground, which does not move; as :class:`MarkerEnd`."""
+
+    nodes, size = (), 0
+    place = rate = tilt = tilt_rate = (0.0, 0.0, 0.0)
+    turn = speed = 0.0
+
+    def read(self, q: list[float], q_t: list[float]) -> None:
+        """Take nothing."""
+
+    def rows(self) -> np.ndarray:
+        """Return no columns of displacement and rotation, (6, 0)."""
+        return np.zeros((6, 0))
+
+
 class FoundationEnd:
     """A point of a foundation, by the coordinates of its node; as :class:`MarkerEnd`."""
 
@@ -388,4 +403,4 @@ class MarkerEnd:
         return self._J
 
 
-BaseEnd = FoundationEnd | MarkerEnd
+BaseEnd = GroundEnd | FoundationEnd | MarkerEnd

@@ -112,9 +112,9 @@ class SceneModel(LinearModel):
 
     def _base(self, number: int, name: str) -> End | None:
         end = self._base_ends(number).get(name)
-        return None if end is None else ("scene", f"{number}: {name}")
+        return ("scene", f"{number}: {name}") if end and end.size else None
 
-    def _base_ends(self, number: int) -> dict[str, BaseEnd | None]:
+    def _base_ends(self, number: int) -> dict[str, BaseEnd]:
         """Return what carries a support and its sensor in the scene, by their interfaces."""
         one = self.scene.body.supports[number]
         ends = {one.support.interface: one.connector.base}
@@ -133,7 +133,7 @@ class SceneModel(LinearModel):
             f"{number}: {name}": scene.base_motion(base)
             for number in range(len(scene.body.supports))
             for name, base in self._base_ends(number).items()
-            if base is not None
+            if base.size
         }
         none = (np.zeros_like(M),)
         return [StandingBody("scene", 0, M, none, none, labels, points=points)]
