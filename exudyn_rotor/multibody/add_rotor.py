@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.full.add_full import add_full, check_memory, make_full_plan
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
-from exudyn_rotor.multibody.rotor.frame import LOCKINGS, LockedForce
 from exudyn_rotor.multibody.rotor.plan import (
+    LOCKINGS,
+    LockedForce,
     Plan,
     Setup,
     add_nodes,

@@ -24,8 +24,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.full.ties import Ties, add_ties, container, no_jacobian
-from exudyn_rotor.multibody.rotor.frame import Layout, LockedForce
-from exudyn_rotor.multibody.rotor.plan import Plan, Setup, add_nodes, laid_out
+from exudyn_rotor.multibody.rotor.plan import Layout, LockedForce, Plan, Setup, add_nodes, laid_out
 from exudyn_rotor.multibody.rotor.rotor_items import finished, flexible_body
 from exudyn_rotor.prestress.static_solution import relief_rotation
 from exudyn_rotor.reduction.selection import NEGLIGIBLE

@@ -15,7 +15,7 @@ from typing import Any
 import exudyn
 import numpy as np
 
-from exudyn_rotor.multibody.rotor.frame import MODES
+from exudyn_rotor.multibody.rotor.plan import MODES
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, marker_carrier
 from exudyn_rotor.theory.axis import skew
 

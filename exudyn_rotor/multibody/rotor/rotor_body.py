@@ -16,8 +16,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor.connections import ConnectionWarning, lost_connections
-from exudyn_rotor.multibody.rotor.frame import LOCKS
-from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS
+from exudyn_rotor.multibody.rotor.plan import LOCKS, MARKER_KINDS
 from exudyn_rotor.multibody.rotor.rotor_items import (
     RATES,
     Carrier,

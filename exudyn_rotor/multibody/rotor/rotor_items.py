@@ -30,8 +30,7 @@ from exudyn.itemInterface import (
 from exudyn_rotor import checks
 from exudyn_rotor.multibody import ENTRY
 from exudyn_rotor.multibody.evaluation import STATES
-from exudyn_rotor.multibody.rotor.frame import add_constraints
-from exudyn_rotor.multibody.rotor.plan import Plan, marker_name
+from exudyn_rotor.multibody.rotor.plan import Plan, add_constraints, marker_name
 from exudyn_rotor.reduction.reduced_rotor import ModeShapes
 from exudyn_rotor.solid.rotor import Interface, rotation_moments
 from exudyn_rotor.theory.axis import SpinAxis

@@ -16,8 +16,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.add_rotor import add_rotor
-from exudyn_rotor.multibody.rotor.frame import LOCKINGS
-from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS, color_of, main_system
+from exudyn_rotor.multibody.rotor.plan import LOCKINGS, MARKER_KINDS, color_of, main_system
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.carried_prestress import Prestress
