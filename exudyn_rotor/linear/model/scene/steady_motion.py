@@ -117,7 +117,7 @@ class _Search:
                 self._check_own_spin(np.mean([point.K for point in points], axis=0))
             residual = self._residual([point.residual for point in points])
             K = hill_stiffness(points, self.orders, self.probe.speed)
-            change, left = (X.reshape(Y.shape) for X in solved(K, -residual.ravel()))
+            change, left = (_complex(X, Y.shape) for X in solved(_real(K), -_parts(residual)))
             if np.abs(left / metres).max() > UNHELD * self.scene.mass:
                 raise self._lost(UnconvergedError if iteration else _UnheldError)
             Y = self._ahead(Y, change, np.linalg.norm(residual / metres), metres)
@@ -183,7 +183,7 @@ class _Search:
 
 
 def hill_stiffness(points: Sequence[LinearPoint], orders: np.ndarray, speed: float) -> np.ndarray:
-    """Return ``K + iΩmD − Ω²m²M`` between harmonics m, (h k, h k), as the sampled angles see it.
+    """Return ``K + iΩmD − Ω²m²M`` between harmonics m, (h, k, h, k), as the sampled angles see it.
 
     The Fourier terms n and n + samples are the same there.
     """
@@ -194,4 +194,30 @@ def hill_stiffness(points: Sequence[LinearPoint], orders: np.ndarray, speed: flo
     for power, samples in zip((2, 1, 0), zip(*points, strict=True), strict=False):
         spectrum = np.fft.fft(np.array(samples), axis=0) / count
         total += np.einsum("abij,b->aibj", spectrum[apart], rates**power)
-    return total.reshape(h * k, h * k)
+    return total
+
+
+def _parts(harmonics: np.ndarray) -> np.ndarray:
+    """Return real parts of harmonics (h, k) n ≥ 0, then imaginary ones n > 0, of a real motion."""
+    zero = len(harmonics) // 2
+    return np.concatenate([harmonics[zero:].real, harmonics[zero + 1 :].imag], axis=None)
+
+
+def _complex(parts: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
+    """Return harmonics (h, k) of their parts."""
+    zero = shape[0] // 2
+    parts = parts.reshape(shape)
+    upper = parts[: zero + 1].astype(complex)
+    upper[1:] += 1j * parts[zero + 1 :]
+    return np.concatenate([upper[:0:-1].conj(), upper])
+
+
+def _real(K: np.ndarray) -> np.ndarray:
+    """Return the stiffness between the parts of harmonics, of that between harmonics."""
+    h, k = K.shape[:2]
+    zero = h // 2
+    rows, mirrored = K[zero:, :, zero:], K[zero:, :, zero::-1]
+    even, odd = (rows + mirrored).reshape(-1, (zero + 1) * k), (rows - mirrored)[:, :, 1:]
+    even[:, :k] *= 0.5  # the mean has no mirror image
+    odd = odd.reshape(-1, zero * k)
+    return np.block([[even.real, -odd.imag], [even.imag[k:], odd.real[k:]]])
