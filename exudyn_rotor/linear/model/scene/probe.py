@@ -114,8 +114,8 @@ class Probe:
         self.solver.ComputeMassMatrix(self.mbs)
         full = np.array(self.solver.GetSystemMassMatrix())
         free, attached = self.scene.free, self._attached_mass()
-        mass, rotor = full[np.ix_(free, free)], np.ix_(self.rotor, self.rotor)
-        mass[rotor] = attached[rotor]
+        mass, rotor = full[free[:, None], free], self.rotor
+        mass[rotor[:, None], rotor] = attached[rotor[:, None], rotor]
         return mass
 
     def _attached_mass(self) -> np.ndarray:
@@ -123,8 +123,8 @@ class Probe:
         whole = np.zeros((len(self.scene.rest),) * 2)
         for one in self.laws:
             if one.connector.has_mass:
-                whole[np.ix_(one.places, one.places)] += one.connector.inertia()[0]
-        return whole[np.ix_(self.scene.free, self.scene.free)]
+                whole[one.places[:, None], one.places] += one.connector.inertia()[0]
+        return whole[self.scene.free[:, None], self.scene.free]
 
     def mass_beside(self) -> np.ndarray:
         """Return the mass matrix of all but the rotor and laws, without deviations, (k, k)."""
@@ -164,7 +164,7 @@ class Probe:
 
     def force(self, theta: float, x: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Return the forces of all but the rotor's own equations, free coordinates."""
-        return self._exudyn(theta, x, v) + self._laws(theta, x, v).values
+        return self._exudyn(theta, x, v) + self._laws(theta, x, v, has_slopes=False).values
 
     def forces(self, theta: float, x: np.ndarray, v: np.ndarray) -> Forces:
         """Return the forces of all but the rotor's own equations, with their derivatives."""
@@ -193,7 +193,8 @@ class Probe:
         for one in self.laws:
             one.read(q, q_t)
 
-    def _laws(self, theta: float, x: np.ndarray, v: np.ndarray) -> Forces:
+    def _laws(self, theta: float, x: np.ndarray, v: np.ndarray, has_slopes: bool = True) -> Forces:
+        """Return the forces of the laws; without slopes their derivatives are zero."""
         q, q_t = self._state(theta, x, v)
         size = len(self.scene.rest)
         force, (K, D) = np.zeros(size), np.zeros((2, size, size))
@@ -201,15 +202,15 @@ class Probe:
             one.read(q, q_t)
             found, places = one.force(self._time(theta)), one.places
             force[places] += found.values @ found.J
-            slopes = found.slopes()
+            parts = [found.slopes()] if has_slopes else []
             if one.connector.has_mass:
                 _, turning, *more = one.connector.inertia()
                 force[places] += turning
-                slopes = [X + Y for X, Y in zip(slopes, more, strict=True)]
-            for total, block in zip((K, D), slopes, strict=True):
-                total[np.ix_(places, places)] += block
+                parts += [more] if has_slopes else []
+            for total, *blocks in zip((K, D), *parts, strict=True) if parts else ():
+                total[places[:, None], places] += sum(blocks)
         free = self.scene.free
-        return Forces(force[free], *(X[np.ix_(free, free)] for X in (K, D)))
+        return Forces(force[free], *(X[free[:, None], free] for X in (K, D)))
 
     # ------------------------------------------------------------------ states
 

@@ -27,9 +27,10 @@ _ROUGH_SAMPLES = 48  # from which on the harmonics of a contact count as enough:
 _ROUGH = 1e-3  # share of the motion that the highest may have,
 _SLOWLY = 0.01  # where twice the samples leave more of them than this share
 _SOLVED = 0.01  # of what the harmonics leave out, beyond which more iterations are of no use
-_MOST_ITERATIONS = 30
+_MOST_ITERATIONS = 24
 _FEW_ITERATIONS = 4  # after which what is balanced to rounding is found, with free motions by it
 _MOST_HALVINGS = 9  # of a step
+_STALLED, _LESS = 6, 0.998  # iterations in a row that leave not even this share less unbalanced
 
 
 def steady_motion(
@@ -111,6 +112,7 @@ class _Search:
             more = (len(self.orders) - len(start)) // 2
             Y = np.pad(start, ((more, more), (0, 0)))
         metres = 1.0 / self.scene.metre(self.probe.masses)
+        least, stalled = np.inf, 0
         for iteration in range(_MOST_ITERATIONS):
             points = [linearised(self.probe, *at) for at in self._motion(Y)]
             if iteration == 0:
@@ -120,9 +122,12 @@ class _Search:
             change, left = (_complex(X, Y.shape) for X in solved(_real(K), -_parts(residual)))
             if np.abs(left / metres).max() > UNHELD * self.scene.mass:
                 raise self._lost(UnconvergedError if iteration else _UnheldError)
-            Y = self._ahead(Y, change, np.linalg.norm(residual / metres), metres)
+            most = np.linalg.norm(residual / metres)
+            stalled = stalled + 1 if most > _LESS * least else 0
+            least = min(least, most)
+            Y = self._ahead(Y, change, most, metres)
             sizes = np.abs(Y * metres).max(axis=1)
-            if sizes.max() > FAR * self.scene.length:
+            if sizes.max() > FAR * self.scene.length or stalled == _STALLED:
                 break
             tail = sizes[[0, 1, -2, -1]].max()  # as much as the harmonics leave out
             counts = max(sizes.max(), SMALLEST)
@@ -132,7 +137,7 @@ class _Search:
             is_last = np.abs(change * metres).max() < goal
             if is_last or (balanced and iteration > _FEW_ITERATIONS):
                 return Y, float(tail / counts)
-        raise self._lost(UnconvergedError)
+        raise self._lost(UnconvergedError, change)
 
     def _ahead(
         self, Y: np.ndarray, change: np.ndarray, most: float, metres: np.ndarray
@@ -146,14 +151,23 @@ class _Search:
                 break
         return tried
 
-    def _lost(self, kind: type[UnconvergedError]) -> UnconvergedError:
+    def _lost(
+        self, kind: type[UnconvergedError], change: np.ndarray | None = None
+    ) -> UnconvergedError:
+        """Return the error, with the support whose journal an iteration last changed most."""
+        where = ""
+        names = sorted({one.support.interface for one in self.scene.body.supports})
+        if change is not None and names:
+            rows = (self.scene.interface_motion(name)[:2] for name in names)
+            moved = [np.abs(U @ change.T).max() for U in rows]
+            where = f", the motion at {names[int(np.argmax(moved))]!r} does not settle"
         return kind(
-            f"linear scene at {self.probe.speed:g} rad/s: no steady motion found; is there a load "
-            "that nothing holds, a resonance without damping, a stop or a bearing with clearance "
-            "that the rotor leaves and hits, or an oil film that unbalance all but closes, or that "
-            "whirls at half the speed? A run shows what the rotor does there: a damped one from "
-            "rest, or one from the steady_state with less unbalance; periodic_response "
-            "shows its motion on rolling bearings"
+            f"linear scene at {self.probe.speed:g} rad/s: no steady motion found{where}; is there "
+            "a load that nothing holds, a resonance without damping, a stop or a bearing with "
+            "clearance that the rotor leaves and hits, or an oil film that unbalance all but "
+            "closes, or that whirls at half the speed? A run shows what the rotor does there: a "
+            "damped one from rest, or one from the steady_state with less unbalance; "
+            "periodic_response shows its motion on rolling bearings"
         )
 
     def _residual(self, left: list[np.ndarray]) -> np.ndarray:
