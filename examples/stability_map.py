@@ -58,9 +58,9 @@ expected = np.sqrt(np.sort(squares[squares > 0.0])[:2])
 print(f"isotropic bearings: unstable from {found[0, 0]:.4f} to {found[0, 1]:.4f} rad/s")
 print(f"  stiffness singular at {expected[0]:.4f} and {expected[1]:.4f} rad/s")
 
-for damping in (0.0, 400.0):
+for damping in (20.0, 400.0):
     uneven = bearings(SIDEWAYS, UPRIGHT, damping)
-    ranges = unstable_ranges(reduced, speeds, supports=uneven, tolerance=1e-7, accuracy=None)
+    ranges = unstable_ranges(reduced, speeds, supports=uneven, accuracy=None)
     listed = ", ".join(f"{low:.2f} to {high:.2f}" for low, high in ranges) or "nowhere"
     print(f"softer sideways, {damping:3.0f} N s/m: unstable {listed} rad/s")
 

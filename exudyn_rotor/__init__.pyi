@@ -2,9 +2,9 @@
 
 from exudyn_rotor.advice.proposal import Proposal as Proposal
 from exudyn_rotor.advice.proposal import propose as propose
+from exudyn_rotor.advice.request import AssumptionWarning as AssumptionWarning
 from exudyn_rotor.advice.run_check import RunCheck as RunCheck
 from exudyn_rotor.advice.run_check import check_run as check_run
-from exudyn_rotor.advice.warning import AssumptionWarning as AssumptionWarning
 from exudyn_rotor.bearings.actuator import LinearActuator as LinearActuator
 from exudyn_rotor.bearings.actuator import SaturatingActuator as SaturatingActuator
 from exudyn_rotor.bearings.annular_seal import AnnularSeal as AnnularSeal
@@ -24,11 +24,11 @@ from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper as SqueezeFilmD
 from exudyn_rotor.bearings.support import Support as Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing as TiltingPadBearing
 from exudyn_rotor.drives.coupling import FlexibleCoupling as FlexibleCoupling
+from exudyn_rotor.drives.drive import DirectCurrentMotor as DirectCurrentMotor
 from exudyn_rotor.drives.drive import Drag as Drag
+from exudyn_rotor.drives.drive import InductionMotor as InductionMotor
 from exudyn_rotor.drives.drive import TorqueCurve as TorqueCurve
 from exudyn_rotor.drives.gear_mesh import GearMesh as GearMesh
-from exudyn_rotor.drives.motors import DirectCurrentMotor as DirectCurrentMotor
-from exudyn_rotor.drives.motors import InductionMotor as InductionMotor
 from exudyn_rotor.evaluation.level_one import StabilityLevelOne as StabilityLevelOne
 from exudyn_rotor.evaluation.level_one import (
     anticipated_cross_coupling as anticipated_cross_coupling,
@@ -39,7 +39,7 @@ from exudyn_rotor.evaluation.placement import standard_unbalances as standard_un
 from exudyn_rotor.evaluation.separation import SeparationMargins as SeparationMargins
 from exudyn_rotor.evaluation.separation import separation_margins as separation_margins
 from exudyn_rotor.foundations.foundation import Foundation as Foundation
-from exudyn_rotor.foundations.mount import Mount as Mount
+from exudyn_rotor.foundations.foundation import Mount as Mount
 from exudyn_rotor.foundations.record import BaseRecord as BaseRecord
 from exudyn_rotor.html_report import report as report
 from exudyn_rotor.linear.modal.campbell import Campbell as Campbell
@@ -77,12 +77,12 @@ from exudyn_rotor.linear.static.static_response import bearing_loads as bearing_
 from exudyn_rotor.linear.static.static_response import static_response as static_response
 from exudyn_rotor.linear.static.static_result import StaticResponse as StaticResponse
 from exudyn_rotor.multibody.add_rotor import add_rotor as add_rotor
-from exudyn_rotor.multibody.drives.add_drive import add_drive as add_drive
-from exudyn_rotor.multibody.drives.connect_rotors import connect_rotors as connect_rotors
+from exudyn_rotor.multibody.drives import add_drive as add_drive
+from exudyn_rotor.multibody.drives import connect_rotors as connect_rotors
 from exudyn_rotor.multibody.full.full_body import FullRotorBody as FullRotorBody
 from exudyn_rotor.multibody.rotor.connections import ConnectionWarning as ConnectionWarning
-from exudyn_rotor.multibody.rotor.record import StartState as StartState
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody as RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import StartState as StartState
 from exudyn_rotor.multibody.solver_settings import recommended_settings as recommended_settings
 from exudyn_rotor.multibody.supports.add_supports import add_supports as add_supports
 from exudyn_rotor.multibody.supports.base_motion import add_base_motion as add_base_motion

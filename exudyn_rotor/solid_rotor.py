@@ -18,7 +18,6 @@ from exudyn_rotor.solid.meshes import mesh_model
 from exudyn_rotor.solid.model import FiniteElementModel, import_model, node_set
 from exudyn_rotor.solid.rotor import AxisLike, FiniteElementRotor
 from exudyn_rotor.solid.summary import summary
-from exudyn_rotor.theory.axis import SpinAxis
 
 if TYPE_CHECKING:
     import os
@@ -74,11 +73,11 @@ class SolidRotor(FiniteElementRotor):
     >>> print(rotor.add_point_mass([0, 0, 0.9], 0.5).summary())
     nodes            3
     mass             3.5 kg (lumped mass matrix)
+    size             0 × 0 × 1 m
     centre of mass   [0, 0, 0.57143] m
     spin axis        direction [0, 0, 1], point [0, 0, 0] m
     across the axis  n1 [1, 0, 0], n2 [0, 1, 0]
     rigid motions    1 of 6 free (grounded)
-    part             1: 3 nodes, 3.5 kg, 0 × 0 × 1 m about (0, 0, 0.5) m
     interface        disc: 1 nodes, centre [0, 0, 0.5] m, on the axis
     point mass       0.5 kg at [0, 0, 0.9] m, on node 2, 0.1 m away
     """
@@ -93,7 +92,6 @@ class SolidRotor(FiniteElementRotor):
         order: int = 2,
         interfaces: Sequence[str] | None = None,
         check_units: bool = True,
-        allow_parts: bool = False,
     ) -> SolidRotor:
         """Assemble a rotor from an NGSolve mesh of tetrahedra.
 
@@ -115,9 +113,6 @@ class SolidRotor(FiniteElementRotor):
             weights are area shares, see :func:`exudyn_rotor.solid.surface.area_weights`.
         check_units : bool, optional
             Refuse materials and sizes that cannot be in SI units.
-        allow_parts : bool, optional
-            Take a mesh of several solids that nothing connects. Each of them moves by itself, so
-            that most analyses refuse such a rotor; :meth:`summary` lists the parts.
 
         Raises
         ------
@@ -138,12 +133,10 @@ class SolidRotor(FiniteElementRotor):
         >>> round(rotor.total_mass, 6), list(rotor.interfaces)
         (2.512, ['left'])
         """
-        axis = SpinAxis.of(axis)
-        checks.flag(allow_parts, "allow_parts")
         model = ngsolve_model.assemble_model(
             mesh, materials, order=order, interfaces=interfaces, check_units=check_units
         )
-        return cls._of_model(model, axis, check_units, allow_parts=allow_parts)
+        return cls._of_model(model, axis, check_units)
 
     @classmethod
     def from_mesh(
@@ -157,7 +150,6 @@ class SolidRotor(FiniteElementRotor):
         leave_out: Sequence[str] = (),
         matrices: str | os.PathLike | None = None,
         check_units: bool = True,
-        allow_parts: bool = False,
     ) -> SolidRotor:
         """Assemble a rotor on the mesh of another program: Abaqus, CalculiX, ANSYS, Nastran, Gmsh.
 
@@ -188,7 +180,7 @@ class SolidRotor(FiniteElementRotor):
         matrices : str or path, optional
             Mass and stiffness from a file, instead of elements: ``.sti`` of CalculiX with
             ``.mas`` and ``.dof`` beside it, or DMIG cards of Nastran.
-        check_units, allow_parts : bool, optional
+        check_units : bool, optional
             As of :meth:`from_ngsolve`.
 
         Raises
@@ -216,8 +208,6 @@ class SolidRotor(FiniteElementRotor):
         >>> SolidRotor.from_mesh(mesh, steel, ("z", [0.5, 0.5, 0]))
         SolidRotor(12 nodes, 15700 kg, interfaces ['bottom'], 6 rigid motions free)
         """
-        axis = SpinAxis.of(axis)
-        checks.flag(allow_parts, "allow_parts")
         model = mesh_model.import_model(
             mesh,
             materials,
@@ -227,7 +217,7 @@ class SolidRotor(FiniteElementRotor):
             matrices=matrices,
             check_units=check_units,
         )
-        return cls._of_model(model, axis, check_units, allow_parts=allow_parts)
+        return cls._of_model(model, axis, check_units)
 
     @classmethod
     def from_fem_interface(
@@ -236,8 +226,6 @@ class SolidRotor(FiniteElementRotor):
         axis: AxisLike,
         *,
         check_units: bool = True,
-        grounded: bool | None = None,
-        allow_parts: bool = False,
     ) -> SolidRotor:
         """Take a rotor from Exudyn's FEMinterface; its node sets with a name become interfaces.
 
@@ -249,11 +237,6 @@ class SolidRotor(FiniteElementRotor):
             Read by :meth:`SpinAxis.of`.
         check_units : bool, optional
             Refuse sizes and masses that cannot be in SI units.
-        grounded : bool, optional
-            Whether springs to the ground are inside the stiffness matrix; needed only if the
-            matrix itself does not tell.
-        allow_parts : bool, optional
-            Take several parts that neither the stiffness connects nor springs hold.
 
         Raises
         ------
@@ -262,7 +245,7 @@ class SolidRotor(FiniteElementRotor):
             of the matrices fails.
         """
         model = import_model(fem)
-        return cls._of_model(model, axis, check_units, grounded, allow_parts)
+        return cls._of_model(model, axis, check_units)
 
     @classmethod
     def from_matrices(
@@ -276,8 +259,6 @@ class SolidRotor(FiniteElementRotor):
         interfaces: Mapping[str, Any] | None = None,
         triangles: ArrayLike = (),
         check_units: bool = True,
-        grounded: bool | None = None,
-        allow_parts: bool = False,
     ) -> SolidRotor:
         """Make a rotor from plain arrays.
 
@@ -291,7 +272,7 @@ class SolidRotor(FiniteElementRotor):
             Name → node numbers, or name → (node numbers, weights).
         triangles : array_like of int, shape (t, 3) or (t, 6), optional
             Surface for drawing.
-        axis, check_units, grounded, allow_parts
+        axis, check_units
             As those of :meth:`from_fem_interface`.
 
         Raises
@@ -303,7 +284,7 @@ class SolidRotor(FiniteElementRotor):
         entries = {} if interfaces is None else checks.mapping(interfaces, "interfaces", "nodes")
         node_sets = {name: node_set(name, entry) for name, entry in entries.items()}
         model = FiniteElementModel(nodes, mass, stiffness, damping, node_sets, triangles)
-        return cls._of_model(model, axis, check_units, grounded, allow_parts)
+        return cls._of_model(model, axis, check_units)
 
     prestress = prestress
     with_prestress = with_prestress

@@ -22,7 +22,6 @@ from exudyn_rotor import checks
 
 _PACKAGE = "exudyn_rotor"
 _VERSION = 2  # of the file format
-_CHECKSUM = "sha256"  # in older files
 _KINDS = "biufcU"  # flags, numbers, text
 
 
@@ -91,14 +90,10 @@ def read_arrays(path: str | PathLike, kind: str) -> dict[str, np.ndarray]:
     ValueError
         If the file is damaged, of another kind, or written by another version of the package.
     """
-    source = checks.path(path)
-    if not source.exists():
-        raise FileNotFoundError(f"path: there is no file {str(source)!r}")
-    if not source.is_file():
-        raise IsADirectoryError(f"path: needs a file, {str(source)!r} is a folder or a device")
+    source = checks.file(path)
     try:
         with open(source, "rb") as opened, np.load(opened, allow_pickle=False) as file:
-            data = {name: file[name] for name in file.files if name != _CHECKSUM}
+            data = {name: file[name] for name in file.files}
     # damage shows as errors of zip, zlib, struct, numpy or the file system, or as a wrong type
     except Exception as error:
         raise ValueError(
@@ -110,6 +105,29 @@ def read_arrays(path: str | PathLike, kind: str) -> dict[str, np.ndarray]:
     for array in data.values():
         array.flags.writeable = False
     return data
+
+
+def read_rows(path: str | PathLike, name: str = "path") -> list[tuple[int, list[str]]]:
+    """Return number and words of the lines of a text table, without comments and empty lines.
+
+    Words stand between semicolons, commas, tabs or blanks; in lines with semicolons a comma is that
+    of decimals. Text after ``#`` is a comment.
+
+    Raises
+    ------
+    TypeError, OSError
+        As :func:`read_arrays`.
+    """
+    # Excel marks UTF-8; names may be in another encoding
+    text = checks.file(path, name).read_text(encoding="utf-8-sig", errors="replace")
+    rows = []
+    for number, line in enumerate(text.splitlines(), 1):
+        line = line.split("#")[0].strip()
+        line = line.replace(",", ".") if ";" in line else line
+        between = next((mark for mark in ";,\t" if mark in line), None)
+        if line:
+            rows.append((number, [word.strip() for word in line.split(between)]))
+    return rows
 
 
 class Entries:
@@ -184,11 +202,10 @@ def _target(path: str | PathLike) -> Path:
         raise IsADirectoryError(f"path: needs the name of a file, {os.fspath(path)!r} is a folder")
     if not target.parent.is_dir():
         raise FileNotFoundError(f"path: the folder {str(target.parent)!r} does not exist; make it")
-    if target.exists():
-        if not target.is_file():
-            raise OSError(f"path: needs the name of a file, {str(given)!r} is a device")
-        if not os.access(target, os.W_OK):
-            raise PermissionError(f"path: the file {str(given)!r} is read-only")
+    if target.exists() and not target.is_file():
+        raise OSError(f"path: needs the name of a file, {str(given)!r} is a device")
+    if target.exists() and not os.access(target, os.W_OK):
+        raise PermissionError(f"path: the file {str(given)!r} is read-only")
     return target
 
 

@@ -228,7 +228,6 @@ CALLS = {
     },
     "JournalBearing": lambda w: {"film": w.OilFilm, "load": [0.0, -500.0]},
     "LinearActuator": {"force_current": 80.0, "negative_stiffness": 3e5},
-    "LinearActuator.force": {"place": 1e-5},
     "Link": {"first": "first:left", "second": "second:left", "connection": er.Support("left", 1e6)},
     "MagneticBearing": lambda w: {
         "actuator": w.SaturatingActuator,
@@ -240,7 +239,6 @@ CALLS = {
     "Motion.body_forces": {"acceleration": DOWN},
     "Motion.drive_torque": lambda w: {"zeta_tt": np.zeros(w.Motion.size)},
     "MotionShapes.animate": lambda w: {"path": w.folder / "shape.gif", "frames": 2},
-    "MotionShapes.to_vtk": lambda w: {"path": w.folder / "shape.vtu"},
     "Mount": {"stiffness": 1e6 * np.eye(3)},
     "OilFilm": {
         "length": 0.05,
@@ -284,7 +282,6 @@ CALLS = {
         "gap": 4e-3,
         "current_limit": 6.0,
     },
-    "SaturatingActuator.force": {"place": 1e-5},
     "ShortJournalBearing": {"load": [0.0, -500.0]},
     "from_ross": lambda w: {"rotor": example()},
     "SolidRotor.add_disc": {"position": 0.15, "mass": 1.0, "inertia": [0.02, 0.02], "width": 0.4},
@@ -318,10 +315,6 @@ CALLS = {
         "nodes": np.arange(3),
     },
     "StressField.plot": lambda w: {"modal_coordinates": w.coordinates[0]},
-    "StressField.to_vtk": lambda w: {
-        "path": w.folder / "stress.vtu",
-        "modal_coordinates": w.coordinates[0],
-    },
     "Support": {"stiffness": 1e6 * np.eye(3), "damping": 100.0},
     "FloatingRingBearing": {"inner": _FILM, "outer": _FILM},
     "FloatingRingBearing.torque": {"ring_speed": 100.0},

@@ -14,8 +14,7 @@ import scipy.linalg as la
 
 from exudyn_rotor.advice.run_loads import instants, interface_loads
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
-from exudyn_rotor.multibody.rotor.record import Record
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import Record, RotorBody
 from exudyn_rotor.prestress.given_loads import HeldRotor
 from exudyn_rotor.prestress.static_solution import stress_stiffness
 from exudyn_rotor.reduction.reduced_rotor import ModeKind
@@ -66,7 +65,7 @@ def _stiffness(places: np.ndarray, motions: list[np.ndarray], tension: np.ndarra
 def _share(body: RotorBody, geometric: np.ndarray) -> float:
     """Return the largest size of a geometric stiffness over the elastic one, without tilts."""
     inv = body.selection.invariants
-    if inv.K0 is not None and body.plan.setup.stiffening != "none":
+    if inv.K0 is not None and body.stiffening != "none":
         geometric = geometric - inv.K0
     elastic = np.array([kind is ModeKind.ELASTIC for kind in body.selection.kinds])
     flexible = elastic & (np.diag(inv.K) > 0.0)
@@ -97,6 +96,6 @@ def axial_share_of_full(body: FullRotorBody, record: Record) -> float | None:
     largest = tensions[:, np.argmax(np.abs(tensions).max(axis=0))]
     geometric = stress_stiffness(rotor, pulled @ largest)
     given = getattr(rotor.carried_prestress, "by_loads", None)
-    if given is not None and body.plan.setup.stiffening != "none":
+    if given is not None and body.stiffening != "none":
         geometric = geometric - given
     return float(np.abs(HeldRotor(rotor, (), relief).buckling_shares(geometric)).max())

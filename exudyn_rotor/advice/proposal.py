@@ -12,9 +12,8 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.advice.candidate import Candidate
 from exudyn_rotor.advice.mode_choice import GROWTH, Truncation, choose_modes
-from exudyn_rotor.advice.request import Request
+from exudyn_rotor.advice.request import AssumptionWarning, Request
 from exudyn_rotor.advice.step_size import Step, choose_step
-from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import keep_modes
@@ -78,12 +77,8 @@ class Proposal:
         checks.number(self.error, "error", least=0.0)
         checks.number(self.step, "step", "s", above=0.0)
         checks.tolerance(self.accuracy, "accuracy")
-        for name, value in (
-            ("modes", tuple(modes.tolist())),
-            ("speeds", (low, high)),
-            ("reasons", checks.labels(self.reasons, "reasons")),
-        ):
-            object.__setattr__(self, name, value)
+        reasons = checks.labels(self.reasons, "reasons")
+        checks.keep(self, modes=tuple(modes.tolist()), speeds=(low, high), reasons=reasons)
 
     @property
     def count(self) -> int:
@@ -255,11 +250,9 @@ def _reasons(given: Candidate, request: Request, chosen: Truncation, step: Step)
     """Yield why these modes and this step."""
     yield (
         f"modes: {chosen.in_band} lie in the band up to (f + Ω)/2π = "
-        f"{IN_HERTZ * request.highest:.4g} Hz of the rotor frame"
-    )
-    yield (
-        f"modes: the {given.frequencies.size - chosen.kept.size} left out change the response "
-        f"of interfaces by {chosen.error:.2g}, resonances damped by {GROWTH:.0%} at least"
+        f"{IN_HERTZ * request.highest:.4g} Hz of the rotor frame; the "
+        f"{given.frequencies.size - chosen.kept.size} left out change the response of interfaces "
+        f"by {chosen.error:.2g}, resonances damped by {GROWTH:.0%} at least"
     )
     if np.isnan(step.speed):
         yield (

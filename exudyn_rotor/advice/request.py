@@ -1,4 +1,4 @@
-"""What a proposal is asked for, checked."""
+"""What a proposal is asked for, checked, and the warning where an assumption does not hold."""
 
 from __future__ import annotations
 
@@ -14,6 +14,20 @@ PERIOD_ERROR = 0.0844
 _SPEEDS = 5  # within a range
 
 
+class AssumptionWarning(UserWarning):
+    """An assumption of the model does not hold, or its error exceeds what was asked for.
+
+    Examples
+    --------
+    An error instead:
+
+    >>> import warnings
+    >>> from exudyn_rotor import AssumptionWarning
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("error", AssumptionWarning)
+    """
+
+
 @dataclass(frozen=True)
 class Request:
     """Speeds, loads and accuracy."""
@@ -26,12 +40,7 @@ class Request:
 
     @classmethod
     def of(cls, speeds: ArrayLike, load_frequencies: ArrayLike | None, accuracy: float) -> Request:
-        """Check the values; without load frequencies everything happens at the spin speed.
-
-        Raises
-        ------
-        TypeError, ValueError
-        """
+        """Check the values; without load frequencies everything happens at the spin speed."""
         values = _frequencies(speeds, "speeds")
         if len(values) > 2 or np.any(np.diff(values) < 0.0):
             raise ValueError(

@@ -10,8 +10,8 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.advice.proposal import Proposal
+from exudyn_rotor.advice.request import AssumptionWarning
 from exudyn_rotor.advice.run_rows import ROWS, RecordedRun
-from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -105,9 +105,9 @@ class RunCheck:
         """What a record of few instants lacks; empty for a complete one."""
         if self.complete:
             return ""
-        known = "the end state is" if self.instants == 1 else f"{self.instants} instants are"
         return (
-            f"only {known} known: call body.start_recording() before mbs.Assemble(), and lower "
+            f"only {self.instants} of at least {_ENOUGH} instants are known: call "
+            "body.start_recording() before mbs.Assemble(), and lower "
             "solution.sensors.writePeriod of the settings"
         )
 
@@ -177,6 +177,9 @@ def check_run(
                                   vibrations over their displacements; larger for slow motion in
                                   space that is integrated in the rotor frame; next to a resonance
                                   amplitudes err by more, by the amplification
+    ``growth``           0.75     change of the growth of a lightly damped motion by the step,
+                                  towards the other sign, over the growth: above 1 the sign is
+                                  wrong; of scenes at constant speed with translation 'none'
     ``film``             1        displacement of a journal at the end over that beyond which its
                                   film is too thin and the law goes on by its tangent
     ``unresisted load``  0.01     what ``connections`` counts, as a share of the largest load
@@ -190,8 +193,7 @@ def check_run(
     ``axial force``      2a       axial force between interfaces over the load at which the shaft
                                   buckles, hinged where the force acts, less what the prestress
                                   holds; frequencies err by half of it
-    ``yield``            1        static von Mises stress, by rotation and at rest, over the yield
-                                  stress; the larger of those at rest and at the highest speed
+    ``yield``            1        static von Mises stress at the highest speed over the yield stress
     ``speed``            1 + a    highest speed over that of the proposal
     ===================  =======  ==================================================================
 

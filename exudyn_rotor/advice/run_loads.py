@@ -1,7 +1,7 @@
 """Loads of a run, and the static response to them that the modes leave out.
 
 The loads on a rotor are what its equations leave over, ``f = M q̈ − Q(q, q̇)``. Forces and moments F
-at the places where something acts (:mod:`exudyn_rotor.multibody.load_places`) follow from them by
+at the places where something acts (`load_places`) follow from them by
 ``Uᵀ F = f`` with the motion U of these places, in the sense of least squares. They, and the
 centrifugal load of the rotor itself, deform it by more than the run shows: by what the response of
 attachment modes has beyond the response of the modes. The inertia of modes that are left out does
@@ -12,11 +12,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.multibody.load_places import load_places
-from exudyn_rotor.multibody.rotor.record import Record
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.connections import load_places
+from exudyn_rotor.multibody.rotor.rotor_body import Record, RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.theory.axis import SpinAxis, skew
+from exudyn_rotor.theory.axis import skew
 
 _MOST = 400  # instants of a run that are looked at
 _STILL = 1e-5  # of the rotor's size: motion that counts as none
@@ -26,14 +25,6 @@ _SEEN = 1e-3  # singular values below this share of the largest tell nothing abo
 def instants(record: Record, most: int) -> np.ndarray:
     """Return which instants to look at, evenly over the run; the first has no accelerations."""
     return np.unique(np.linspace(1, len(record.time) - 1, most).astype(int))
-
-
-def external_load(body: RotorBody, record: Record, index: int) -> np.ndarray:
-    """Return the external load at an instant per coordinate of the equations."""
-    motion, place = body.motion, body.layout
-    t = float(record.time[index])
-    q, q_t, q_tt = (rows[index][place.unknowns] for rows in (record.q, record.q_t, record.q_tt))
-    return motion.mass_matrix(t, q, q_t) @ q_tt - motion.forces(t, q, q_t)
 
 
 def interface_loads(
@@ -68,20 +59,16 @@ def interface_loads(
     return total
 
 
-def turned(body: RotorBody, q: np.ndarray) -> np.ndarray:
-    """Return the orientation (3, 3) of the rotor frame for coordinates of the body's nodes."""
-    motion = body.motion
-    return motion.orientation @ SpinAxis(motion.invariants.direction).rotation(q[body.locks.spin])
-
-
 def _without_weight(body: RotorBody, record: Record, index: int) -> np.ndarray:
     """Return loads on the modes and, over √m and in rotor axes, on the frame (m + 3,)."""
-    motion, weight = body.motion, np.zeros(3)
-    inv, external = motion.invariants, external_load(body, record, index)
+    motion, inv, weight = body.motion, body.motion.invariants, np.zeros(3)
+    t, places = float(record.time[index]), body.layout.unknowns
+    q, q_t, q_tt = (rows[index][places] for rows in (record.q, record.q_t, record.q_tt))
+    external = motion.mass_matrix(t, q) @ q_tt - motion.forces(t, q, q_t)
     if body.gravity_load is not None:
         gravity = body.mbs.GetLoadParameter(body.gravity_load, "loadVector")
         weight = inv.mass * np.asarray(gravity)
-    turn, N = turned(body, record.q[index]), motion.free_directions
+    turn, N = motion.at(t, q, q_t).A, motion.free_directions
     on_modes = external[motion.modes] - inv.S.T @ turn.T @ weight / inv.mass
     on_frame = turn.T @ N @ (external[motion.translations] - N.T @ weight)
     return np.concatenate([on_modes, on_frame / np.sqrt(inv.mass)])
@@ -103,23 +90,27 @@ def residual_deflection(body: RotorBody, record: Record, size: float) -> float |
     if loads is None:
         return None
     columns = body.selection.T @ record.q[picked][:, body.layout.unknowns][:, motion.modes].T
-    moved, flexible = _motion(rotor)
-    flexibility = _flexibility(rotor.with_attachments) - _flexibility(rotor)
-    stretch = _stretch(rotor.with_attachments, body) - _stretch(rotor, body)
-    missing = flexibility @ loads.reshape(-1, len(picked))
-    missing += np.outer(stretch, record.speed[picked] ** 2)
-    bent = moved @ np.where(flexible[:, None], columns, 0.0)
-    frame = np.column_stack([_of_frame(body, record.q[index]) for index in picked])
+    moved = np.vstack([one.motion for one in rotor.interfaces.values()])
+    (all_, stretch), (own, own_stretch) = (
+        _static(each, body) for each in (rotor.with_attachments, rotor)
+    )
+    missing = (all_ - own) @ loads.reshape(-1, len(picked))
+    missing += np.outer(stretch - own_stretch, record.speed[picked] ** 2)
+    rigid = len(rotor.rigid_kinds)
+    bent = moved[:, rigid:] @ columns[rigid:]
+    frame = np.column_stack([_of_frame(body, record, index) for index in picked])
     whole = moved @ columns + np.tile(frame, (len(rotor.interfaces), 1))
     return _largest(missing) / max(_largest(whole), _largest(bent), _STILL * size)
 
 
-def _of_frame(body: RotorBody, q: np.ndarray) -> np.ndarray:
+def _of_frame(body: RotorBody, record: Record, index: int) -> np.ndarray:
     """Return how far the frame's axis has moved, in its own axes, without rotation (6,)."""
-    motion, turn = body.motion, turned(body, q)
+    motion, places = body.motion, body.layout.unknowns
+    q, q_t = record.q[index][places], record.q_t[index][places]
+    turn = motion.at(float(record.time[index]), q, q_t).A
     # the frame may stand in a centre of mass off the axis, and that circles about it
     arm = body.selection.origin - body.axis.project(body.selection.origin)
-    shift = motion.free_directions @ q[body.layout.unknowns][motion.translations]
+    shift = motion.free_directions @ q[motion.translations]
     return np.concatenate([turn.T @ (shift + motion.orientation @ arm) - arm, np.zeros(3)])
 
 
@@ -129,21 +120,14 @@ def _largest(motion: np.ndarray) -> float:
     return float(np.sqrt((displacements**2).sum(axis=(0, 1))).max())
 
 
-def _motion(rotor: ReducedRotor) -> tuple[np.ndarray, np.ndarray]:
-    """Return the motion of all interfaces (6p, k), and which columns are flexible."""
-    flexible = np.arange(rotor.size) >= len(rotor.rigid_kinds)
-    return np.vstack([one.motion for one in rotor.interfaces.values()]), flexible
+def _static(rotor: ReducedRotor, body: RotorBody) -> tuple[np.ndarray, np.ndarray]:
+    """Return static motions of the interfaces by the flexible modes.
 
-
-def _flexibility(rotor: ReducedRotor) -> np.ndarray:
-    """Return ``Σ φ φᵀ/ω²`` of the flexible modes at the interfaces, (6p, 6p)."""
-    motion, flexible = _motion(rotor)
-    scaled = motion[:, flexible] / rotor.frequencies[flexible]
-    return scaled @ scaled.T
-
-
-def _stretch(rotor: ReducedRotor, body: RotorBody) -> np.ndarray:
-    """Return the static motion of the interfaces by the centrifugal load per ω², (6p,)."""
-    motion, flexible = _motion(rotor)
+    By loads there, ``Σ φ φᵀ/ω²`` (6p, 6p), and by the centrifugal load per ω², (6p,).
+    """
+    flexible = slice(len(rotor.rigid_kinds), None)
+    frequencies = rotor.frequencies[flexible]
+    motion = np.vstack([one.motion[:, flexible] for one in rotor.interfaces.values()])
+    scaled = motion / frequencies
     h = rotor.invariants.moved(body.selection.origin - rotor.center_of_mass).h
-    return motion[:, flexible] @ (h[flexible] / rotor.frequencies[flexible] ** 2)
+    return scaled @ scaled.T, scaled @ (h[flexible] / frequencies)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,13 +12,15 @@ import exudyn
 import numpy as np
 
 from exudyn_rotor.advice.axial_force import axial_share, axial_share_of_full
+from exudyn_rotor.advice.candidate import Candidate
 from exudyn_rotor.advice.request import PERIOD_ERROR
 from exudyn_rotor.advice.run_loads import instants, interface_loads, residual_deflection
+from exudyn_rotor.advice.step_size import GROWTH_CHANGE, growth_by_step
 from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.connections import lost_items
-from exudyn_rotor.multibody.rotor.record import Record, implicit_step
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import Record, RotorBody, implicit_step
 from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
 from exudyn_rotor.solid.elements import von_mises
 from exudyn_rotor.theory.invariants import Invariants, inertia_tensor
@@ -26,6 +29,9 @@ from exudyn_rotor.theory.stiffening import stiffening
 _FORCE = exudyn.OutputVariableType.Force
 _TURNS = (3, 4, 5)  # coordinates of a node that are angles
 _TOP = 0.2  # share of the flexible modes, from the top, that shows what lies beyond
+_STEADY = 1e-9  # relative change of a constant speed
+_RESOLVED = 0.5  # ωh up to which the error of a step is that of its series
+_TOLD = 1e-6  # growth per radian that is more than rounding
 _RINGING = 1.5  # energy about the static stretch over that of a start without it, with a margin
 
 
@@ -239,6 +245,31 @@ def _frequency(values: np.ndarray, rates: np.ndarray) -> float:
 
 
 @_row(
+    "growth",
+    1.5 * GROWTH_CHANGE,
+    "change of a growth by the step towards the other sign, over the growth",
+    "take smaller steps, such as those that propose tells: at this one motions may grow that decay",
+    of_modes=True,
+)
+def _growth(run: RecordedRun) -> float | None:
+    """Of lightly damped motions of the linearised scene, all of which modes have, at one speed."""
+    body, step, speed = run.body, implicit_step(run.body), run.record.speed
+    is_constant = np.ptp(speed) <= _STEADY * run.fastest
+    if step is None or body.formulation.translation_count or not is_constant:
+        return None
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            model = linear_model(body.mbs, body=body, axes="rotor")
+            given = Candidate(body.selection.source, model, axial=False)
+            own, found = growth_by_step(given, float(speed[-1]), step, _RESOLVED / step)
+    except (ValueError, ArithmeticError, RuntimeError, np.linalg.LinAlgError):
+        return None  # a scene without linear equations
+    told = np.abs(own.real) > _TOLD * np.abs(own)
+    return float(((own - found).real / own.real)[told].max(initial=0.0))
+
+
+@_row(
     "film",
     1.0,
     "displacement of a journal at the end over that to which it has a film",
@@ -247,8 +278,10 @@ def _frequency(values: np.ndarray, rates: np.ndarray) -> float:
 )
 def _film(run: RecordedRun) -> float | None:
     bearings = [one for one in run.body.supports if isinstance(one.support, Bearing)]
-    shares = [one.support.film_use(one.values()[0][:2]) for one in bearings]
-    return max((share for share in shares if share is not None), default=None)
+    places = [one.values()[0][:2] for one in bearings]
+    edges = [one.support.film_edge(*place) for one, place in zip(bearings, places, strict=True)]
+    shares = np.array([np.hypot(*u) for u in places]) / edges
+    return max(shares[np.isfinite(edges)], default=None)
 
 
 @_row(

@@ -27,7 +27,7 @@ _UNMOVED = 1e-9  # share of the largest response
 _DAMPING = 7.3e-5  # δ of generalised alpha with Exudyn's spectral radius 0.9
 _LIGHT, _UNDAMPED = 0.05, 1e-9  # growth per radian of motions whose growth is looked at
 _NEAR = 0.1  # relative distance of exponents that a step may mix
-_GROWTH_CHANGE = 0.5  # share of a growth by which a step may change it
+GROWTH_CHANGE = 0.5  # share of a growth by which a step may change it
 _HALVINGS, _DEFECTIVE = 8, 1e10
 _STEADY = 1e-3  # growth per radian at one speed, where motion is steady: undamped resonances
 
@@ -77,26 +77,32 @@ def _of_step(made: Hill, s: complex, step: float) -> np.ndarray:
     return made.M * (integrated**2 - rates**2) + damping * (integrated - rates)
 
 
+def growth_by_step(
+    given: Candidate, speed: float, step: float, highest: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return exponents (m,) of lightly damped motions up to a frequency, and as a step has them."""
+    (values, shapes), made = given.motions(speed), given.hill(speed)
+    n, growth, frequencies = len(values) // 2, np.abs(values.real), values.imag
+    light = (growth < _LIGHT * np.abs(frequencies)) & (growth > _UNDAMPED * np.abs(frequencies))
+    light &= (frequencies > 0.0) & (frequencies <= highest)
+    light &= np.linalg.cond(shapes) < _DEFECTIVE
+    left, found = np.linalg.inv(shapes)[:, n:] @ np.linalg.inv(made.M), []
+    for own in values[light]:
+        near = np.abs(values - own) < _NEAR * abs(own)
+        change = left[near] @ _of_step(made, own, step) @ shapes[:n, near]
+        moved = np.linalg.eigvals(np.diag(values[near]) - change)
+        found.append(moved[np.argmin(np.abs(moved - own))])
+    return values[light], np.array(found, dtype=complex)
+
+
 def _with_right_growth(given: Candidate, request: Request, speed: float, chosen: Step) -> Step:
     """Return a step, the same or a smaller one, by which growth changes by less than half."""
-    (values, shapes), made = given.motions(speed), given.hill(speed)
-    n = len(values) // 2
-    if np.linalg.cond(shapes) > _DEFECTIVE:
-        return chosen
-    left = np.linalg.inv(shapes)[:, n:] @ np.linalg.inv(made.M)
-    growth, frequencies = np.abs(values.real), values.imag
-    light = (growth < _LIGHT * np.abs(frequencies)) & (growth > _UNDAMPED * np.abs(frequencies))
-    light &= (frequencies > 0.0) & (frequencies <= request.highest)
     for _ in range(_HALVINGS):
-        worst, frequency = 0.0, np.nan
-        for own in values[light]:
-            near = np.abs(values - own) < _NEAR * abs(own)
-            change = left[near] @ _of_step(made, own, chosen.size) @ shapes[:n, near]
-            found = np.linalg.eigvals(np.diag(values[near]) - change)
-            share = abs((found[np.argmin(np.abs(found - own))] - own).real / own.real)
-            if share > worst:
-                worst, frequency = share, float(own.imag)
-        if worst <= _GROWTH_CHANGE:
+        own, found = growth_by_step(given, speed, chosen.size, request.highest)
+        shares = np.abs((found - own).real / own.real)
+        if shares.max(initial=0.0) <= GROWTH_CHANGE:
             break
-        chosen = Step(chosen.size * max((_GROWTH_CHANGE / worst) ** 0.5, 0.5), speed, frequency)
+        worst = int(np.argmax(shares))
+        smaller = chosen.size * max((GROWTH_CHANGE / shares[worst]) ** 0.5, 0.5)
+        chosen = Step(smaller, speed, float(own[worst].imag))
     return chosen

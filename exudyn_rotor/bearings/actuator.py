@@ -36,41 +36,21 @@ class Actuator(ABC):
     force_current: float
     negative_stiffness: float
 
-    def force(self, current: float, place: float) -> float:
-        """Return the force along the control axis [N] by current [A] and place [m].
-
-        Raises
-        ------
-        TypeError, ValueError
-        """
-        checks.number(current, "current", "A")
-        return self.law(current, checks.number(place, "place", "m"))
-
     @abstractmethod
     def law(self, current: float, place: float) -> float:
-        """For scenes: return the force [N] by current and place, unchecked."""
+        """Return the force along the control axis [N] by current [A] and place [m], unchecked."""
 
     @abstractmethod
     def slopes(self, current: float, place: float) -> tuple[float, float]:
         """Return the derivatives of :meth:`law` by current [N/A] and place [N/m], unchecked."""
 
     @abstractmethod
-    def _current_for(self, force: float, place: float) -> float:
-        """Return the current [A] that makes a force [N] at a place [m]."""
+    def _current_for(self, force: float) -> float:
+        """Return the current [A] that makes a force [N] in the centre."""
 
     @abstractmethod
-    def _place_under(self, load: float, gain: float, offset: float) -> float:
-        """Return where ``F(−gain (x + offset), x) + load = 0`` [m], next to the centre."""
-
-    def _check_hold(self, gain: float) -> None:
-        """Refuse a gain that lets the negative stiffness pull the rotor away."""
-        held, pulled = self.force_current * gain, self.negative_stiffness
-        if held <= pulled:
-            raise ValueError(
-                f"controller: unstable: K_i P of {held:.4g} N/m is not above the negative "
-                f"stiffness K_s of {pulled:.4g} N/m, so that there is no equilibrium; give a "
-                "larger proportional gain"
-            )
+    def _place_under(self, load: float, gain: float) -> float:
+        """Return where ``F(−gain x, x) + load = 0`` [m], next to the centre."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +71,7 @@ class LinearActuator(Actuator):
     Examples
     --------
     >>> from exudyn_rotor import LinearActuator
-    >>> LinearActuator(force_current=80.0, negative_stiffness=3e5).force(1.0, 1e-4)
+    >>> LinearActuator(force_current=80.0, negative_stiffness=3e5).law(1.0, 1e-4)
     110.0
     """
 
@@ -110,12 +90,11 @@ class LinearActuator(Actuator):
         """Return K_i and K_s."""
         return self.force_current, self.negative_stiffness
 
-    def _current_for(self, force: float, place: float) -> float:
-        return (force - self.negative_stiffness * place) / self.force_current
+    def _current_for(self, force: float) -> float:
+        return force / self.force_current
 
-    def _place_under(self, load: float, gain: float, offset: float) -> float:
-        held = self.force_current * gain
-        return (load - held * offset) / (held - self.negative_stiffness)
+    def _place_under(self, load: float, gain: float) -> float:
+        return load / (self.force_current * gain - self.negative_stiffness)
 
 
 @dataclass(frozen=True)
@@ -149,7 +128,7 @@ class SaturatingActuator(Actuator):
     ... )
     >>> print(round(magnets.force_current), round(magnets.negative_stiffness))
     500 2500000
-    >>> round(magnets.force(2.0, 0.0)), round(magnets.force(9.0, 0.0))  # the latter at the limit
+    >>> round(magnets.law(2.0, 0.0)), round(magnets.law(9.0, 0.0))  # the latter at the limit
     (1000, 2250)
     """
 
@@ -189,19 +168,19 @@ class SaturatingActuator(Actuator):
         by_place = [i**2 / gap**3 for i, gap in magnets]
         return 2.0 * self.constant * sum(by_current), 2.0 * self.constant * sum(by_place)
 
-    def _current_for(self, force: float, place: float) -> float:
+    def _current_for(self, force: float) -> float:
         most = max(self.bias_current, self.current_limit - self.bias_current)
-        least, largest = self.law(-most, place), self.law(most, place)
-        if not least < force < largest:
+        largest = self.law(most, 0.0)
+        if not abs(force) < largest:
             raise ValueError(
-                f"load: the magnets pull between {least:.4g} N and {largest:.4g} N at "
-                f"{place:g} m from the centre, not {force:.4g} N; give a larger current_limit"
+                f"load: the magnets pull with less than {largest:.4g} N in the centre, not "
+                f"{abs(force):.4g} N; give a larger current_limit"
             )
-        return brentq(lambda i: self.law(i, place) - force, -most, most, xtol=1e-15, rtol=1e-14)
+        return brentq(lambda i: self.law(i, 0.0) - force, -most, most, xtol=1e-15, rtol=1e-14)
 
-    def _place_under(self, load: float, gain: float, offset: float) -> float:
+    def _place_under(self, load: float, gain: float) -> float:
         def left(place: float) -> float:
-            return self.law(-gain * (place + offset), place) + load
+            return self.law(-gain * place, place) + load
 
         side = 1.0 if left(0.0) >= 0.0 else -1.0
         places = side * self.gap * _PLACES

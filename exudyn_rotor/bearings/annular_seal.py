@@ -37,7 +37,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.bearing import Bearing, check_clearance
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.calls import user_level
 
@@ -110,11 +110,7 @@ class AnnularSeal(Bearing):
         units = {"radius": "m", "length": "m", "clearance": "m", "pressure_drop": "Pa"}
         checks.keep_numbers(self, units | {"density": "kg/m³", "viscosity": "Pa s"}, above=0.0)
         checks.keep_numbers(self, {"inlet_loss": ""}, least=0.0)
-        if self.clearance >= self.radius:
-            raise ValueError(
-                "clearance: needs the radial clearance, far below the radius of "
-                f"{self.radius:g} m, got {self.clearance:g} m"
-            )
+        check_clearance(self.clearance, self.radius)
         reynolds = self._relative * 2.0 * self.axial_velocity(0.0)
         if reynolds < _TURBULENT:
             warnings.warn(

@@ -6,22 +6,63 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import hypot, inf
-from typing import ClassVar
+from typing import ClassVar, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.controlled_support import Controlled
-from exudyn_rotor.bearings.film.equilibria import Equilibria
+from exudyn_rotor.bearings.controlled_support import ControlledSupport
 from exudyn_rotor.bearings.own_table import table_of
 from exudyn_rotor.bearings.support import COEFFICIENTS, NoCoefficientsError, Support
 
 _REMEMBERED = 1000  # coefficients of a bearing
-_DIFFERENCE, _STILL = 1e-6, 1e-6  # of the largest motion, which is at least that in SI units
+_FAILED = ValueError, ArithmeticError
+_INSIDE = 1.0 - 1e-9  # of the way to the last film, by rounding
+_DIFFERENCE, _STILL = 1e-4, 1e-6  # of a motion, which is at least that in SI units
 HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a bearing holds count
 
+Numbers = float | np.ndarray
 LawWithTorque = Callable[[float, float, float, float, float, float], tuple[float, float, float]]
+
+
+State = TypeVar("State")
+
+
+class Equilibria(Generic[State]):
+    """The last equilibria, or what follows from them, by speed and load; or why there is none."""
+
+    def __init__(self, most: int = 64) -> None:
+        self._known: dict[tuple[float, ...], State | Exception] = {}
+        self._most = most
+
+    def at(
+        self, speed: float, load: np.ndarray, solve: Callable[[float, np.ndarray], State]
+    ) -> State:
+        """Return ``solve(speed, load)``; its errors are kept, too."""
+        key = checks.number(speed, "speed", "rad/s"), *load.tolist()
+        found = self._known.get(key)
+        if found is None:
+            try:
+                found = solve(speed, load)
+            except _FAILED as error:
+                found = error.with_traceback(None)
+            while len(self._known) >= self._most:
+                self._known.pop(next(iter(self._known)), None)
+            self._known[key] = found
+        if isinstance(found, _FAILED):
+            raise type(found)(*found.args)
+        return found
+
+    def beside(self, speed: float, load: np.ndarray) -> State | None:
+        """Return what is known at the nearest speed of the same sense, if any."""
+        known = [
+            (abs(key[0] - speed), found)
+            for key, found in list(self._known.items())
+            if key[0] * speed > 0.0 and key[1:] == (*load.tolist(),)
+            if not isinstance(found, _FAILED)
+        ]
+        return min(known, key=lambda each: each[0])[1] if known else None
 
 
 class NoEquilibriumError(NoCoefficientsError):
@@ -113,7 +154,7 @@ class LoadedBearing(ABC):
         return table_of(self.linearised(), speeds, frequencies)
 
     @abstractmethod
-    def linearised(self) -> Support | Controlled:
+    def linearised(self) -> Support | ControlledSupport:
         """Return the equations for linear analyses, about the equilibrium under the load."""
 
     def _static_load(self, load: ArrayLike | None) -> np.ndarray:
@@ -143,7 +184,6 @@ class Bearing(LoadedBearing):
         See :class:`LoadedBearing`.
     """
 
-    uses_angle: ClassVar[bool] = False  # whether the law depends on the spin angle
     law_with_torque: ClassVar[LawWithTorque | None] = None
 
     _tried: ClassVar[np.ndarray] = HIGHER
@@ -151,34 +191,40 @@ class Bearing(LoadedBearing):
         default_factory=lambda: Equilibria(_REMEMBERED), init=False, repr=False
     )
 
-    @abstractmethod
     def law(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
         """Return the force on the journal [N] by x, y, ẋ, ẏ, θ and Ω, anywhere, unchecked."""
+        return self.law_with_torque(x, y, vx, vy, angle, speed)[:2]
 
     def slopes(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
-        found = self.law_along(np.array([[x, y, vx, vy]]), np.array([angle]), speed)[1][0]
+        """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity.
+
+        By central differences in this class.
+        """
+        motion, size = np.array([x, y, vx, vy]), max(hypot(x, y), _STILL)
+        steps = _DIFFERENCE * np.repeat([size, max(size * abs(speed), hypot(vx, vy), size)], 2)
+        ends = [
+            [self.law(*(motion + move), angle, speed) for move in (-each, each)]
+            for each in np.diag(steps)
+        ]
+        found = np.array([np.subtract(*pair) for pair in ends]).T / (2.0 * steps)
         return found[:, :2], found[:, 2:]
 
     def law_along(
         self, motion: np.ndarray, angles: np.ndarray, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return forces and their derivatives by motions (t, 4); by differences in this class.
+        """Return forces and their derivatives along motions (t, 4).
 
         Of displacements and velocities [m], [m/s], spin angles (t,) and the spin speed: forces
         (t, 2) [N], and minus their derivatives by the motion, (t, 2, 4).
         """
-        sizes = np.abs(motion).max(axis=0)
-        steps = _DIFFERENCE * np.repeat([max(*sizes[:2], _STILL), max(*sizes[2:], _STILL)], 2)
-        force, slopes = np.empty((len(motion), 2)), np.empty((len(motion), 2, 4))
-        for row, (state, angle) in enumerate(zip(motion, angles.tolist(), strict=True)):
-            force[row] = self.law(*state.tolist(), angle, speed)
-            slopes[row] = differenced(self.law, state, steps, angle, speed)
-        return force, slopes
+        states = [(*state, a) for state, a in zip(motion.tolist(), angles.tolist(), strict=True)]
+        forces = [self.law(*state, speed) for state in states]
+        slopes = [np.hstack(self.slopes(*state, speed)) for state in states]
+        return np.reshape(forces, (-1, 2)), np.reshape(slopes, (-1, 2, 4))
 
     def clearance_along(self, direction: np.ndarray | None = None) -> float:
         """Return how far that way, of length 1 (2,), or at least, the journal may go [m].
@@ -213,24 +259,29 @@ class Bearing(LoadedBearing):
             )
         return np.array(self.law(*place.tolist(), *rate.tolist(), 0.0, speed))
 
-    def film_use(self, displacement: ArrayLike) -> float | None:
-        """Return a displacement over the way to the end of the film there; None without a film.
+    def film_edge(self, x: float, y: float) -> float:
+        """Return how far the journal may go, on the way to a place, for a film to be there [m].
 
-        Beyond 1 the force is no longer the film's: it goes on by its tangent.
-
-        Parameters
-        ----------
-        displacement : array_like, shape (2,)
-            Of the journal from the centre of the bearing along (n1, n2) [m].
+        Beyond, the force is no longer the film's: it goes on by its tangent. Infinite without one.
         """
-        place = checks.vector(displacement, "displacement", "m", size=2)
-        distance = hypot(*place)
-        reach = self._reach(place / distance if distance else np.array([1.0, 0.0]))
-        return distance / reach if reach < inf else None
-
-    def _reach(self, direction: np.ndarray) -> float:
-        """Return how far that way, of length 1 (2,), the law is that of a film [m]."""
         return inf
+
+    def _inside(self, x: float, y: float) -> tuple[float, float]:
+        """Return the last place with a film on the way to a place [m]."""
+        share = min(1.0, _INSIDE * self.film_edge(x, y) / max(hypot(x, y), 1e-300))
+        return share * x, share * y
+
+    def _beyond(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, float]:
+        """Return the force where there is no film, by the tangent of the last one.
+
+        So Newton's method comes back from such places.
+        """
+        a, b = self._inside(x, y)
+        fx, fy = self.law(a, b, vx, vy, angle, speed)
+        gx, gy = (self.slopes(a, b, vx, vy, angle, speed)[0] @ (x - a, y - b)).tolist()
+        return fx - gx, fy - gy
 
     def coefficients(
         self, speed: float, load: ArrayLike | None = None
@@ -273,7 +324,7 @@ class Linearised:
         for tried in (speed, *self.bearing._tried):
             try:
                 return self._value(tried)
-            except (ValueError, ArithmeticError) as error:
+            except _FAILED as error:
                 refused = error
         raise refused
 
@@ -292,7 +343,7 @@ class Linearised:
         """
         try:
             self._value(speed)
-        except (ValueError, ArithmeticError) as error:
+        except _FAILED as error:
             name = f"bearing at {self.bearing.interface!r}"
             reason = "at 0 rad/s its film carries nothing" if speed == 0.0 else str(error)
             reason = reason if name in reason else f"{name}: {reason}"
@@ -305,36 +356,17 @@ def bearing_of(support: object) -> Bearing | None:
     return next((each.bearing for each in given if isinstance(each, Linearised)), None)
 
 
-def by_tangent(
-    force: Callable[[float, float], tuple[float, ...]],
-    x: float,
-    y: float,
-    most: float,
-    step: float,
-) -> tuple[float, ...]:
-    """Return a force, and a torque with it, outside the radius `most`, by its tangent there.
-
-    The tangent is that of the last `step` inside. So Newton's method comes back from places at
-    which there is no force.
-    """
-    eccentricity = hypot(x, y)
-    ex, ey = x / eccentricity, y / eccentricity
-    edge = force(most * ex, most * ey)
-    inside = force((most - step) * ex, (most - step) * ey)
-    beyond = (eccentricity - most) / step
-    return tuple(f + beyond * (f - g) for f, g in zip(edge, inside, strict=True))
+def check_clearance(clearance: float, radius: float) -> None:
+    """Refuse a clearance as large as the radius: one of a diameter, or in other units."""
+    if clearance >= radius:
+        raise ValueError(
+            f"clearance: needs the radial clearance, far below the radius of {radius:g} m, got "
+            f"{clearance:g} m"
+        )
 
 
-def differenced(
-    law: Callable[..., tuple[float, ...]],
-    motion: np.ndarray,
-    steps: np.ndarray,
-    angle: float,
-    speed: float,
-) -> np.ndarray:
-    """Return less the central differences (2, 4) of a law's force by place and velocity (4,)."""
-    ends = [
-        [law(*(motion + move).tolist(), angle, speed)[:2] for move in (-each, each)]
-        for each in np.diag(steps)
-    ]
-    return np.array([np.subtract(*pair) for pair in ends]).T / (2.0 * steps)
+def turned(c: Numbers, s: Numbers, *entries: Numbers) -> list[Numbers]:
+    """Return the four entries of ``R M Rᵀ``, row by row as M's, R the rotation of (c, s)."""
+    a, b, d, e = entries
+    a, b, d, e = c * a - s * d, c * b - s * e, s * a + c * d, s * b + c * e
+    return [c * a - s * b, s * a + c * b, c * d - s * e, s * d + c * e]

@@ -22,9 +22,7 @@ from typing import ClassVar
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, LawWithTorque
-
-Numbers = float | np.ndarray
+from exudyn_rotor.bearings.bearing import Bearing, Numbers, turned
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -88,23 +86,10 @@ class ClearanceStop(Bearing):
         checks.keep_numbers(self, positive, above=0.0)
         checks.keep_numbers(self, {"damping": "N s/m", "friction": ""}, least=0.0)
 
-    def law(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[float, float]:
-        """Return the force on the journal (1), (2) [N]."""
-        return self._law_with_torque(x, y, vx, vy, angle, speed)[:2]
-
-    @property
-    def law_with_torque(self) -> LawWithTorque | None:
-        """As :attr:`law`, with the torque of friction on the journal [N m]; None without friction.
-
-        Scenes need it where the spin is free.
-        """
-        return self._law_with_torque if self.friction else None
-
-    def _law_with_torque(
+    def law_with_torque(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float, float]:
+        """Return the force on the journal (1), (2) [N], and the torque of friction [N m]."""
         e = hypot(x, y)
         depth = e - self.clearance
         if depth <= 0.0:
@@ -155,19 +140,11 @@ class ClearanceStop(Bearing):
         T, T_n, T_a = (self.friction * share * X for X in (N, N_n, N_a))
         T_t = self.friction * (share * N_t - steep * approach / e)
         T_b = self.friction * steep
-        by_place = _in_axes(nx, ny, N_n, N_t - T / e, T_n, T_t + N / e)
-        by_rate = _in_axes(nx, ny, N_a, 0.0, T_a, T_b)
+        by_place = turned(nx, ny, N_n, N_t - T / e, T_n, T_t + N / e)
+        by_rate = turned(nx, ny, N_a, 0.0, T_a, T_b)
         force = [T * ny - N * nx, -T * nx - N * ny]
         return [*force, *by_place[:2], *by_rate[:2], *by_place[2:], *by_rate[2:]]
 
     def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return zeros, as of an open stop."""
         return np.zeros((2, 2)), np.zeros((2, 2))
-
-
-def _in_axes(
-    nx: Numbers, ny: Numbers, a: Numbers, b: Numbers, c: Numbers, d: Numbers
-) -> list[Numbers]:
-    """Return the entries of a matrix in (n1, n2) whose entries along n and t are a, b, c, d."""
-    p, q, r, s = nx * a - ny * c, nx * b - ny * d, ny * a + nx * c, ny * b + nx * d
-    return [nx * p - ny * q, ny * p + nx * q, nx * r - ny * s, ny * r + nx * s]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
 from exudyn_rotor import checks
+from exudyn_rotor.storage import read_rows
 
 _KINDS = {"k": "stiffness", "c": "damping", "d": "damping", "m": "mass"}
 _AXES = dict.fromkeys(("speed", "speeds", "rpm", "w", "omega"), "speeds")
@@ -42,6 +43,44 @@ class CoefficientTable:
     values: np.ndarray
     _last: list = field(default_factory=list, init=False, repr=False)
 
+    @classmethod
+    def of(
+        cls,
+        name: str,
+        speeds: ArrayLike | None,
+        frequencies: ArrayLike | None,
+        values: ArrayLike,
+        shapes: Sequence[tuple[int, ...]],
+    ) -> CoefficientTable:
+        """Return a table of numbers or matrices of some `shapes`, checked; `name` is for refusals.
+
+        Raises
+        ------
+        TypeError, ValueError
+        """
+        if speeds is None and frequencies is None:
+            raise ValueError(f"{name}: needs speeds, frequencies, or both [rad/s]")
+        axes = [
+            given
+            if given is None
+            else checks.ascending(given, f"{name}: {axis} of its table", "rad/s", of_table=True)
+            for given, axis in ((speeds, "the speeds"), (frequencies, "the frequencies"))
+        ]
+        if axes[1] is not None and axes[1][0] < 0.0:
+            raise ValueError(
+                f"{name}: the frequencies of its table: needs values ≥ 0 [rad/s], got "
+                f"{axes[1][0]:g}: a motion of the frequency −ω has the coefficients of ω"
+            )
+        lengths = tuple(len(axis) for axis in axes if axis is not None)
+        kept = checks.array(values, f"{name}: the values of its table")
+        if kept.shape[: len(lengths)] != lengths or kept.shape[len(lengths) :] not in shapes:
+            raise ValueError(
+                f"{name}: the values of its table need {' × '.join(map(str, lengths))} matrices of "
+                f"{rows_of(shapes)} rows{' or numbers' if () in shapes else ''}, as many as "
+                f"points, got the shape {kept.shape}"
+            )
+        return cls(*axes, kept)
+
     def at(self, speed: float, frequency: float) -> float | np.ndarray:
         """Return the value at a spin speed and the frequency of a motion [rad/s]."""
         if self.frequencies is None:
@@ -59,13 +98,6 @@ class CoefficientTable:
         """Interpolation along the first axis of the values."""
         return _smooth(self.frequencies if self.speeds is None else self.speeds, self.values)
 
-    def symmetric(self) -> CoefficientTable:
-        """Return the table of the symmetric parts of its matrices."""
-        if self.values.ndim < 3:
-            return self
-        values = 0.5 * (self.values + np.swapaxes(self.values, -1, -2))
-        return replace(self, values=values)
-
     def at_frequency(self, frequency: float) -> CoefficientTable | float | np.ndarray:
         """Return what is left at one frequency [rad/s]: a table over the speed, or a value."""
         if self.frequencies is None:
@@ -73,6 +105,12 @@ class CoefficientTable:
         axis = 0 if self.speeds is None else 1
         values = _smooth(self.frequencies, np.moveaxis(self.values, axis, 0))(frequency)
         return values if self.speeds is None else CoefficientTable(self.speeds, None, values)
+
+
+def rows_of(shapes: Sequence[tuple[int, ...]]) -> str:
+    """Return how many rows matrices of some shapes have, in words."""
+    *some, last = (str(shape[0]) for shape in shapes if shape)
+    return f"{', '.join(some)} or {last}"
 
 
 def _smooth(points: np.ndarray, values: np.ndarray) -> Callable[[float], np.ndarray]:
@@ -83,66 +121,23 @@ def _smooth(points: np.ndarray, values: np.ndarray) -> Callable[[float], np.ndar
     return lambda at: curve(min(max(at, low), high))
 
 
-def coefficient_tables(
-    where: str,
-    speeds: ArrayLike | None,
-    frequencies: ArrayLike | None,
-    coefficients: Mapping[str, ArrayLike | None],
-) -> dict[str, CoefficientTable]:
-    """Return tables of coefficients with matrices of 2, 3 or 6 rows, checked, by their names.
-
-    Raises
-    ------
-    TypeError, ValueError
-    """
-    if speeds is None and frequencies is None:
-        raise ValueError(f"{where}: needs speeds, frequencies, or both [rad/s]")
-    axes = []
-    for given, name in ((speeds, "speeds"), (frequencies, "frequencies")):
-        if given is not None:
-            given = checks.ascending(given, f"{where}: {name}", "rad/s", of_table=True)
-        axes.append(given)
-    if axes[1] is not None and axes[1][0] < 0.0:
-        raise ValueError(
-            f"{where}: frequencies: needs values ≥ 0 [rad/s], got {axes[1][0]:g}: a motion of the "
-            "frequency −ω has the coefficients of ω"
-        )
-    lengths = tuple(len(axis) for axis in axes if axis is not None)
-    made, sizes = {}, {}
-    for name, given in coefficients.items():
-        if given is None:
-            continue
-        values = checks.array(given, f"{where}: {name}")
-        k = values.shape[-1] if values.ndim else 0
-        if values.shape != (*lengths, k, k) or k not in (2, 3, 6):
-            shown = " × ".join(map(str, lengths))
-            raise ValueError(
-                f"{where}: {name}: needs {shown} matrices with 2, 3 or 6 rows, the shape "
-                f"({', '.join(map(str, lengths))}, k, k), got {values.shape}"
-            )
-        made[name], sizes[name] = CoefficientTable(*axes, values), k
-    if len(set(sizes.values())) > 1:
-        shown = ", ".join(f"{name} with {k}" for name, k in sizes.items())
-        raise ValueError(f"{where}: needs matrices of one size, got {shown}")
-    return made
-
-
 def read_columns(source: str | Path | Any) -> dict[str, np.ndarray | None]:
     """Return axes and coefficients, named as for :meth:`Support.from_table`, of a table.
 
     Raises
     ------
-    TypeError, ValueError
-        For columns that are missing or unknown, values that are no numbers, and rows that do not
-        make a full grid of speeds and frequencies.
+    TypeError, ValueError, OSError
+        For columns that are missing or unknown, values that are no numbers, rows that do not make a
+        full grid of speeds and frequencies, and a file that is not there.
     """
     axes: dict[str, np.ndarray] = {}
     entries: dict[tuple[str, int, int], np.ndarray] = {}
     for header, values in _columns(source).items():
-        name, unit = _name_and_unit(header)
+        name, _, unit = header.replace("[", "(").partition("(")
+        name = re.sub(r"[\s_]", "", name).lower()
         entry = re.fullmatch(f"([{''.join(_KINDS)}])([{_LETTERS}])([{_LETTERS}])", name)
         if name in _AXES:
-            unit = unit or ("rpm" if name == "rpm" else "rad/s")
+            unit = unit.strip(" )]").lower() or ("rpm" if name == "rpm" else "rad/s")
             if unit not in _TO_RADIANS:
                 raise ValueError(f"source: {header!r}: needs rad/s, rpm or Hz, got {unit!r}")
             axes[_AXES[name]] = values * _TO_RADIANS[unit]
@@ -177,17 +172,15 @@ def read_columns(source: str | Path | Any) -> dict[str, np.ndarray | None]:
 def _columns(source: str | Path | Any) -> dict[str, np.ndarray]:
     """Return the columns of a file of text, or of a DataFrame or mapping, by their headers."""
     if isinstance(source, str | os.PathLike):
-        lines = Path(source).read_text(encoding="utf-8-sig").splitlines()
-        lines = [line.strip() for line in lines if line.strip() and not line.startswith("#")]
-        split = next((c for c in ",;\t" if lines and c in lines[0]), None)
-        rows = [[each.strip() for each in line.split(split)] for line in lines]
-        uneven = [i for i, row in enumerate(rows) if len(row) != len(rows[0])]
-        if uneven:
-            raise ValueError(
-                f"source: line {uneven[0] + 1} of {str(source)!r} needs {len(rows[0])} values, "
-                f"got {len(rows[uneven[0]])}"
-            )
-        source = dict(zip(rows[0], zip(*rows[1:], strict=True), strict=False)) if rows else {}
+        rows = read_rows(source, "source")
+        for number, words in rows:
+            if len(words) != len(rows[0][1]):
+                raise ValueError(
+                    f"source: line {number} of {str(source)!r} needs {len(rows[0][1])} values, got "
+                    f"{len(words)}"
+                )
+        columns = zip(*(words for _, words in rows), strict=True)
+        source = {name: values for name, *values in columns}
     elif not hasattr(source, "items"):
         raise TypeError(
             f"source: needs a path, a DataFrame or a mapping, got {checks.shown(source)}"
@@ -201,9 +194,3 @@ def _columns(source: str | Path | Any) -> dict[str, np.ndarray]:
         if not np.all(np.isfinite(columns[str(name)])):
             raise ValueError(f"source: {str(name)!r}: needs finite numbers in every row")
     return columns
-
-
-def _name_and_unit(header: str) -> tuple[str, str]:
-    """Return a header without its unit in brackets, both in lower case."""
-    name, _, unit = header.replace("[", "(").partition("(")
-    return re.sub(r"[\s_]", "", name).lower(), unit.strip(" )]").lower()

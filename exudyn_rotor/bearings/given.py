@@ -7,7 +7,7 @@ from typing import get_args
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing
-from exudyn_rotor.bearings.controlled_support import Controlled
+from exudyn_rotor.bearings.controlled_support import ControlledSupport
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.series import FloatingRingBearing, SeriesSupport
 from exudyn_rotor.bearings.support import Support, acts
@@ -15,31 +15,13 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedInterface
 from exudyn_rotor.solid.rotor import Interface
 
 Given = Support | Bearing | MagneticBearing | SeriesSupport | FloatingRingBearing
+Controlled = ControlledSupport | SeriesSupport
 _TILTING = ("tilt_stiffness", "tilt_damping")
 
 
 def given_supports(supports: Sequence[Given] | Given) -> tuple[Given, ...]:
     """Return supports and bearings as a tuple; TypeError for anything else."""
     return checks.instances(supports, "supports", get_args(Given))
-
-
-def checked_supports(supports: Sequence[Given] | Given) -> tuple[Support, ...]:
-    """Return supports for linear analyses as a tuple, bearings linearised under their loads.
-
-    Raises
-    ------
-    TypeError, ValueError
-        For anything else, a bearing without a load, and one with states of its own.
-    """
-    linear, controlled = linear_supports(supports)
-    if controlled:
-        raise ValueError(
-            f"supports: the bearing at {controlled[0].interface!r}, magnetic, of pads with "
-            "inertia, in series or with a film that conserves mass, has states of its own, which "
-            "this analysis does not take; give a Support with its stiffness and damping, pads "
-            "without pad_inertia, or a film with 'reynolds'"
-        )
-    return linear
 
 
 def linear_supports(

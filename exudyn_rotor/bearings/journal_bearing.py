@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import hypot
 
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, by_tangent, differenced
-from exudyn_rotor.bearings.film.equilibria import Equilibria
+from exudyn_rotor.bearings.bearing import Bearing, Equilibria
 from exudyn_rotor.bearings.film.film import FilmState, OilFilm
-
-_STEP = 1e-4  # of the clearance: of the tangent by which a film too thin goes on
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -61,8 +57,12 @@ class JournalBearing(Bearing):
         super().__post_init__()
         checks.instance(self.film, "film", OilFilm)
 
-    def _reach(self, direction: np.ndarray) -> float:
-        return self.film.reach_along(direction, self.film.thinnest)
+    def film_edge(self, x: float, y: float) -> float:
+        """Return how far the grid resolves a film on the way to a place, or less [m]."""
+        distance, most = hypot(x, y), self.film.clearance - self.film.thinnest
+        if distance <= most:
+            return most
+        return self.film.reach_along(np.array([x, y]) / distance, self.film.thinnest)
 
     def clearance_along(self, direction: np.ndarray | None = None) -> float:
         """Return how far that way, of length 1 (2,), or at least, the journal may go [m]."""
@@ -74,61 +74,24 @@ class JournalBearing(Bearing):
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
         """Return the force on the journal [N]; a film too thin for the grid goes on straight."""
-        return self._told(lambda film: tuple(film.force.tolist()), x, y, vx, vy, speed)
+        if hypot(x, y) > self.film_edge(x, y):
+            return self._beyond(x, y, vx, vy, angle, speed)
+        return tuple(self._film_at(x, y, vx, vy, speed).force.tolist())
 
     def law_with_torque(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float, float]:
         """As :meth:`law`, with the torque on the journal [N m]; see :attr:`FilmState.torque`."""
-        return self._told(lambda film: (*film.force.tolist(), -film.torque), x, y, vx, vy, speed)
+        force = self.law(x, y, vx, vy, angle, speed)
+        return *force, -self._film_at(*self._inside(x, y), vx, vy, speed).torque
 
     def slopes(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
-        if hypot(x, y) <= self._edge(x, y):
-            return self._film_at(x, y, vx, vy, speed).tangent
-        size = self.film.clearance
-        rate = max(size * abs(speed), hypot(vx, vy))
-        steps = _STEP * np.array([size, size, rate, rate])
-        found = differenced(self.law, np.array([x, y, vx, vy]), steps, angle, speed)
-        return found[:, :2], found[:, 2:]
-
-    def law_along(
-        self, motion: np.ndarray, angles: np.ndarray, speed: float
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Return forces (t, 2) and less their derivatives (t, 2, 4); see :class:`Bearing`."""
-        forces, slopes = [], []
-        for state in motion.tolist():
-            forces.append(self.law(*state, 0.0, speed))
-            slopes.append(np.hstack(self.slopes(*state, 0.0, speed)))
-        return np.array(forces), np.array(slopes)
-
-    def _told(
-        self,
-        told: Callable[[FilmState], tuple[float, ...]],
-        x: float,
-        y: float,
-        vx: float,
-        vy: float,
-        speed: float,
-    ) -> tuple[float, ...]:
-        """Return what a film tells; beyond what the grid resolves by the tangent there."""
-
-        def at(a: float, b: float) -> tuple[float, ...]:
-            return told(self._film_at(a, b, vx, vy, speed))
-
-        edge = self._edge(x, y)
-        if hypot(x, y) <= edge:
-            return at(x, y)
-        return by_tangent(at, x, y, edge, _STEP * self.film.clearance)
-
-    def _edge(self, x: float, y: float) -> float:
-        """Return how far the journal may go on its way out, the film resolved [m]."""
-        distance, most = hypot(x, y), self.film.clearance - self.film.thinnest
-        if distance <= most:
-            return most
-        return self.film.reach_along(np.array([x, y]) / distance, self.film.thinnest)
+        if hypot(x, y) > self.film_edge(x, y):
+            return super().slopes(x, y, vx, vy, angle, speed)
+        return self._film_at(x, y, vx, vy, speed).coefficients()
 
     def _film_at(self, x: float, y: float, vx: float, vy: float, speed: float) -> FilmState:
         """Return the film; that of the last call, where it is the same."""

@@ -1,10 +1,10 @@
 """Active magnetic bearing: actuators and controllers of two axes across the rotor.
 
 The control axes are n1 and n2 turned by an angle. On each, the sensor measures the displacement of
-its interface, plus an offset; the controller (:mod:`exudyn_rotor.bearings.pid_controller`) makes a
+its interface; the controller (:mod:`exudyn_rotor.bearings.pid_controller`) makes a
 current of it, the actuator (:mod:`exudyn_rotor.bearings.actuator`) a force,
 
-    y = u_sensor + offset,   i = −C(s) y,   F = F(i, u_actuator).                          (1)
+    y = u_sensor,   i = −C(s) y,   F = F(i, u_actuator).                                   (1)
 
 With its sensors at another interface than its magnets (non-collocation) the controller may drive
 bending modes unstable whose node is between the two.
@@ -17,7 +17,6 @@ from math import cos, inf, sin
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.actuator import Actuator, SaturatingActuator
@@ -45,8 +44,6 @@ class MagneticBearing(LoadedBearing):
         From n1 to the first control axis [rad].
     sensor : str, optional
         Interface whose displacement is measured; where the magnets act by default.
-    sensor_offset : array_like, shape (2,), optional
-        What sensors show along (n1, n2) of a rotor in the centre [m].
     load : array_like, shape (2,), optional
         Static load on the rotor along (n1, n2) [N], in whose equilibrium linear analyses take the
         actuators; none by default. It makes a difference to saturating actuators only.
@@ -78,7 +75,6 @@ class MagneticBearing(LoadedBearing):
     controller: PIDController
     angle: float = 0.0
     sensor: str | None = None
-    sensor_offset: ArrayLike = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -87,8 +83,6 @@ class MagneticBearing(LoadedBearing):
         checks.keep_numbers(self, {"angle": "rad"})
         if self.sensor is not None:
             checks.label(self.sensor, "sensor")
-        offset = checks.read_only(checks.vector(self.sensor_offset, "sensor_offset", "m", size=2))
-        object.__setattr__(self, "sensor_offset", offset)
 
     @property
     def sensor_interface(self) -> str:
@@ -118,43 +112,48 @@ class MagneticBearing(LoadedBearing):
     def _rest(self, speed: float, load: np.ndarray) -> np.ndarray:
         """Return where the journal rests [m], as if the sensors were where the magnets are.
 
-        An integral brings it to where the sensors show zero.
+        An integral brings it to the centre.
         """
         return self.control_axes.T @ [place for place, _ in self._states(load)]
 
     def _states(self, load: np.ndarray) -> list[tuple[float, float]]:
         """Return place [m] and current [A] of each control axis in the equilibrium."""
         axes, gain, actuator = self.control_axes, self.controller.proportional, self.actuator
-        actuator._check_hold(gain)
-        pairs = zip(axes @ load, axes @ self.sensor_offset, strict=True)
+        held, pulled = actuator.force_current * gain, actuator.negative_stiffness
+        if held <= pulled:
+            raise ValueError(
+                f"controller: unstable: K_i P of {held:.4g} N/m is not above the negative "
+                f"stiffness K_s of {pulled:.4g} N/m, so that there is no equilibrium; give a "
+                "larger proportional gain"
+            )
         if self.controller.integral:
-            return [(-offset, actuator._current_for(-pull, -offset)) for pull, offset in pairs]
-        pairs = [(actuator._place_under(pull, gain, offset), offset) for pull, offset in pairs]
-        return [(place, -gain * (place + offset)) for place, offset in pairs]
+            return [(0.0, actuator._current_for(-pull)) for pull in axes @ load]
+        places = [actuator._place_under(pull, gain) for pull in axes @ load]
+        return [(place, -gain * place) for place in places]
 
     def linearised(self) -> ControlledSupport:
         """Return the equations for linear analyses, about the equilibrium under the load.
 
-        Without load and offset about the centre, also where a controller does not hold there.
+        Without load about the centre, also where a controller does not hold there.
 
         Raises
         ------
         ValueError
             As :meth:`equilibrium`.
         """
-        states = [(0.0, 0.0)] * 2
         load = self._static_load(None)
-        if np.any(load) or np.any(self.sensor_offset):
-            states = self._states(load)
+        states = self._states(load) if np.any(load) else [(0.0, 0.0)] * 2
         slopes = np.array([self.actuator.slopes(i, x) for x, i in states])
         damping, stiffness = self.coupling(slopes)
         own, both = self.controller.realisation(), np.eye(2)
+        masses = np.repeat(self.scale * own.inertia, 2)
         damping[4:, 4:] = self.scale * np.kron(own.damping, both)
         stiffness[4:, 4:] = self.scale * np.kron(own.stiffness, both)
         by_current = self.control_axes.T @ (slopes[:, 0, None] * self.control_axes)
         static = self.controller.proportional * by_current + stiffness[:2, :2]
-        sensor, inertia = self.sensor_interface, self.scale * own.inertia
-        return ControlledSupport(self.interface, sensor, inertia, damping, stiffness, static)
+        return ControlledSupport(
+            self.interface, masses, lambda _: (stiffness, damping), static, self.sensor_interface
+        )
 
     def coupling(self, slopes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return damping and stiffness between the ports of :class:`ControlledSupport`.

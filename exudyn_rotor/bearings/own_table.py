@@ -14,12 +14,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.controlled_support import Controlled, PadSupport
+from exudyn_rotor.bearings.controlled_support import ControlledSupport
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.calls import user_level
 
 
-def table_of(linear: Support | Controlled, speeds: ArrayLike, frequencies: ArrayLike) -> Support:
+def table_of(
+    linear: Support | ControlledSupport, speeds: ArrayLike, frequencies: ArrayLike
+) -> Support:
     """Return linear equations of a bearing as tables, see :meth:`LoadedBearing.table`."""
     speeds = checks.ascending(speeds, "speeds", "rad/s")
     frequencies = checks.ascending(frequencies, "frequencies", "rad/s")
@@ -28,7 +30,7 @@ def table_of(linear: Support | Controlled, speeds: ArrayLike, frequencies: Array
             f"frequencies: needs values above zero [rad/s], got {frequencies[0]:g}; supports keep "
             "the value at the lowest below it"
         )
-    if getattr(linear, "sensor", linear.interface) != linear.interface:
+    if getattr(linear, "sensor", None) not in (None, linear.interface):
         raise ValueError(
             f"bearing at {linear.interface!r}: measures at {linear.sensor!r}, and a table has one "
             "place; give the bearing itself"
@@ -56,7 +58,7 @@ def table_of(linear: Support | Controlled, speeds: ArrayLike, frequencies: Array
 
 
 def _at_speed(
-    linear: Support | Controlled, speed: float, frequencies: np.ndarray
+    linear: Support | ControlledSupport, speed: float, frequencies: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return stiffness, damping and mass at one speed, each (f, 2, 2)."""
     nu, none = frequencies[:, None, None], np.zeros((len(frequencies), 2, 2))
@@ -64,12 +66,9 @@ def _at_speed(
         linear.check_range(speed)
         parts = *linear.matrices(speed), linear.mass_matrix(speed)
         return tuple(none + X[:2, :2] for X in parts)
-    if isinstance(linear, PadSupport):
-        (K, D), seen = linear.matrices(speed), np.eye(3, 2)
-    else:
-        K, D = linear.stiffness, linear.damping
-        seen = np.kron([[1.0], [1.0]], np.eye(2))  # sensors move as the magnets do
-    first, whole = len(seen), K + 1j * nu * D
+    K, D = linear.matrices(speed)
+    first, whole = len(K) - linear.size, K + 1j * nu * D
+    seen = np.tile(np.eye(2), (first // 2, 1))  # sensors move as the magnets do
     own = whole[:, first:, first:] - nu**2 * np.diag(linear.masses)
     inner = np.linalg.solve(own, whole[:, first:, :first] @ seen)
     Z = seen.T @ (whole[:, :first, :first] @ seen - whole[:, :first, first:] @ inner)

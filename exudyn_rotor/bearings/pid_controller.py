@@ -29,7 +29,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 
@@ -83,8 +82,8 @@ class PIDController:
     >>> controller = PIDController(
     ...     proportional=2e4, derivative=20.0, filter_frequency=2e4, amplifier_frequency=1e4
     ... )
-    >>> print(controller.transfer([0.0, 1000.0]).round())
-    [20000.    +0.j 22988.+16237.j]
+    >>> print(controller.realisation().inertia)
+    [2.5e-09 5.0e-09]
     """
 
     proportional: float
@@ -103,33 +102,6 @@ class PIDController:
             checks.number(getattr(self, name), name, unit, above=0.0)
         for name, unit in (("integral", "A/(m s)"), ("derivative", "A s/m"), ("delay", "s")):
             checks.number(getattr(self, name), name, unit, least=0.0)
-
-    def transfer(self, frequencies: ArrayLike) -> np.ndarray:
-        """Return current per place (1) [A/m], with the delay as it is.
-
-        Parameters
-        ----------
-        frequencies : array_like, shape (f,)
-            [rad/s]; above zero where there is an integral.
-
-        Returns
-        -------
-        ndarray of complex, shape (f,)
-
-        Raises
-        ------
-        TypeError, ValueError
-        """
-        values = checks.vector(frequencies, "frequencies", "rad/s", size=None)
-        if self.integral and np.any(values == 0.0):
-            raise ValueError("frequencies: needs values other than 0: the integral is unbounded")
-        s = 1j * values
-        gain = self.proportional + self.derivative * s
-        if self.integral:
-            gain = gain + self.integral / s
-        relative = s / self.filter_frequency
-        filtered = 1.0 + _BUTTERWORTH * relative + relative**2
-        return gain * np.exp(-self.delay * s) / (filtered * (1.0 + s / self.amplifier_frequency))
 
     def realisation(self) -> Realisation:
         """Return equations (3) and (4) or (5), after (2) where there is a delay."""

@@ -23,6 +23,7 @@ from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.short_journal import ShortJournalBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 
+_NONE = np.zeros((2, 2))
 _FILMS = JournalBearing | ShortJournalBearing | TiltingPadBearing
 
 
@@ -54,14 +55,12 @@ Nonlinear = Bearing | MagneticBearing | RigidBearing
 
 def held() -> Resting:
     """Return the equation of a journal that is held in the centre."""
-    none = np.zeros((2, 2))
-    return Resting(np.eye(2), none, none, np.zeros(2), is_rigid=True)
+    return Resting(np.eye(2), _NONE, _NONE, np.zeros(2), is_rigid=True)
 
 
 def unloaded() -> Resting:
     """Return the equation of a journal on which no force acts."""
-    none = np.zeros((2, 2))
-    return Resting(none, none, np.eye(2), np.zeros(2))
+    return Resting(_NONE, _NONE, np.eye(2), np.zeros(2))
 
 
 def starting_place(bearing: Nonlinear, speed: float, force: np.ndarray) -> np.ndarray:
@@ -78,53 +77,34 @@ def resting(
     sensed: np.ndarray,
     force: np.ndarray,
 ) -> Resting:
-    """Return the equation of a bearing beside a state.
+    """Return the equation of a bearing beside places of journal and sensor, and a force on it.
 
-    Parameters
-    ----------
-    bearing : Bearing, MagneticBearing or RigidBearing
-    speed : float
-        Spin speed [rad/s].
-    place, sensed : ndarray, shape (2,)
-        Of the journal and of a magnetic bearing's sensor along (n1, n2) [m].
-    force : ndarray, shape (2,)
-        On the journal [N].
-
-    Raises
-    ------
-    ValueError, ArithmeticError
-        Where a film has no equilibrium under this force.
+    A ValueError or ArithmeticError says that a film has no equilibrium under this force.
     """
     if isinstance(bearing, RigidBearing):
         return held()
     if isinstance(bearing, MagneticBearing):
         return _of_magnets(bearing, place, sensed)
     if isinstance(bearing, _FILMS):
-        compliance = np.linalg.inv(_film_stiffness(bearing, speed, -force))
+        stiffness = bearing.coefficients(speed, -force)[0]
+        if isinstance(bearing, TiltingPadBearing):  # against slow changes of its load
+            stiffness = bearing._state(speed, -force).impedance(0.0).real
+        compliance = np.linalg.inv(stiffness)
         rest = bearing.equilibrium(speed, -force)
-        return Resting(np.eye(2), np.zeros((2, 2)), compliance, rest + compliance @ force)
+        return Resting(np.eye(2), _NONE, compliance, rest + compliance @ force)
     still = 0.0, 0.0, 0.0, speed
     at = np.array(bearing.law(*place, *still))
     tangent = bearing.slopes(*place, *still)[0]
-    return Resting(tangent, np.zeros((2, 2)), np.eye(2), at + tangent @ place)
-
-
-def _film_stiffness(bearing: Bearing, speed: float, load: np.ndarray) -> np.ndarray:
-    """Return the stiffness (2, 2) of a film against slow changes of its load [N/m]."""
-    if isinstance(bearing, TiltingPadBearing):
-        return bearing._state(speed, load).impedance(0.0).real
-    return bearing.coefficients(speed, load)[0]
+    return Resting(tangent, _NONE, np.eye(2), at + tangent @ place)
 
 
 def _of_magnets(bearing: MagneticBearing, place: np.ndarray, sensed: np.ndarray) -> Resting:
     """Return the equation of magnets; an integral brings what the sensors show to zero."""
-    none = np.zeros((2, 2))
-    offset = np.asarray(bearing.sensor_offset)
     if bearing.controller.integral:
-        return Resting(none, np.eye(2), none, -offset)
+        return Resting(_NONE, np.eye(2), _NONE, np.zeros(2))
     axes, gain = bearing.control_axes, bearing.controller.proportional
-    at = list(zip(-gain * (axes @ (sensed + offset)), axes @ place, strict=True))
-    force = axes.T @ [bearing.actuator.force(*one) for one in at]
+    at = list(zip(-gain * (axes @ sensed), axes @ place, strict=True))
+    force = axes.T @ [bearing.actuator.law(*one) for one in at]
     by_current, by_place = np.array([bearing.actuator.slopes(*one) for one in at]).T
     A, A_s = -axes.T @ np.diag(by_place) @ axes, axes.T @ np.diag(gain * by_current) @ axes
     return Resting(A, A_s, np.eye(2), force + A @ place + A_s @ sensed)

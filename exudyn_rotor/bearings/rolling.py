@@ -26,7 +26,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import cos, hypot, pi, sin
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -92,8 +91,6 @@ class RollingBearing(Bearing):
     [ 0.00e+00 -1.74e-05]
     """
 
-    uses_angle: ClassVar[bool] = True
-
     count: int
     pitch_radius: float
     element_radius: float
@@ -137,35 +134,22 @@ class RollingBearing(Bearing):
         """
         return self.count * self.cage_ratio * checks.number(speed, "speed", "rad/s")
 
-    def element_loads(self, displacement: ArrayLike, angle: float = 0.0) -> np.ndarray:
-        """Return the loads (2) of the elements [N], shape (Z,).
-
-        Parameters
-        ----------
-        displacement : array_like, shape (2,)
-            Of the inner ring [m].
-        angle : float, optional
-            Spin angle θ [rad].
-        """
-        place = checks.vector(displacement, "displacement", "m", size=2)
-        return contacts(self, place, checks.number(angle, "angle", "rad"))[0]
-
-    def law(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[float, float]:
-        """Return the force on the inner ring [N]."""
-        return self.law_with_torque(x, y, vx, vy, angle, speed)[:2]
-
     def law_with_torque(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float, float]:
-        """As :meth:`law`, with the torque (3) on the inner ring [N m]."""
+        """Return the force on the inner ring [N], and the torque (3) [N m]."""
         angles = 2.0 * pi / self.count * np.arange(self.count) + self.cage_ratio * angle
         c, s = np.cos(angles), np.sin(angles)
         depth = np.maximum(x * c + y * s - self.clearance, 0.0)
         loads, d = self.stiffness * depth ** _EXPONENTS[self.elements], self.damping
         px, py = float(loads @ c), float(loads @ s)
         return -px - d * vx, -py - d * vy, self.cage_ratio * (x * py - y * px)
+
+    def slopes(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
+        return contacts(self, np.array([x, y]), angle)[2], self.damping * np.eye(2)
 
     def law_along(
         self, motion: np.ndarray, angles: np.ndarray, speed: float
@@ -249,34 +233,17 @@ def _mean_stiffness(bearing: RollingBearing, *load: float) -> np.ndarray:
 
 
 def contacts(
-    bearing: RollingBearing, places: np.ndarray, angles: ArrayLike, least: float = 0.0
+    bearing: RollingBearing, places: np.ndarray, angles: ArrayLike
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return loads of the elements, force on the inner ring, and stiffness, without damping.
+    """Return loads (…, Z) of the elements, force (…, 2) and stiffness (…, 2, 2) without damping.
 
-    Parameters
-    ----------
-    bearing : RollingBearing
-    places : ndarray, shape (…, 2)
-        Of the inner ring [m].
-    angles : array_like, shape (…)
-        Spin angles θ [rad].
-    least : float
-        Depth up to which an element carries nothing [m].
-
-    Returns
-    -------
-    loads : ndarray, shape (…, Z)
-        (2) [N]
-    force : ndarray, shape (…, 2)
-        [N]
-    stiffness : ndarray, shape (…, 2, 2)
-        Less the force's derivative by the place [N/m].
+    Of the inner ring at places (…, 2) and spin angles (…); stiffness is less the force's
+    derivative.
     """
     turn = bearing.cage_ratio * np.asarray(angles)[..., None]
     turned = 2.0 * pi / bearing.count * np.arange(bearing.count) + turn
     n, exponent = np.stack([np.cos(turned), np.sin(turned)], -1), _EXPONENTS[bearing.elements]
-    depth = (n @ places[..., None])[..., 0] - bearing.clearance
-    depth = np.where(depth > least, depth, 0.0)
+    depth = np.maximum((n @ places[..., None])[..., 0] - bearing.clearance, 0.0)
     loads = bearing.stiffness * depth**exponent
     slopes = exponent * bearing.stiffness * depth ** (exponent - 1.0)
     across = np.swapaxes(n, -1, -2)

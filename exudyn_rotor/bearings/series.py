@@ -10,7 +10,9 @@ turns with Ω + Ω_r. Under no load its speed follows from the shear of both fil
     Ω_r/Ω = 1/(1 + (μ_o R_o³ L_o c_i)/(μ_i R_i³ L_i c_o)),                                 (2)
 
 and under a load from the torques on it with the eccentricities ε of both films, by (3) of
-:mod:`exudyn_rotor.bearings.short_journal`, the moments of the pressure included.
+:mod:`exudyn_rotor.bearings.short_journal`, the moments of the pressure included. (2) is that of
+M. C. Shaw, T. J. Nussdorfer, *An analysis of the full-floating journal bearing*, NACA Report 866
+(1947).
 """
 
 from __future__ import annotations
@@ -71,6 +73,8 @@ class SeriesSupport:
     >>> print(round(bearing.static_stiffness(0.0)[0, 0]))
     4878049
     """
+
+    word: ClassVar[str] = "ring"  # for labels
 
     interface: str
     inner: Support | Bearing
@@ -230,6 +234,8 @@ class FloatingRingBearing:
         ------
         TypeError, ValueError
         """
+        speed = checks.number(speed, "speed", "rad/s")
+        ring_speed = checks.number(ring_speed, "ring_speed", "rad/s")
         carried, slips = (speed + ring_speed, ring_speed), (speed - ring_speed, -ring_speed)
         total = 0.0
         for film, whirl, slip in zip((self.inner, self.outer), carried, slips, strict=True):

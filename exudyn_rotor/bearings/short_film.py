@@ -38,12 +38,10 @@ from typing import ClassVar
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, by_tangent
+from exudyn_rotor.bearings.bearing import Bearing, Numbers, check_clearance, turned
 
 _REST = 1e-6  # of Ω: the rate w of a journal at rest
 THINNEST = 1.0 - 0.01  # of the clearance: beyond, a film goes on by its tangent
-_STEP = 1e-6  # of the clearance, of that tangent
-Numbers = float | np.ndarray
 
 
 def film_force(x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
@@ -87,8 +85,8 @@ def film_tangent(
         beta = 0.5 * pi + np.arctan(u / np.sqrt(1.0 - u * u - v * v))
     along, across, p, q, m, n = _integrals(u, v, beta)
     force = _in_axes([-w * (along * c - across * s), -w * (along * s + across * c)])
-    by_rate = _turned(c, s, along, p * v - q * u - across, across, m * v - n * u + along)
-    by_place = _turned(c, s, w * p, w * q, w * m, w * n)
+    by_rate = turned(c, s, along, p * v - q * u - across, across, m * v - n * u + along)
+    by_place = turned(c, s, w * p, w * q, w * m, w * n)
     if not np.all(moves):
         still = damping_at_rest(x, y)
         by_rate = [np.where(moves, one, other) for one, other in zip(by_rate, still, strict=True)]
@@ -100,12 +98,6 @@ def film_tangent(
 
 def _in_axes(numbers: list[Numbers]) -> np.ndarray:
     return np.array(numbers) if isinstance(numbers[0], float) else np.stack(numbers, axis=-1)
-
-
-def _turned(c: Numbers, s: Numbers, a: Numbers, b: Numbers, d: Numbers, e: Numbers) -> list:
-    """Return the entries of ``R [[a, b], [d, e]] Rᵀ``, R the rotation by the angle of (c, s)."""
-    a, b, d, e = c * a - s * d, c * b - s * e, s * a + c * d, s * b + c * e
-    return [c * a - s * b, s * a + c * b, c * d - s * e, s * d + c * e]
 
 
 def damping_at_rest(x: Numbers, y: Numbers) -> list[Numbers]:
@@ -139,17 +131,7 @@ def _integrals(u: Numbers, v: Numbers, beta: Numbers) -> tuple[Numbers, ...]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ShortFilmBearing(Bearing):
-    """A bearing that has a short film around its journal.
-
-    Attributes
-    ----------
-    radius, length : float
-        Of the film [m].
-    clearance : float
-        Radial clearance [m].
-    viscosity : float
-        Dynamic viscosity of the oil [Pa s].
-    """
+    """A bearing that has a short film around its journal."""
 
     _turns: ClassVar[bool] = True  # whether the film turns with the journal
     centring_stiffness: ClassVar[float] = 0.0
@@ -163,18 +145,15 @@ class ShortFilmBearing(Bearing):
         super().__post_init__()
         units = {"radius": "m", "length": "m", "clearance": "m", "viscosity": "Pa s"}
         checks.keep_numbers(self, units, above=0.0)
-        if self.clearance >= self.radius:
-            raise ValueError(
-                "clearance: needs the radial clearance, far below the radius of "
-                f"{self.radius:g} m, got {self.clearance:g} m"
-            )
+        check_clearance(self.clearance, self.radius)
 
     @property
     def _size(self) -> float:
         """``μ R L³/c²`` [N s], before rates that are relative to the clearance."""
         return self.viscosity * self.radius * self.length**3 / self.clearance**2
 
-    def _reach(self, direction: np.ndarray) -> float:
+    def film_edge(self, x: float, y: float) -> float:
+        """Return where a film is as thin as c/100 [m]."""
         return THINNEST * self.clearance
 
     def clearance_along(self, direction: np.ndarray | None = None) -> float:
@@ -185,45 +164,33 @@ class ShortFilmBearing(Bearing):
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
         """Return the force on the journal [N]; a film thinner than c/100 goes on by its tangent."""
-        size, k, whirl = self._size, self.centring_stiffness, speed if self._turns else 0.0
-        c = self.clearance
-        a, b, va, vb = x / c, y / c, vx / c, vy / c
-        if hypot(a, b) <= THINNEST:
-            fx, fy = film_force(a, b, va, vb, whirl)
-        else:
-            fx, fy = by_tangent(lambda a, b: film_force(a, b, va, vb, whirl), a, b, THINNEST, _STEP)
+        size, k, c = self._size, self.centring_stiffness, self.clearance
+        if hypot(x, y) > THINNEST * c:
+            return self._beyond(x, y, vx, vy, angle, speed)
+        fx, fy = film_force(x / c, y / c, vx / c, vy / c, speed if self._turns else 0.0)
         return size * fx - k * x, size * fy - k * y
 
     def slopes(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
-        c = self.clearance
+        c, whirl = self.clearance, speed if self._turns else 0.0
         if hypot(x, y) > THINNEST * c:
             return super().slopes(x, y, vx, vy, angle, speed)
-        whirl = speed if self._turns else 0.0
         found = film_tangent(x / c, y / c, vx / c, vy / c, whirl, _REST * abs(speed))[1]
         found *= self._size / c
-        found[0, 0] += self.centring_stiffness
-        found[1, 1] += self.centring_stiffness
+        found[[0, 1], [0, 1]] += self.centring_stiffness
         return found[:, :2], found[:, 2:]
 
     def law_along(
         self, motion: np.ndarray, angles: np.ndarray, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return forces (t, 2) and less their derivatives (t, 2, 4); see :class:`Bearing`."""
-        relative = motion / self.clearance
-        inside = np.hypot(*relative[:, :2].T) <= THINNEST
+        inside = np.hypot(*motion[:, :2].T) <= THINNEST * self.clearance
+        if not inside.all():
+            return super().law_along(motion, angles, speed)
         whirl = speed if self._turns else 0.0
-        force, slopes = film_tangent(*relative[inside].T, whirl, _REST * abs(speed))
-        force, slopes = self._size * force, self._size / self.clearance * slopes
-        force -= self.centring_stiffness * motion[inside, :2]
+        force, slopes = film_tangent(*(motion / self.clearance).T, whirl, _REST * abs(speed))
+        slopes = self._size / self.clearance * slopes
         slopes[:, :, :2] += self.centring_stiffness * np.eye(2)
-        if inside.all():
-            return force, slopes
-        forces, tangents = np.empty((len(motion), 2)), np.empty((len(motion), 2, 4))
-        forces[inside], tangents[inside] = force, slopes
-        forces[~inside], tangents[~inside] = super().law_along(
-            motion[~inside], angles[~inside], speed
-        )
-        return forces, tangents
+        return self._size * force - self.centring_stiffness * motion[:, :2], slopes

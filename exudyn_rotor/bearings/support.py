@@ -5,23 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.coefficient_table import (
-    CoefficientTable,
-    coefficient_tables,
-    read_columns,
-)
+from exudyn_rotor.bearings.coefficient_table import CoefficientTable, read_columns, rows_of
 from exudyn_rotor.theory.rotating_axes import FRAMES
 
 COEFFICIENTS = ("stiffness", "damping", "tilt_stiffness", "tilt_damping")
 _GIVEN = (*COEFFICIENTS, "mass")
 _SHAPES = ((), (2, 2), (3, 3))
-_WHOLE = (6, 6)  # of displacement and rotation
+_WITH_TILTS = (*_SHAPES, (6, 6))  # of displacement and rotation
 _ROUNDING = 1e-6  # of the largest speed of a table: differences by the speed leave its end
 SpeedTable = tuple[ArrayLike, ArrayLike]
 Coefficient = float | ArrayLike | SpeedTable | CoefficientTable | Callable[[float], ArrayLike]
@@ -89,13 +85,14 @@ class Support:
     frame: str = "inertial"
     extrapolate: bool = False
     mass: Coefficient = 0.0
+    _symmetric: ClassVar[bool] = False  # whether skew parts are left out
 
     def __post_init__(self) -> None:
         checks.label(self.interface, "interface")
         checks.flag(self.extrapolate, "extrapolate")
         checks.choice(self.frame, "frame", FRAMES)
         for name in _GIVEN:
-            shapes = _SHAPES if name.startswith("tilt") else (*_SHAPES, _WHOLE)
+            shapes = _SHAPES if name.startswith("tilt") else _WITH_TILTS
             value = _kept(getattr(self, name), f"support at {self.interface!r}: {name}", shapes)
             object.__setattr__(self, name, value)
         if self.frame == "rotor" and (acts(self.mass) or self.over_frequency):
@@ -155,9 +152,14 @@ class Support:
         array([[20000000.,  1000000.],
                [-1000000., 20000000.]])
         """
-        checks.label(interface, "interface")
-        given = {"stiffness": stiffness, "damping": damping, "mass": mass}
-        tables = coefficient_tables(f"support at {interface!r}", speeds, frequencies, given)
+        where = f"support at {checks.label(interface, 'interface')!r}"
+        tables = {
+            name: CoefficientTable.of(
+                f"{where}: {name}", speeds, frequencies, values, _WITH_TILTS[1:]
+            )
+            for name, values in (("stiffness", stiffness), ("damping", damping), ("mass", mass))
+            if values is not None
+        }
         return cls(interface, **tables, extrapolate=extrapolate)
 
     @classmethod
@@ -183,9 +185,9 @@ class Support:
 
         Raises
         ------
-        TypeError, ValueError
-            For unknown headers and units, what is no number, and rows that do not make a grid of
-            speeds and frequencies.
+        TypeError, ValueError, OSError
+            For unknown headers and units, what is no number, rows that do not make a grid of
+            speeds and frequencies, and a file that is not there.
 
         Examples
         --------
@@ -216,18 +218,12 @@ class Support:
         beyond its end. The frequency is the size of the spin speed by default.
         """
         pair = _pair(speed, frequency)
-        # the last pair with its matrices as one object, as threads share supports
-        at, found = self.__dict__.get("_found", (None, None))
-        if found is None or (at != pair and self.varies):
-            found = self._matrices(*pair)
-            object.__setattr__(self, "_found", (pair, found))
-        return found[0].copy(), found[1].copy()
-
-    def _matrices(self, *pair: float) -> tuple[np.ndarray, np.ndarray]:
-        stiffness, damping = (self._matrix(name, *pair) for name in ("stiffness", "damping"))
-        stiffness[3:, 3:] += self._matrix("tilt_stiffness", *pair)[:3, :3]
-        damping[3:, 3:] += self._matrix("tilt_damping", *pair)[:3, :3]
-        return stiffness, damping
+        found = []
+        for name, tilts in (("stiffness", "tilt_stiffness"), ("damping", "tilt_damping")):
+            found.append(self._matrix(name, *pair))
+            if acts(getattr(self, tilts)):
+                found[-1][3:, 3:] += self._matrix(tilts, *pair)[:3, :3]
+        return found[0], found[1]
 
     def mass_matrix(self, speed: float, frequency: float | None = None) -> np.ndarray:
         """Return the mass that goes with the interface, (6, 6), as :meth:`matrices` does."""
@@ -235,9 +231,9 @@ class Support:
 
     def undamped(self) -> Support:
         """Return the support without damping and without the skew part of its stiffness."""
-        names = "stiffness", "tilt_stiffness", "mass"
-        parts = {name: _symmetric(getattr(self, name)) for name in names}
-        return replace(self, **parts, damping=0.0, tilt_damping=0.0)
+        made = replace(self, damping=0.0, tilt_damping=0.0)
+        checks.keep(made, _symmetric=True)
+        return made
 
     @property
     def stiffness_varies(self) -> bool:
@@ -330,7 +326,9 @@ class Support:
             value = _coefficient(value(speed), where, shapes=_SHAPES)
         elif isinstance(value, CoefficientTable):
             value = value.at(speed, frequency)
-        return _in_six_axes(value)
+        full, size = np.zeros((6, 6)), len(value) if np.ndim(value) else 2
+        full[:size, :size] = value if np.ndim(value) else value * np.eye(2)
+        return 0.5 * (full + full.T) if self._symmetric else full
 
 
 def _pair(speed: float, frequency: float | None) -> tuple[float, float]:
@@ -339,27 +337,6 @@ def _pair(speed: float, frequency: float | None) -> tuple[float, float]:
     if frequency is None:
         return speed, abs(speed)
     return speed, checks.number(frequency, "frequency", "rad/s")
-
-
-def _symmetric(value: Coefficient) -> Coefficient:
-    """Return a coefficient without its skew part."""
-    if not callable(value):
-        return (
-            value.symmetric() if isinstance(value, CoefficientTable) else _symmetric_matrix(value)
-        )
-
-    def part(speed: float) -> float | np.ndarray:
-        return _symmetric_matrix(np.asarray(value(speed), dtype=float))
-
-    part.check_range = getattr(value, "check_range", None)  # a bearing's
-    return part
-
-
-def _symmetric_matrix(values: float | np.ndarray) -> float | np.ndarray:
-    """Return the symmetric part of a matrix or a stack of them; numbers as they are."""
-    if np.ndim(values) < 2:
-        return values
-    return 0.5 * (values + np.swapaxes(values, -1, -2))
 
 
 def _kept(value: Coefficient, name: str, shapes: tuple) -> Coefficient:
@@ -373,18 +350,11 @@ def _kept(value: Coefficient, name: str, shapes: tuple) -> Coefficient:
             f"{name}: {checks.shown(value)} may be a matrix or a table over the speed; write a "
             "matrix as [[a, b], [c, d]] and a table as ([speed, speed], [value, value])"
         )
-    speeds = checks.ascending(value[0], f"{name}: the speeds of its table", "rad/s", of_table=True)
-    values = checks.array(value[1], f"{name}: the values of its table")
-    if values.shape[:1] != speeds.shape or values.shape[1:] not in shapes:
-        raise ValueError(
-            f"{name}: the values of its table need {len(speeds)} numbers, or matrices of "
-            f"{_rows(shapes)} rows, as many as speeds, got shape {values.shape}"
-        )
-    return CoefficientTable(speeds, None, values)
+    return CoefficientTable.of(name, value[0], None, value[1], shapes)
 
 
 def _coefficient(
-    value: ArrayLike, name: str, other: str = "", shapes: tuple = (*_SHAPES, _WHOLE)
+    value: ArrayLike, name: str, other: str = "", shapes: tuple = _WITH_TILTS
 ) -> float | np.ndarray:
     """Return a number, or a matrix as a read-only array; refusals name what `other` there is."""
     if type(value) is float:
@@ -395,24 +365,10 @@ def _coefficient(
         raise TypeError(f"{error}{other}" if isinstance(value, list) else str(error)) from None
     if array.shape not in shapes:
         raise ValueError(
-            f"{name} needs a number or a matrix of {_rows(shapes)} rows, got shape "
+            f"{name} needs a number or a matrix of {rows_of(shapes)} rows, got shape "
             f"{array.shape}{other}"
         )
     return array if array.ndim else float(array)
-
-
-def _rows(shapes: tuple) -> str:
-    return "2, 3 or 6" if _WHOLE in shapes else "2 or 3"
-
-
-def _in_six_axes(value: float | np.ndarray) -> np.ndarray:
-    """Return a number or a matrix across the axis as a 6 × 6 matrix."""
-    full = np.zeros(_WHOLE)
-    if np.ndim(value) == 0:
-        full[0, 0] = full[1, 1] = value
-    else:
-        full[: len(value), : len(value)] = value
-    return full
 
 
 def _size(value: Coefficient) -> int:

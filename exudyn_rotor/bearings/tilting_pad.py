@@ -20,7 +20,6 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -28,9 +27,8 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, Linearised
-from exudyn_rotor.bearings.controlled_support import PadSupport
-from exudyn_rotor.bearings.film.equilibria import Equilibria
+from exudyn_rotor.bearings.bearing import Bearing, Equilibria, Linearised
+from exudyn_rotor.bearings.controlled_support import ControlledSupport
 from exudyn_rotor.bearings.film.film import FilmState, OilFilm
 from exudyn_rotor.bearings.film.pads import direction
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
@@ -39,7 +37,7 @@ from exudyn_rotor.calls import user_level
 
 _STARTS = (0.3, 0.6, 0.1, 0.8, 0.01, 1e-3)  # places at which a search begins, over the clearance
 _STEPS, _NARROWER = 30, 0.6  # of Newton's method, what of a film one step may close
-_LOOSE, _FIRM = 1e-9, 1e-5  # of μ Ω L (R/c)³: no stiffness of a pad; of the largest: none at all
+_LOOSE, _FIRM = 1e-9, 1e-5  # of the largest stiffness: none of a pad; none of all
 _HELD = 1e-6  # of its stiffness: what holds the tilt of a pad that carries nothing
 _STILL, _CLOSE = 1e-11, 1e-6  # of the clearance: it stops there; of the load: what may be left
 _TILTS = 26  # tried, between those at which an edge is as thin as the grid resolves
@@ -51,8 +49,9 @@ class TiltingPadBearing(Bearing):
     """Journal bearing whose pads tilt about pivots.
 
     With `pad_inertia` the pads' tilts are coordinates, in scenes and in linear analyses. Without it
-    linear analyses have stiffness and damping at the whirl's frequency, the tilts eliminated, and
-    scenes, in which a tilt has a history, take :meth:`linearised`, about the middle of the bearing.
+    linear analyses have stiffness and damping of whirl at the spin speed, as by unbalance, the
+    tilts eliminated, and scenes, in which a tilt has a history, take :meth:`linearised`, about the
+    middle of the bearing.
 
     Parameters
     ----------
@@ -62,9 +61,6 @@ class TiltingPadBearing(Bearing):
         With the pads as they are without tilt, the directions n1 and n2 of the rotor at rest.
     pivot : float, optional
         Place of the pivots over the arc of a pad, from its start; 0.5 is the middle.
-    whirl_ratio : float, optional
-        Frequency of the whirl over the spin speed, 1 for unbalance: of pads without inertia, and in
-        critical speeds.
     pad_inertia : float, optional
         Of each pad about its pivot, along the axis [kg m²]. Light pads follow the journal at once:
         the smaller it is, the less it matters.
@@ -95,15 +91,13 @@ class TiltingPadBearing(Bearing):
 
     film: OilFilm
     pivot: float = 0.5
-    whirl_ratio: float = 1.0
     pad_inertia: float | None = None
     _equilibria: Equilibria[_Pads] = field(default_factory=Equilibria, init=False, repr=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         checks.instance(self.film, "film", OilFilm)
-        checks.keep_numbers(self, {"pivot": "", "whirl_ratio": ""}, above=0.0)
-        checks.number(self.pivot, "pivot", below=1.0)
+        checks.keep_numbers(self, {"pivot": ""}, above=0.0, below=1.0)
         if self.pad_inertia is not None:
             checks.keep_numbers(self, {"pad_inertia": "kg m²"}, above=0.0)
         if self.film.pads[0].closed:
@@ -118,6 +112,8 @@ class TiltingPadBearing(Bearing):
             "alone; give pad_inertia, and their tilts become coordinates, or give the scene its "
             "linearised()"
         )
+
+    slopes = law  # which refuses, too
 
     @property
     def tangents(self) -> np.ndarray:
@@ -148,12 +144,11 @@ class TiltingPadBearing(Bearing):
         return -self._state(speed, self._static_load(load)).shifts / self.film.radius
 
     def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return stiffness and damping of (2)."""
-        whirl = self.whirl_ratio * abs(speed)
-        Z = self._state(speed, load).impedance(whirl)
-        return Z.real, Z.imag / whirl
+        """Return stiffness and damping of (2), of pads with inertia by (1)."""
+        Z = self._state(speed, load).impedance(abs(speed), self.pad_mass)
+        return Z.real, Z.imag / abs(speed)
 
-    def linearised(self) -> Support | PadSupport:
+    def linearised(self) -> Support | ControlledSupport:
         """Return the support for linear analyses: the coefficients under the load at every speed.
 
         With the pads' tilts as coordinates where these have inertia. A pad that carries nothing is
@@ -171,19 +166,15 @@ class TiltingPadBearing(Bearing):
         """
         if self.pad_inertia is None:
             return super().linearised()
-        load, static = self._static_load(None), _InTheWhirl(self, 0)
-
-        def matrices(speed: float) -> tuple[np.ndarray, np.ndarray]:
-            static.check_range(speed)
-            return self._linear.at(speed, load, self._of_pads)[:2]
-
+        self._static_load(None)
         masses = np.full(len(self.film.pads), self.pad_mass)
-        return PadSupport(self.interface, masses, matrices, static)
+        return ControlledSupport(self.interface, masses, self._of_pads, Linearised(self, 0))
 
-    def _of_pads(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return what :class:`PadSupport` has, and the stiffness (2, 2) of all in the whirl."""
-        state, mass = self._state(speed, load), self.pad_mass
-        whole = state.impedance(self.whirl_ratio * abs(speed), mass).real
+    def _of_pads(self, speed: float) -> np.ndarray:
+        """Return stiffness and damping of the ports of pads with inertia, (2, 2 + p, 2 + p)."""
+        Linearised(self, 0).check_range(speed)
+        load, mass = self._static_load(None), self.pad_mass
+        state, whole = self._state(speed, load), self.coefficients(speed, load)[0]
         absent = [pad for pad, each in enumerate(state.states) if each is None]
         if absent and not self.__dict__.get("_told"):
             object.__setattr__(self, "_told", True)
@@ -195,13 +186,13 @@ class TiltingPadBearing(Bearing):
         soft = min(mass * speed**2, _HELD * float(np.abs(whole).max()))
         held = np.array([soft, 4.0 * np.sqrt(soft * mass)])  # overdamped: no vibration of its own
         count = len(state.states)
-        total = np.zeros((2, 3 + count, 3 + count))
-        for pad, (each, t) in enumerate(zip(state.coefficients, self.tangents, strict=True)):
-            seen = np.eye(3, 3 + count)[:2]
-            seen[:, 3 + pad] = -t
-            film = np.multiply.outer(held, np.outer(t, t)) if each is None else each
+        total = np.zeros((2, 2 + count, 2 + count))
+        for pad, (each, t) in enumerate(zip(state.states, self.tangents, strict=True)):
+            seen = np.eye(2, 2 + count)
+            seen[:, 2 + pad] = -t
+            film = held[:, None, None] * np.outer(t, t) if each is None else each.coefficients()
             total += [seen.T @ X @ seen for X in film]
-        return total[0], total[1], whole
+        return total
 
     def _state(self, speed: float, load: np.ndarray) -> _Pads:
         """Return the pads in equilibrium."""
@@ -234,11 +225,6 @@ class TiltingPadBearing(Bearing):
         raise refused
 
 
-def _stiffness_unit(film: OilFilm, speed: float) -> float:
-    """Return ``μ Ω L (R/c)³`` [N/m]."""
-    return film.viscosity * abs(speed) * film.length * (film.radius / film.clearance) ** 3
-
-
 def _shift_of_pad(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float) -> float:
     """Return s [m] of a pad whose film has no part along t; NaN where no tilt makes it carry.
 
@@ -255,16 +241,13 @@ def _shift_of_pad(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float)
     high = np.min(-room[lever < 0.0] / lever[lever < 0.0], initial=np.inf)
     if not low < high:
         raise pressed
-    last = None
-
-    def at(s: float) -> FilmState:
-        nonlocal last
-        empty = last and last.solution.empty
-        last = film.solved(place - s * t, np.zeros(2), speed, empty)
-        return last
+    empty = None
 
     def moment(s: float) -> float:
-        return float(t @ at(s).force)
+        nonlocal empty
+        state = film.solved(place - s * t, np.zeros(2), speed, empty)
+        empty = state.solution.empty
+        return float(t @ state.force)
 
     # beside that of a film whose edges are equally thick, next to which a light pad is
     even = float((place - film.pads[0].center) @ t)
@@ -279,7 +262,8 @@ def _shift_of_pad(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float)
             raise pressed
         return np.nan
     s = brentq(moment, tried[rises[0]], tried[rises[0] + 1], xtol=_ROOT * film.radius)
-    return s if t @ at(s).tangent[0] @ t > 0.0 else np.nan  # where no pressure is left
+    stiffness = film.solved(place - s * t, np.zeros(2), speed, empty).coefficients()[0]
+    return s if t @ stiffness @ t > 0.0 else np.nan  # where no pressure is left
 
 
 @dataclass(frozen=True, eq=False)
@@ -312,16 +296,15 @@ class _Pads:
         """
         place, shifts, states, still = self.place, self.shifts, list(self.states), np.zeros(2)
         films, present = self.films, [pad for pad, state in enumerate(states) if state is not None]
-        units = [_stiffness_unit(film, speed) for film in films]
         small = _STILL * min(film.clearance for film in films)
         for _ in range(_STEPS):
             left, total, moved = load.copy(), np.zeros((2, 2)), np.full((len(states), 3), np.nan)
             for pad in present:
                 film, t, empty = films[pad], self.tangents[pad], states[pad].solution.empty
                 states[pad] = film.solved(place - shifts[pad] * t, still, speed, empty)
-                force, stiffness = states[pad].force, states[pad].tangent[0]
+                force, stiffness = states[pad].force, states[pad].coefficients()[0]
                 rise, lever = t @ stiffness @ t, stiffness @ t
-                if not rise > _LOOSE * units[pad]:
+                if not rise > _LOOSE * np.abs(stiffness).max():
                     return None
                 moved[pad] = *(t @ stiffness / rise), t @ force / rise
                 left += force - lever * moved[pad, 2]
@@ -338,15 +321,10 @@ class _Pads:
         else:
             return None
         for film, t, state in zip(films, self.tangents, states, strict=True):
-            thin = state is not None and state.solution.equation.heights.min() < film.thinnest
+            thin = state is not None and state.heights.min() < film.thinnest
             if thin or (state is None and not np.isnan(_shift_of_pad(film, place, t, speed))):
                 return None
         return replace(self, speed=speed, place=place, shifts=shifts, states=states)
-
-    @cached_property
-    def coefficients(self) -> list[tuple[np.ndarray, np.ndarray] | None]:
-        """Stiffness and damping of each film, (2, 2); None for absent pads."""
-        return [None if state is None else state.coefficients() for state in self.states]
 
     def impedance(self, whirl: float, mass: float = 0.0) -> np.ndarray:
         """Return Z_b of (2) at a frequency [rad/s], shape (2, 2); of pads with a mass I/R² [kg].
@@ -354,18 +332,9 @@ class _Pads:
         By (1) the mass takes ``mass whirl²`` from ``tᵀZ t``.
         """
         total = np.zeros((2, 2), dtype=complex)
-        for coefficients, t in zip(self.coefficients, self.tangents, strict=True):
-            if coefficients is not None:
-                K, C = coefficients
+        for state, t in zip(self.states, self.tangents, strict=True):
+            if state is not None:
+                K, C = state.coefficients()
                 Z = K + 1j * whirl * C
                 total += Z - np.outer(Z @ t, t @ Z) / (t @ Z @ t - mass * whirl**2)
         return total
-
-
-@dataclass(frozen=True, eq=False)
-class _InTheWhirl(Linearised):
-    """Stiffness of all pads with inertia in the whirl, by the spin speed."""
-
-    def _value(self, speed: float) -> np.ndarray:
-        bearing = self.bearing
-        return bearing._linear.at(speed, bearing._static_load(None), bearing._of_pads)[2]

@@ -75,25 +75,20 @@ class FlexibleCoupling(Connection):
     runout: np.ndarray = (0.0, 0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
-        def keep(name: str, value: object) -> None:
-            object.__setattr__(self, name, value)
-
         checks.keep_numbers(self, {"torsion": "N m/rad"}, above=0.0)
         checks.keep_numbers(self, {"axial": "N/m"}, least=0.0)
         for name, unit in (("lateral", "N/m"), ("angular", "N m/rad")):
-            keep(name, _pair(getattr(self, name), name, unit))
+            checks.keep(self, **{name: _pair(getattr(self, name), name, unit)})
         damping = checks.vector(self.damping, "damping", size=4)
         if np.any(damping < 0.0):
             raise ValueError(f"damping: needs four numbers ≥ 0, got {damping.tolist()}")
-        keep("damping", damping)
         for name in ("misalignment", "runout"):
-            keep(name, checks.vector(getattr(self, name), name, size=4))
-        keep("_K", np.array([*self.lateral, self.axial, *self.angular, self.torsion]))
-        keep("_D", damping[[0, 0, 1, 2, 2, 3]])
+            checks.keep(self, **{name: checks.vector(getattr(self, name), name, size=4)})
+        K = np.array([*self.lateral, self.axial, *self.angular, self.torsion])
         fixed, turning = np.zeros((2, 6))
         fixed[list(_ACROSS)], turning[list(_ACROSS)] = self.misalignment, self.runout
-        keep("_fixed", fixed)
-        keep("_turning", turning)
+        checks.keep(self, damping=damping, _K=K, _D=damping[[0, 0, 1, 2, 2, 3]])
+        checks.keep(self, _fixed=fixed, _turning=turning)
 
     def support(self, interface: str) -> Support:
         """Return what linear analyses take for a coupling, without its misalignment.

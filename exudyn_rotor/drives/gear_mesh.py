@@ -91,13 +91,10 @@ class GearMesh(Connection):
     variation: np.ndarray = ()
 
     def __post_init__(self) -> None:
-        def keep(name: str, value: object) -> None:
-            object.__setattr__(self, name, value)
-
         radii = checks.vector(self.radii, "radii", "m", size=2)
         if np.any(radii <= 0.0):
             raise ValueError(f"radii: needs two numbers [m] > 0, got {radii.tolist()}")
-        keep("radii", radii)
+        checks.keep(self, radii=radii)
         checks.keep_numbers(self, {"stiffness": "N/m"}, above=0.0)
         checks.keep_numbers(self, {"damping": "N s/m"}, least=0.0)
         checks.keep_numbers(self, {"pressure_angle": "rad"}, above=0.0, below=0.5 * pi)
@@ -108,9 +105,9 @@ class GearMesh(Connection):
         if self.backlash is not None:
             checks.keep_numbers(self, {"backlash": "m"}, least=0.0)
         if self.teeth is not None:
-            keep("teeth", self._checked_teeth())
-        keep("variation", self._checked_variation())
-        keep("_directions", {s: self._direction(s) for s in (1, -1)})
+            checks.keep(self, teeth=self._checked_teeth())
+        directions = {s: self._direction(s) for s in (1, -1)}
+        checks.keep(self, variation=self._checked_variation(), _directions=directions)
 
     def _checked_teeth(self) -> np.ndarray:
         teeth = checks.whole_numbers(self.teeth, "teeth", least=1)

@@ -7,10 +7,9 @@ API 617 asks for the same.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -327,119 +326,58 @@ def stability_level_one(
         checks.number(critical_speed_ratio, "critical_speed_ratio", above=0.0)
     if gas_density is not None:
         checks.number(gas_density, "gas_density", "kg/m³", above=0.0)
-    coupled = _Coupled(target, speed, dict(zip(names, amounts, strict=True)), supports, stiffening)
+    coupling = dict(zip(names, amounts, strict=True))
+
+    def coupled(multiple: float) -> LinearModel:
+        added = [
+            Support(name, multiple * q * np.array([[0.0, 1.0], [-1.0, 0.0]]))
+            for name, q in coupling.items()
+        ]
+        return linear_model(target, supports=(*supports, *added), stiffening=stiffening)
+
+    content = Content.of(coupled(0.0))
+
+    def growth(multiple: float) -> float:
+        return _first_forward(coupled(multiple), content, speed, coupling)[0]
+
+    found = [_first_forward(coupled(each), content, speed, coupling) for each in _MULTIPLES]
+    rates, frequencies = np.array(found).T
+    decrement = damping_of(rates, frequencies)[1]
+    decrement = np.where(np.isnan(decrement), np.copysign(np.inf, -rates), decrement)
     total, threshold = float(amounts.sum()), None
-    found = [coupled.first_forward(multiple) for multiple in _MULTIPLES]
-    decrement = np.array([modes.decrements[mode] for modes, mode in found])
-    frequencies = np.array([modes.frequencies[mode] for modes, mode in found])
     unstable = np.flatnonzero(decrement <= 0.0)
     if unstable.size:
-        threshold = total * coupled.limit(
-            _MULTIPLES[max(unstable[0] - 1, 0)], _MULTIPLES[unstable[0]]
-        )
+        last = unstable[0]
+        threshold = total * brentq(growth, *_MULTIPLES[last - 1 : last + 1]) if last else 0.0
     return StabilityLevelOne(
         total * _MULTIPLES, decrement, frequencies, total, speed, machine, threshold,
         critical_speed_ratio, gas_density,
     )  # fmt: skip
 
 
-class _Modes(NamedTuple):
-    """Modes (m,) under one multiple of the anticipated cross-coupling.
-
-    `fed` is the power that a cross-coupling feeds to each, per size of the mode: positive where it
-    whirls forward.
-    """
-
-    multiple: float
-    growth: np.ndarray
-    frequencies: np.ndarray
-    lateral: np.ndarray
-    fed: np.ndarray
-
-    @property
-    def decrements(self) -> np.ndarray:
-        """Logarithmic decrements; infinite where a mode decays or grows without oscillating."""
-        found = damping_of(self.growth, self.frequencies)[1]
-        return np.where(np.isnan(found), np.copysign(np.inf, -self.growth), found)
-
-
-@dataclass(frozen=True, eq=False)
-class _Coupled:
-    """The rotor on its supports, under multiples of the anticipated cross-coupling.
-
-    Attributes
-    ----------
-    target : ReducedRotor
-    speed : float
-        [rad/s]
-    amounts : dict of str to float
-        Anticipated cross-coupling at interfaces [N/m].
-    supports : tuple of Support or bearings
-    stiffening : str
-    """
-
-    target: ReducedRotor
-    speed: float
-    amounts: dict[str, float]
-    supports: tuple[Given, ...]
-    stiffening: str
-
-    @cached_property
-    def _content(self) -> Content:
-        return Content.of(self._model(0.0))
-
-    def _model(self, multiple: float) -> LinearModel:
-        coupled = [
-            Support(name, [[0.0, multiple * q], [-multiple * q, 0.0]])
-            for name, q in self.amounts.items()
-        ]
-        supports = (*self.supports, *coupled)
-        return linear_model(self.target, supports=supports, stiffening=self.stiffening)
-
-    def modes(self, multiple: float) -> _Modes:
-        """Return all modes under a multiple of the anticipated cross-coupling."""
-        model = self._model(multiple)
-        named = self._content.named(motions_over(model, [self.speed], held=True)).rows(0)
-        motions, fed = named.motions, 0.0
-        for name, amount in self.amounts.items():
-            orbits: dict[int, np.ndarray] = {}
-            for m, U in model.seen(name, self.speed).items():
-                for n, X in zip(motions.orders.tolist(), motions.vectors, strict=True):
-                    orbits[m + n] = orbits.get(m + n, 0.0) + U[:2] @ X
-            for n, (a, b) in orbits.items():
-                rates = motions.values.imag + n * self.speed
-                fed = fed - amount * rates * (a.conj() * b).imag
-        lateral = (named.diameters == 1) & np.isfinite(motions.values)
-        return _Modes(multiple, motions.values.real, named.inertial, lateral, fed)
-
-    def first_forward(self, multiple: float) -> tuple[_Modes, int]:
-        """Return the modes under a multiple, and which is the first forward one.
-
-        Raises
-        ------
-        ValueError
-            Where no mode is lateral.
-        """
-        modes = self.modes(multiple)
-        if not np.any(modes.lateral):
-            raise ValueError(f"target: has no lateral mode at {self.speed:g} rad/s")
-        most = modes.fed[modes.lateral].max()
-        forward = modes.lateral & (modes.fed > max(_FED * most, 0.0))
-        ratios = damping_of(modes.growth, modes.frequencies)[0]
-        swings = (ratios < _RESONANT) & (modes.frequencies > _STILL * self.speed)
-        forward_ones = forward & swings
-        unstable = forward_ones & (modes.growth > _ROUNDING * modes.frequencies)
-        for chosen in (unstable, forward_ones, modes.lateral & swings):
-            if np.any(chosen):
-                return modes, int(np.argmin(np.where(chosen, modes.frequencies, np.inf)))
-        chosen = forward if np.any(forward) else modes.lateral
-        return modes, int(np.argmax(np.where(chosen, modes.growth, -np.inf)))
-
-    def limit(self, below: float, above: float) -> float:
-        """Return the multiple between two at which the first forward mode becomes unstable."""
-
-        def growth(multiple: float) -> float:
-            modes, mode = self.first_forward(multiple)
-            return float(modes.growth[mode])
-
-        return brentq(growth, below, above) if growth(below) < 0.0 else below
+def _first_forward(
+    model: LinearModel, content: Content, speed: float, coupling: Mapping[str, float]
+) -> tuple[float, float]:
+    """Return growth [1/s] and frequency [rad/s] of the first forward mode of a coupled rotor."""
+    named = content.named(motions_over(model, [speed], held=True)).rows(0)
+    motions, frequencies = named.motions, named.inertial
+    growth, fed = motions.values.real, 0.0  # power that the coupling feeds to each
+    for name, amount in coupling.items():
+        orbits: dict[int, np.ndarray] = {}
+        for m, U in model.seen(name, speed).items():
+            for n, X in zip(motions.orders.tolist(), motions.vectors, strict=True):
+                orbits[m + n] = orbits.get(m + n, 0.0) + U[:2] @ X
+        for n, (a, b) in orbits.items():
+            fed = fed - amount * (motions.values.imag + n * speed) * (a.conj() * b).imag
+    lateral = (named.diameters == 1) & np.isfinite(motions.values)
+    if not np.any(lateral):
+        raise ValueError(f"target: has no lateral mode at {speed:g} rad/s")
+    forward = lateral & (fed > max(_FED * fed[lateral].max(), 0.0))
+    swings = (damping_of(growth, frequencies)[0] < _RESONANT) & (frequencies > _STILL * speed)
+    unstable = forward & swings & (growth > _ROUNDING * frequencies)
+    for chosen in (unstable, forward & swings, lateral & swings):
+        if np.any(chosen):
+            mode = int(np.argmin(np.where(chosen, frequencies, np.inf)))
+            return float(growth[mode]), float(frequencies[mode])
+    mode = int(np.argmax(np.where(forward if np.any(forward) else lateral, growth, -np.inf)))
+    return float(growth[mode]), float(frequencies[mode])

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.storage import read_rows
 
 UNITS = {"m/s²": 1.0, "g": 9.80665, "gal": 1e-2, "mm/s²": 1e-3}
 _UNEVEN = 1e-3  # of a step: records print their times with some digits
@@ -83,27 +84,25 @@ class BaseRecord:
         path : path-like
         unit : {'m/s²', 'g', 'gal', 'mm/s²'}
             Of the accelerations.
+
+        Raises
+        ------
+        TypeError, ValueError, OSError
+            For bad input, other lines, and a file that is not there.
         """
-        factor = UNITS[checks.choice(unit, "unit", UNITS)]
-        rows = []
-        # Excel marks UTF-8; names may be in another encoding
-        with open(checks.path(path), encoding="utf-8-sig", errors="replace") as file:
-            for number, line in enumerate(file, 1):
-                line = line.split("#")[0].strip()
-                words = line.replace(",", ".").split(";") if ";" in line else line.split(",")
-                words = words if len(words) > 1 else line.split()
-                try:
-                    row = [float(word) for word in words]
-                except ValueError as error:
-                    if rows or words[0].strip()[:1] in "+-.0123456789":
-                        raise ValueError(f"{path}, line {number}: {error}") from error
-                    continue  # names
-                if words and len(row) != 4:
-                    raise ValueError(
-                        f"{path}, line {number}: needs time and three accelerations, got "
-                        f"{len(row)} numbers"
-                    )
-                rows += [row] if row else []
+        factor, rows = UNITS[checks.choice(unit, "unit", UNITS)], []
+        for number, words in read_rows(path):
+            try:
+                rows.append([float(word) for word in words])
+            except ValueError as error:
+                if rows or words[0][:1] in "+-.0123456789":
+                    raise ValueError(f"{path}, line {number}: {error}") from error
+                continue  # names
+            if len(words) != 4:
+                raise ValueError(
+                    f"{path}, line {number}: needs time and three accelerations, got "
+                    f"{len(words)} numbers"
+                )
         table = np.array(rows).reshape(-1, 4)
         return cls(table[:, 0], factor * table[:, 1:])
 

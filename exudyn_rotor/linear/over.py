@@ -47,7 +47,7 @@ def motions_over(
         given = {"held": held, "least_stable": least_stable, "told": bar.update}
         found = motions_in(model, model.at_all(speeds), method, tolerance, **given)
     if not model.over_frequency:
-        _warn_of_lost(found)
+        _warn_of_lost(found.lost)
     return found
 
 
@@ -96,22 +96,18 @@ def forced_over(
     """
     options |= {"held": held}
     if not model.over_frequency:
-        system = model.at(speed) if held is None else model.at(speed).projected(held)
-        return forced_motions(system, loads, frequencies, **options)
+        return forced_motions(model.at(speed), loads, frequencies, **options)
     found = {}
     for n, load in loads.items():
         rates = np.abs(frequencies + n * speed)
-        within = "" if held is None else "held"
-        stack = model.at_all(np.full(len(rates), speed), within, rates)
+        stack = model.at_all(np.full(len(rates), speed), rates)
         found |= forced_motions(stack, {n: load}, frequencies, **options)
     return found
 
 
-def _warn_of_lost(found: Motions) -> None:
-    """Warn of motions of periodic equations that were not found."""
-    lost = np.any(np.isnan(found.values), axis=1) & ~np.isnan(found.bounds)
-    speeds = found.speeds[lost]
-    if not speeds.size:
+def _warn_of_lost(speeds: Sequence[float]) -> None:
+    """Warn of speeds at which motions of periodic equations were not found."""
+    if not speeds:
         return
     shown = ", ".join(f"{speed:.4g}" for speed in speeds[:5]) + (" …" if len(speeds) > 5 else "")
     warnings.warn(

@@ -12,18 +12,13 @@ from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.full.add_full import add_full
+from exudyn_rotor.multibody.full.add_full import add_full, check_memory, make_full_plan
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
-from exudyn_rotor.multibody.full.full_plan import check_memory, make_full_plan
-from exudyn_rotor.multibody.rotor.frame import (
-    LOCKINGS,
-    Layout,
-    LockedForce,
-    add_constraints,
-    driving_force,
-)
+from exudyn_rotor.multibody.rotor.frame import LOCKINGS, LockedForce
 from exudyn_rotor.multibody.rotor.plan import (
+    Plan,
     Setup,
+    add_nodes,
     check_free_names,
     color_of,
     main_system,
@@ -32,11 +27,7 @@ from exudyn_rotor.multibody.rotor.plan import (
     placement,
 )
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.multibody.rotor.rotor_items import (
-    add_interface_markers,
-    add_weight,
-    flexible_body,
-)
+from exudyn_rotor.multibody.rotor.rotor_items import finished, flexible_body
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.rotor import LOSS_LEFT_OUT
@@ -48,7 +39,6 @@ from exudyn_rotor.theory.formulation import (
     suited_translation,
 )
 from exudyn_rotor.theory.kernel import Kernel, constant_part
-from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.stiffening import CHOICES, chosen_level, warn_of_left_out
 
 DEFAULT_COLOR = (0.62, 0.70, 0.80, 1.0)
@@ -125,9 +115,8 @@ def add_rotor(
         How coordinates of the marker body's node that the formulation does not have are held.
         ``'constraints'``, which ``'auto'`` is, serves all solvers, and Exudyn's analyses of the
         scene. Where the spin or a translation is prescribed, explicit solvers (RK44, DOPRI5, …) end
-        with an error, "contains constraints that cannot be solved", about an object whose name says
-        what to do. They need ``'mass'``, which static solvers do not take; see
-        :mod:`exudyn_rotor.multibody.rotor.frame`.
+        with an error that says so: they need ``'mass'``, huge masses that are driven along the
+        motion, which static solvers do not take.
     color : sequence of 4 floats
         RGBA.
 
@@ -230,7 +219,7 @@ def add_rotor(
         gravity=checks.vector(gravity, "gravity", "m/s²"),
         mass_damping=checks.number(mass_damping, "mass_damping", "1/s", least=0.0),
         stiffness_damping=checks.number(stiffness_damping, "stiffness_damping", "s", least=0.0),
-        markers=marker_kinds(rotor.interfaces, markers),
+        marker_kinds=marker_kinds(rotor.interfaces, markers),
         locking=checks.choice(locking, "locking", LOCKINGS),
         color=color_of(color),
     )
@@ -248,29 +237,21 @@ def _add_reduced(mbs: exudyn.MainSystem, reduced: ReducedRotor, setup: Setup) ->
         warn_of_left_out(reduced.invariants, setup.placement.speed, 4)
     if reduced.invariants.H is not None:
         warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=3)
-    rigid, modes = plan.add_nodes(mbs)
+    rigid, modes = add_nodes(mbs, plan)
     # first of all objects, as in scripts that know it by its number
     item = flexible_body(
         plan, [rigid, modes], plan.motion.invariants.S, reduced.shapes, setup.name or ""
     )
     marker_body = mbs.AddObject(item)
-    by_mass = setup.locking == "mass"
-    drive = driving_force(plan.locks, plan.layout.lock_mass) if by_mass else None
-    if plan.motion.is_constant and drive is None:
-        physics = constant_object(plan.motion, plan.layout, [rigid, modes])
-    else:
-        physics = user_function_object(plan.motion, plan.layout, [rigid, modes], drive)
-    body = RotorBody(
+    physics = mbs.AddObject(_equations(plan, [rigid, modes]))
+    return finished(
+        RotorBody,
         mbs,
         plan,
         nodes={"rigid": rigid, "modes": modes},
-        objects={"physics": mbs.AddObject(physics), "marker_body": marker_body},
-        constraints={} if by_mass else add_constraints(mbs, plan.locks, rigid),
-        gravity_load=add_weight(mbs, marker_body, plan.marker_body_gravity),
+        objects={"physics": physics, "marker_body": marker_body},
         mesh_node_count=0 if reduced.shapes is None else len(reduced.shapes.nodes),
     )
-    add_interface_markers(body)
-    return body
 
 
 def _add_solid(mbs: exudyn.MainSystem, rotor: SolidRotor, setup: Setup) -> FullRotorBody:
@@ -284,66 +265,45 @@ def _add_solid(mbs: exudyn.MainSystem, rotor: SolidRotor, setup: Setup) -> FullR
     return add_full(mbs, plan)
 
 
-StateForce = Callable[[float, list, list], np.ndarray]
+def _equations(plan: Plan, nodes: list) -> ObjectGenericODE2:
+    """Return the object of the equations: matrices, and user functions for what varies.
 
-
-def constant_object(motion: Motion, layout: Layout, nodes: list) -> ObjectGenericODE2:
-    """Return the object with constant matrices (109): no Python call in a time step."""
-    rest = np.zeros(motion.size)
-    return ObjectGenericODE2(
-        nodeNumbers=nodes,
-        massMatrix=layout.spread(motion.mass_matrix(0.0, rest), layout.lock_mass),
-        **_constant_items(motion, layout),
-        visualization=VObjectGenericODE2(show=False),
-    )
-
-
-def user_function_object(
-    motion: Motion, layout: Layout, nodes: list, locked_force: LockedForce | None
-) -> ObjectGenericODE2:
-    """Return the object with user functions for what varies, and matrices for what does not.
-
-    `locked_force(t)` gives the forces, shape (size,), that drive locked coordinates along their
-    prescribed motion.
+    With the constant matrices of (109) alone, a time step calls no Python.
     """
-    rest = np.zeros(motion.size)
-    kernel, functions = Kernel(motion, layout.unknowns, layout.size), {}
-    mass = layout.spread(motion.mass_matrix(0.0, rest), layout.lock_mass)
-    if kernel.rows.size:
-        mass, functions["massMatrixUserFunction"] = _varying_mass(mass, kernel, layout.size)
-    functions["jacobianUserFunction"] = _jacobian(kernel)
-    functions["forceUserFunction"] = _with_guide(
-        kernel.forces if kernel.has_forces else None, locked_force
-    )
+    motion, layout, guide = plan.motion, plan.layout, plan.guide
+    constant, rest = constant_part(motion), np.zeros(motion.size)
+    mass, functions = layout.spread(motion.mass_matrix(0.0, rest), layout.lock_mass), {}
+    force = np.zeros(layout.size)
+    force[layout.unknowns] = constant.force
+    if not motion.is_constant or guide is not None:
+        kernel = Kernel(motion, layout.unknowns, layout.size)
+        if kernel.rows.size:
+            mass, functions["massMatrixUserFunction"] = _varying_mass(mass, kernel, layout.size)
+        functions["forceUserFunction"] = _forces(kernel, guide)
+        # even where it is zero: without it, Exudyn differentiates the object numerically with all
+        # its matrices, and calls the user force for every coordinate
+        functions["jacobianUserFunction"] = lambda mbs, t, item, q, q_t, factor_q, factor_v: (
+            kernel.jacobian(t, q, q_t, factor_q, factor_v)
+        )
     return ObjectGenericODE2(
         nodeNumbers=nodes,
         massMatrix=mass,
-        **_constant_items(motion, layout),
+        stiffnessMatrix=layout.spread(constant.stiffness),
+        dampingMatrix=layout.spread(constant.damping),
+        forceVector=force,
         **functions,
         visualization=VObjectGenericODE2(show=False),
     )
 
 
-def _constant_items(motion: Motion, layout: Layout) -> dict[str, np.ndarray]:
-    """Return the matrices and the force that Exudyn itself evaluates."""
-    constant = constant_part(motion)
-    force = np.zeros(layout.size)
-    force[layout.unknowns] = constant.force
-    return {
-        "stiffnessMatrix": layout.spread(constant.stiffness),
-        "dampingMatrix": layout.spread(constant.damping),
-        "forceVector": force,
-    }
-
-
-def _with_guide(forces: StateForce | None, guide: LockedForce | None) -> Callable:
-    """Return the user function of the forces, with those on locked coordinates."""
+def _forces(kernel: Kernel, guide: LockedForce | None) -> Callable:
+    """Return the user function of the forces, with those that `guide` locked coordinates."""
     # Exudyn takes a list faster than an array
     if guide is None:
-        return lambda mbs, t, item, q, q_t: forces(t, q, q_t).tolist()
-    if forces is None:
+        return lambda mbs, t, item, q, q_t: kernel.forces(t, q, q_t).tolist()
+    if not kernel.has_forces:
         return lambda mbs, t, item, q, q_t: guide(t).tolist()
-    return lambda mbs, t, item, q, q_t: (guide(t) + forces(t, q, q_t)).tolist()
+    return lambda mbs, t, item, q, q_t: (guide(t) + kernel.forces(t, q, q_t)).tolist()
 
 
 def _varying_mass(
@@ -376,14 +336,3 @@ def _varying_mass(
         return matrix
 
     return mass_matrix(None, 0.0, None, [0.0] * size, [0.0] * size), mass_matrix
-
-
-def _jacobian(kernel: Kernel) -> Callable:
-    """Return the Jacobian of the user force; Exudyn adds that of its own matrices.
-
-    It is needed even where it is zero: without it, Exudyn differentiates the object numerically
-    with all its matrices, and calls the user force for every coordinate.
-    """
-    return lambda mbs, t, item, q, q_t, factor_q, factor_v: kernel.jacobian(
-        t, q, q_t, factor_q, factor_v
-    )

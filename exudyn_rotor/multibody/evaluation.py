@@ -9,10 +9,8 @@ import exudyn
 import numpy as np
 
 # configurations that hold coordinates
-STATES = tuple(
-    getattr(exudyn.ConfigurationType, name)
-    for name in ("Initial", "Current", "StartOfStep", "Visualization")
-)
+_KIND = exudyn.ConfigurationType
+STATES = (_KIND.Initial, _KIND.Current, _KIND.StartOfStep, _KIND.Visualization)
 _NO_FORCES = {
     "stiffnessMatrix": np.zeros((0, 0)),
     "dampingMatrix": np.zeros((0, 0)),
@@ -20,21 +18,6 @@ _NO_FORCES = {
     "forceUserFunction": 0,
     "jacobianUserFunction": 0,
 }
-
-Saved = list[tuple]
-
-
-def saved_states(mbs: exudyn.MainSystem) -> Saved:
-    """Return what :func:`restore_states` needs."""
-    data = mbs.systemData
-    return [(state, data.GetSystemState(state), data.GetTime(state)) for state in STATES]
-
-
-def restore_states(mbs: exudyn.MainSystem, saved: Saved) -> None:
-    """Put coordinates and times of all configurations back."""
-    for state, values, time in saved:
-        mbs.systemData.SetSystemState(values, state)
-        mbs.systemData.SetTime(time, state)
 
 
 @contextmanager
@@ -44,13 +27,16 @@ def evaluating(mbs: exudyn.MainSystem) -> Iterator[exudyn.MainSolverStatic]:
     settings.staticSolver.verboseMode = 0
     settings.solution.file.write = False
     settings.solution.sensors.active = False
-    saved, solver = saved_states(mbs), exudyn.MainSolverStatic()
+    data, solver = mbs.systemData, exudyn.MainSolverStatic()
+    saved = [(state, data.GetSystemState(state), data.GetTime(state)) for state in STATES]
     try:
         solver.InitializeSolver(mbs, settings)
         yield solver
     finally:
         solver.FinalizeSolver(mbs, settings)
-        restore_states(mbs, saved)
+        for state, values, time in saved:
+            data.SetSystemState(values, state)
+            data.SetTime(time, state)
 
 
 @contextmanager

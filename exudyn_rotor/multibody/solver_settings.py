@@ -121,7 +121,7 @@ def recommended_settings(
 
 def _rounding(body: RotorItems) -> float:
     """Return what rounding in positions leaves of the forces of linear supports, tenfold [N]."""
-    place = body.plan.setup.placement
+    place = body.placement
     linear = [each.support for each in body.supports if isinstance(each.support, Support)]
     matrices = [support.matrices(place.speed)[0] for support in linear]
     across, about = (

@@ -183,12 +183,7 @@ class Balance:
         return left, J
 
     def solved(self, c: np.ndarray, tolerance: float = 1e-10) -> np.ndarray:
-        """Return the solution of (1) near harmonics c (h, d), by Newton's method.
-
-        Raises
-        ------
-        UnconvergedError
-        """
+        """Return the solution of (1) near harmonics c (h, d), by Newton's method."""
         stuck = 0
         for _ in range(_MOST_ITERATIONS):
             left, J = self.linearised(c)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from exudyn_rotor.bearings.rolling import RollingBearing
+from exudyn_rotor.bearings.rolling import RollingBearing, contacts
 from exudyn_rotor.linear.model.assembly import rotors_of
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.response.loads import At, Place, places
@@ -116,7 +116,7 @@ def _at_bearings(point: Point) -> np.ndarray:
         load, away = np.nan, float(np.mean(forces[:, b] == 0.0))
         if isinstance(one, RollingBearing):
             angles = laws.ratios[b] * phi / laws.passes
-            loads = np.array([one.element_loads(*each) for each in zip(q, angles, strict=True)])
+            loads = contacts(one, q, angles)[0]
             load, away = loads.max(), float(np.mean(~np.any(loads, axis=1)))
         found.append((forces[:, b].max(), least, load, away))
     return np.array(found).T

@@ -8,7 +8,7 @@ A step goes along the tangent t of the branch by the length s, and returns to it
 
 by Newton's method, so that a branch may turn back: there the last component of t is zero (E. L.
 Allgower, K. Georg, *Numerical Continuation Methods* (1990)). Steps grow where the method converges
-fast and the tangent turns little; where the branch is steep enough they end at wanted values.
+fast and the tangent turns little; solutions at wanted values are found between them.
 
 At a crossing of branches the derivative of (1) has a second null vector. Where a motion of a part
 of its period begins to repeat after the whole period only, that vector has the new harmonics alone.
@@ -25,6 +25,7 @@ from scipy.optimize import brentq
 
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.nonlinear.balance import Balance, orders_of, padded, real_part_of
+from exudyn_rotor.nonlinear.beside import Beside
 
 _MOST_ITERATIONS = 9
 _CONVERGED = 1e-6  # scaled last step, whose square is the error
@@ -32,19 +33,19 @@ _RATE = 1e-8  # or what steps that shrink as the last one did would leave
 _FAR = 1e-2  # scaled step from which on derivatives by parameters are taken anew
 _DIFFERENCE = 1e-6  # of the range of a parameter, for derivatives by it
 _FIRST, _LONGEST, _SHORTEST = 0.02, 0.25, 1e-5  # steps in scaled unknowns
-_WANTED = 3  # iterations
+_WANTED = 4  # iterations
+_BESIDE = 0.5  # of a step: solutions farther from where they are looked for may be of others
 _TURN = 0.92  # cosine between tangents, below which a step is repeated with half its length
-_STEEP = 0.2  # component of a tangent along the parameter, from which on a step ends at a value
-_REACHED = 1.25  # steps to a value that one step may have
 _ASIDE = (0.02, 0.05, 0.005)  # scaled steps from a crossing onto the other branch
 _NEW = 1e-6  # share of a motion in harmonics that it does not have
-_SMOOTH = 1e-3  # step below which a tangent may turn as it likes, where contacts begin
+_SMOOTH = 1e-3  # step below which a branch may have a corner, where contacts begin
 _LEAST = 0.1  # of the wanted size, as which a motion counts at least
-Row = tuple[np.ndarray, np.ndarray]
 _MOST_POINTS = 1000
 _MOST_UNKNOWNS = 1500
 _SAME, _UNLIKE = 1e-3, 10.0  # share of a motion, and of what is left out, that two may differ by
 _IN_PARAMETER = 1e-7  # of a step, to which a change on a branch is found
+FAILS = (UnconvergedError, ValueError, ArithmeticError, np.linalg.LinAlgError)
+Row = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +56,6 @@ class Point:
     p: np.ndarray  # (e,)
     balance: Balance
     tangent: Row | None = None  # components along c and p, scaled length 1
-    bend: Row | None = None  # its change per step
     # 'computed', 'value' (a wanted one), 'fold', 'doubling', 'torus' or 'branching'
     kind: str = "computed"
     growth: float = np.nan  # of the motions beside it, see :mod:`.beside`
@@ -76,11 +76,15 @@ class Family:
     balance: Callable[[np.ndarray, tuple[int, int]], Balance]
     spans: np.ndarray  # (e,) p₀: what counts as one of each parameter
     size: float  # of a motion that matters [m]
-    measure: Callable[[Point], Point]  # takes a point, gives one with growth and multiplier
     tolerance: float  # largest share of the motion in harmonics that are left out
     most: tuple[int, int]  # harmonics up to which more are added
     phase: tuple[np.ndarray, tuple[int, int]] | None = None  # (h, d) φ of (1), with its reach
     lost: list[str] = field(default_factory=list)
+
+    def measure(self, point: Point) -> Point:
+        """Return a point with what motions beside it do, less the shift in time of a cycle."""
+        growth, multiplier = Beside(point.balance, point.c).growth(self.phase is not None)
+        return replace(point, growth=growth, multiplier=multiplier)
 
     # ------------------------------------------------------------ Newton's method
 
@@ -110,10 +114,6 @@ class Family:
         """Return the solution near a start at right angles to a row, and after how many steps.
 
         With its tangent, in the sense of the row.
-
-        Raises
-        ------
-        UnconvergedError
         """
         point, last, by = start, np.inf, None
         flat = np.r_[row[0].conj().ravel(), row[1]]
@@ -192,15 +192,12 @@ class Family:
         before = point.balance.reach
         if before == reach:
             return point
-        tangent, bend = (
-            one and (padded(one[0], before, reach), one[1]) for one in (point.tangent, point.bend)
-        )
+        t = point.tangent
         return replace(
             point,
             c=padded(point.c, before, reach),
             balance=self.balance(point.p, reach),
-            tangent=tangent,
-            bend=bend,
+            tangent=t and (padded(t[0], before, reach), t[1]),
         )
 
     # ------------------------------------------------------------ a branch
@@ -224,66 +221,53 @@ class Family:
         low, high = limits or (values[0], values[-1])
         for _ in range(_MOST_POINTS):
             try:
-                after, step = self._next(point, step, values)
+                *changes, after, step = self._next(point, step)
             except UnconvergedError:
                 self.lost.append(f"{point.value:.6g}")
                 return
             if until is not None and until(point, after):
                 return
-            section = [point, *self._changes(point, after), after]
-            for first, second in pairwise(section):
+            for first, second in pairwise([point, *changes, after]):
                 yield from self._landed(first, second, values)
                 if second is not after or low <= after.value <= high:
                     yield second
-            up = after.tangent[1][-1] > 0.0
-            if not low <= after.value <= high or after.value == (high if up else low):
+            if not low <= after.value <= high:
                 return
             point = after
         self.lost.append(f"{point.value:.6g}")
 
-    def _next(self, point: Point, step: float, values: np.ndarray) -> tuple[Point, float]:
-        """Return the next point, measured, and the step after it."""
-        goal, slope = None, point.tangent[1][-1]
-        if abs(slope) > _STEEP * self.spans[-1]:
-            ahead = values[(values - point.value) * np.sign(slope) > 0.0]
-            goal = ahead[np.argmin(np.abs(ahead - point.value))] if ahead.size else None
+    def _next(self, point: Point, step: float) -> tuple:
+        """Return changes of the motion, the next point, measured, and the step after it.
+
+        A step over a change that is not found between its ends has gone to another branch.
+        """
         while step > _SHORTEST:
-            away = np.inf if goal is None else (goal - point.value) / slope
-            lands = away <= _REACHED * step
-            length = away if lands else min(step, 0.5 * away)
+            (tc, tp), row = point.tangent, self._row(point.tangent, point.c)
+            c, p = point.c + step * tc, point.p + step * tp
             try:
-                after, count = self._stepped(point, length, goal if lands else None)
-            except (UnconvergedError, np.linalg.LinAlgError, ArithmeticError, ValueError):
-                step = 0.5 * length
+                balance = self.balance(p, point.balance.reach)
+                after, count = self.corrected(
+                    replace(point, c=c, p=p, balance=balance, kind="computed"), row
+                )
+                is_far = self._length(after.c - c, after.p - p, point.c) > _BESIDE * step
+                after = self.refined(after)
+            except FAILS:
+                step *= 0.5
                 continue
             like = self.widened(point, after.balance.reach).tangent
             row = self._row(like, point.c)
             turn = np.vdot(row[0], after.tangent[0]).real + row[1] @ after.tangent[1]
-            if turn < _TURN and length > _SMOOTH:
-                step = 0.5 * length
+            if step > _SMOOTH and (is_far or turn < _TURN):
+                step *= 0.5
                 continue
-            bend = tuple((b - a) / length for a, b in zip(like, after.tangent, strict=True))
+            after = self.measure(after)
+            changes = self._changes(point, after)
+            if step > _SMOOTH and changes is None:
+                step *= 0.5
+                continue
             factor = np.clip(_WANTED / count, 0.5, 2.0) * (0.7 if turn < 0.97 else 1.0)
-            longer = max(step, factor * length) if factor >= 1.0 else factor * length
-            return self.measure(replace(after, bend=bend)), min(longer, _LONGEST)
+            return *(changes or ()), after, min(factor * step, _LONGEST)
         raise UnconvergedError("a branch ends")
-
-    def _stepped(self, point: Point, step: float, goal: float | None) -> tuple[Point, int]:
-        """Return the point after a step, perhaps at a value, and after how many corrections."""
-        (tc, tp), kind = point.tangent, "computed" if goal is None else "value"
-        c, p = point.c + step * tc, point.p + step * tp
-        if point.bend is not None:
-            dc, dp = (0.5 * step**2 * each for each in point.bend)
-            if self._length(dc, dp, point.c) < 0.5 * step:
-                c, p = c + dc, p + dp
-        start = replace(point, c=c, p=p, kind=kind, balance=self.balance(p, point.balance.reach))
-        if goal is None:
-            after, count = self.corrected(start, self._row(point.tangent, point.c))
-        else:
-            after, count = self.at_value(start, goal, np.sign(tp[-1]))
-            if self._length(after.c - c, after.p - p, point.c) > step:
-                raise UnconvergedError("another branch")
-        return self.refined(after), count
 
     def aside(self, point: Point) -> tuple[Point, int] | None:
         """Return a solution beside a crossing, on the branch of a longer period.
@@ -308,7 +292,7 @@ class Family:
         phi = phi * new[:, None] * self._scale(point.c) / np.linalg.norm(phi)
         row = self._row((phi, np.zeros(len(point.p))), point.c)
         for step in _ASIDE:
-            start = replace(point, c=point.c + step * phi, kind="computed", bend=None)
+            start = replace(point, c=point.c + step * phi, kind="computed")
             try:
                 return self.refined(self.corrected(start, row)[0]), g
             except UnconvergedError:
@@ -331,18 +315,18 @@ class Family:
         start, row = self._chord(first, second, share)
         return self.corrected(start, row)[0]
 
-    def _changes(self, first: Point, second: Point) -> list[Point]:
-        """Return folds, or else changes of stability, between two points of a branch."""
+    def _changes(self, first: Point, second: Point) -> list[Point] | None:
+        """Return folds, or else changes of stability, between two points; None if not found."""
         if first.tangent[1][-1] * second.tangent[1][-1] < 0.0:
             return self._change(first, second, lambda one: float(one.tangent[1][-1]), "fold")
         if (first.growth > 0.0) != (second.growth > 0.0):
             found = self._change(first, second, lambda one: self.measure(one).growth, "")
-            return [replace(one, kind=_kind(one.multiplier)) for one in found]
+            return found and [replace(one, kind=_kind(one.multiplier)) for one in found]
         return []
 
     def _change(
         self, first: Point, second: Point, of: Callable[[Point], float], kind: str
-    ) -> list[Point]:
+    ) -> list[Point] | None:
         ends = {0.0: of(first), 1.0: of(second)}
 
         def at(share: float) -> float:
@@ -351,8 +335,8 @@ class Family:
         try:
             share = brentq(at, 0.0, 1.0, xtol=_IN_PARAMETER)
             found = self.measure(self._between(first, second, share))
-        except (UnconvergedError, ValueError, ArithmeticError, np.linalg.LinAlgError):
-            return []
+        except FAILS:
+            return None
         return [replace(found, kind=kind, error=second.error)]
 
     def _landed(self, first: Point, second: Point, values: np.ndarray) -> Iterator[Point]:
@@ -364,7 +348,7 @@ class Family:
                 near = self._chord(first, second, (value - a) / (b - a))[0]
                 found = self.refined(self.at_value(near, value, np.sign(b - a))[0])
                 found = self.measure(replace(found, kind="value"))
-            except (UnconvergedError, ValueError, ArithmeticError, np.linalg.LinAlgError):
+            except FAILS:
                 continue
             yield found
 

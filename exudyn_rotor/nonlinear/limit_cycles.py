@@ -4,19 +4,17 @@ Where an equilibrium turns unstable (Hopf), a motion ``Re φ exp(iωt)`` neither
 
     [I − H(iω) (G + iω G')] φ = 0,                                                          (1)
 
-with the derivatives G, G' of :mod:`.balance` at the equilibrium: two real equations for ω and Ω.
-There begins a branch of periodic motions of small size. It is followed with ω as an unknown, and a
-phase condition, which keeps φ in phase.
+with the derivatives G, G' of :mod:`.balance` at the equilibrium. There begins a branch of periodic
+motions of small size. It is followed with ω as an unknown, and a phase condition, which keeps φ in
+phase.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import root
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, given_supports
@@ -27,15 +25,15 @@ from exudyn_rotor.linear.response.loads import At, HarmonicForce, checked_places
 from exudyn_rotor.linear.stability.thresholds import StabilityThresholds
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.nonlinear.balance import Balance, orders_of, padded
-from exudyn_rotor.nonlinear.beside import Beside
 from exudyn_rotor.nonlinear.collect import collected
 from exudyn_rotor.nonlinear.continuation import Family, Point
-from exudyn_rotor.nonlinear.periodic_response import size_of, warn_of
+from exudyn_rotor.nonlinear.periodic_response import warn_of
 from exudyn_rotor.nonlinear.periodic_result import PeriodicResponse
 from exudyn_rotor.nonlinear.problem import Problem
 from exudyn_rotor.nonlinear.scene import as_lists
 from exudyn_rotor.solvers.factor import one_thread
 
+_NEUTRAL = 1e-2  # share of (1) that a tolerance of the limit of stability leaves
 _FIRST = 0.02  # of a clearance: size of the first motion
 _BELOW = 0.3  # of the onset, down to which a branch is followed that turns back
 _BEGIN, _MOST = (3, 0), (48, 0)  # harmonics
@@ -125,16 +123,15 @@ def limit_cycles(
         return problem.balance(float(p[1]), reach, whirl=float(p[0]))
 
     with one_thread():
-        mean, phi, p = _hopf(problem, frequency, speed)
+        mean, phi = _hopf(problem, frequency, speed)
+        p = np.array([frequency, speed])
         spans = np.array([p[0], max(np.ptp(speeds), 0.1 * p[1])])
         orders = orders_of(_BEGIN)
         first = (orders == (1, 0)).all(axis=1), (orders == (-1, 0)).all(axis=1)
         wave = np.zeros((len(orders), phi.size), dtype=complex)
         wave[first[0]], wave[first[1]] = phi, phi.conj()
         turned = np.sign(orders[:, :1]) * 1j * wave
-        family = Family(
-            balance, spans, size_of(problem), _measured, tolerance, _MOST, (turned, _BEGIN)
-        )
+        family = Family(balance, spans, problem.size, tolerance, _MOST, (turned, _BEGIN))
         c = _FIRST * family.size / np.linalg.norm(phi) * wave
         c[~np.any(orders, axis=1)] += mean
         row = wave / np.linalg.norm(wave), np.zeros(2)
@@ -148,40 +145,16 @@ def limit_cycles(
         return collected(found, np.zeros(len(found), int), "spin speed [rad/s]", asked)
 
 
-def _measured(point: Point) -> Point:
-    growth, multiplier = Beside(point.balance, point.c).growth(is_free=True)
-    return replace(point, growth=growth, multiplier=multiplier)
-
-
-def _hopf(
-    problem: Problem, frequency: float, speed: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the mean place (d,), φ (d,), and ω and Ω of (1), beginning near them.
-
-    Raises
-    ------
-    ValueError
-    """
-
-    def at(p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        mean = problem.at_rest(float(p[1]))[1]
-        balance = problem.balance(float(p[1]), (1, 0), whirl=float(p[0]))
-        J = balance.linearised(padded(mean, (0, 0), (1, 0)))[1]
-        d = mean.size
-        return mean[0], J[2 * d :, 2 * d :]  # of the harmonic 1
-
-    def left(scaled: np.ndarray) -> np.ndarray:
-        values = np.linalg.eigvals(at(scaled * size)[1])
-        nearest = values[np.argmin(np.abs(values))]
-        return np.array([nearest.real, nearest.imag])
-
-    size = np.array([frequency, speed])
+def _hopf(problem: Problem, frequency: float, speed: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the mean place (d,) and φ of (1) at a limit of stability."""
     try:
-        solved = root(left, np.ones(2), method="hybr", options={"xtol": 1e-10})
+        mean = problem.at_rest(speed)[1]
     except UnconvergedError as error:
         raise ValueError(f"onset: no equilibrium at {speed:g} rad/s ({error})") from error
-    if np.linalg.norm(solved.fun) > 1e-6:
+    balance = problem.balance(speed, (1, 0), whirl=frequency)
+    J = balance.linearised(padded(mean, (0, 0), (1, 0)))[1]
+    d = mean.size
+    _, sizes, V = np.linalg.svd(J[2 * d :, 2 * d :])  # of the harmonic 1
+    if sizes[-1] > _NEUTRAL * sizes[0]:
         raise ValueError(f"onset: at {speed:g} rad/s no whirl begins; are the supports the same?")
-    p = solved.x * size
-    mean, J = at(p)
-    return mean, np.linalg.svd(J)[2][-1].conj(), p
+    return mean[0], V[-1].conj()

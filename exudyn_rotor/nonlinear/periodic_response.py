@@ -20,7 +20,6 @@ from exudyn_rotor.linear.model.build import Target, warn_of_left_out_stiffening
 from exudyn_rotor.linear.response.loads import At, HarmonicForce, Unbalance, checked_places
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.nonlinear.balance import Balance
-from exudyn_rotor.nonlinear.beside import Beside
 from exudyn_rotor.nonlinear.collect import collected
 from exudyn_rotor.nonlinear.continuation import Family, Point, same
 from exudyn_rotor.nonlinear.periodic_result import PeriodicResponse
@@ -89,7 +88,8 @@ def periodic_response(
         In axes of the mesh, as the rotor is mounted at θ = 0 [m/s²]. What is along the axis does
         not count.
     loads : sequence of HarmonicForce, optional
-        Constant forces: the real parts of their amplitudes.
+        Constant forces: the real parts of their amplitudes. What is along the axis does not count
+        where nothing holds the rotor there.
     own : bool, optional
         Whether the rotor's own eccentricity counts, by added point masses and by its mesh.
     foundation : Foundation, optional
@@ -190,7 +190,7 @@ def periodic_response(
     first = problem_at(float(values[0]))
     span = np.array([np.ptp(values) or abs(values[0]) or 1.0])
     family = Family(
-        balance, span, size_of(first), _measured, tolerance,
+        balance, span, first.size, tolerance,
         (_MOST[0], _MOST_WITH_PASSES if first.laws.passes else _MOST[1] * revolutions),
     )  # fmt: skip
     with one_thread():
@@ -218,26 +218,8 @@ def _checked_parameter(
     return checks.ascending(values, "values"), checks.number(speed, "speed", "rad/s", least=0.0)
 
 
-def size_of(problem: Problem) -> float:
-    """Return the size of a motion that matters [m]: a clearance, or that of the loads."""
-    gaps = [one.clearance_along() for one in problem.laws.bearings]
-    gaps = [gap for gap in gaps if np.isfinite(gap)]
-    return float(min(gaps)) if gaps else 1e-12
-
-
-def _measured(point: Point) -> Point:
-    """Return a point with what motions beside it do."""
-    growth, multiplier = Beside(point.balance, point.c).growth()
-    return replace(point, growth=growth, multiplier=multiplier)
-
-
 def _first(family: Family, problem: Problem, value: float) -> Point:
-    """Return the solution at a value, from where a search begins without another solution.
-
-    Raises
-    ------
-    UnconvergedError, ValueError
-    """
+    """Return the solution at a value, from where a search begins without another solution."""
     p = np.array([value])
     lost: Exception = UnconvergedError("no steady motion was found")
     for balance, c in problem.starts(lambda reach, **more: family.balance(p, reach, **more)):
@@ -316,7 +298,7 @@ def _one_by_one(
                 near = found[-1:] and family.refined(family.at_value(found[-1], value)[0])
             except _FAILS:
                 near = None
-            found.append(_measured(near or _first(family, problem_at(value), value)))
+            found.append(family.measure(near or _first(family, problem_at(value), value)))
         except _FAILS as failed:
             lost = failed
             family.lost.append(f"{value:g}")

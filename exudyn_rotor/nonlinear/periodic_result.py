@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.response.response import DIRECTIONS
 from exudyn_rotor.multibody.full.full_body import reduced_body
-from exudyn_rotor.multibody.rotor.record import StartState, spin_at_start
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState, spin_at_start
 from exudyn_rotor.nonlinear.run_start import state_in_scene
 from exudyn_rotor.results import Result, numbers, storable, text_table, words
 from exudyn_rotor.units import IN_HERTZ, Units
@@ -133,11 +132,6 @@ class PeriodicResponse(Result):
             f"PeriodicResponse({len(self.values)} points on {count} branches over the "
             f"{self.label}, {span})"
         )
-
-    @property
-    def abscissa(self) -> np.ndarray:
-        """The parameter at the points."""
-        return self.values
 
     @property
     def stable(self) -> np.ndarray:

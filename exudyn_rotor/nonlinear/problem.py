@@ -33,19 +33,13 @@ _INSIDE = 0.5  # of a clearance, where a film has that of k₀
 _SAME_PASS = 1e-9  # relative distance of ball pass frequencies that is rounding
 _MORE_UNBALANCE = 2.0 ** np.arange(6.0, -0.5, -0.5)
 _ROUGH = 1e-3
+_ANY_SIZE = 1e-12  # m, of motions without a clearance
 _RESTS = 4  # speeds
-_SMALL = 1e-9  # share of the largest load that counts as none along the axis
 _NOT_ACROSS = (ModeKind.AXIAL.value, ModeKind.SPIN.value)
 
 
 def parted(given: Sequence[Given]) -> tuple[list[Bearing], list[Given]]:
-    """Return the supports whose laws are nonlinear, and all others.
-
-    Raises
-    ------
-    ValueError
-        For a bearing without a force by place and velocity alone.
-    """
+    """Return the supports whose laws are nonlinear, and all others."""
     laws, linear = [], []
     for one in given:
         if not isinstance(one, Bearing) or isinstance(one, AnnularSeal):
@@ -118,10 +112,6 @@ class Problem:
 
         In axes in which the rest is constant: those of the rotor, in which nothing is averaged, if
         it can be.
-
-        Raises
-        ------
-        ValueError
         """
         asked = linear_model(
             given.target,
@@ -135,7 +125,6 @@ class Problem:
         weight = parts_across(axes_of(next(iter(model.rotors.values())).axis), given.gravity)
         steady = [*([BaseAcceleration(-weight)] if np.any(weight) else []), *given.loads]
         static = of_both_signs(total(steady, model, speed)) if steady else {}
-        _check_along(model, static)
         try:
             unbalance = unbalance_load(model, unbalances, own)
         except ValueError:
@@ -149,6 +138,12 @@ class Problem:
                 "load no element carries, and preloaded ones do not move"
             )
         return cls(model, standing, laws, static, unbalance, revolutions)
+
+    @property
+    def size(self) -> float:
+        """Size of a motion that matters [m]: a clearance."""
+        gaps = [one.clearance_along() for one in self.laws.bearings]
+        return float(min([gap for gap in gaps if np.isfinite(gap)], default=_ANY_SIZE))
 
     @property
     def reach(self) -> tuple[int, int]:
@@ -189,12 +184,7 @@ class Problem:
     # ------------------------------------------------------------ where a search begins
 
     def at_rest(self, speed: float) -> tuple[Balance, np.ndarray]:
-        """Return the mean place of the journals under static loads, c (1, d).
-
-        Raises
-        ------
-        UnconvergedError
-        """
+        """Return the mean place of the journals under static loads, c (1, d)."""
         balance = self.balance(speed, (0, 0), unbalance=0.0)
         load = (self.laws.springs * balance.given[0].real).reshape(-1, 2)
         guess = [
@@ -299,26 +289,10 @@ def _check_held(model: LinearModel) -> None:
     across = [name for name in free if name not in _NOT_ACROSS]
     # an eccentric rotor spins about its bearings, which is a combination of motions
     if across and len(free) > model.neutral_motions.shape[1]:
-        ends = f": all stand at {_ends(model)}" if _ends(model) else ""
+        given = [one.interface for each in model.supports.values() for one in each]
         motion = "tilting" if any("tilt" in name for name in across) else "lateral motion"
         raise ValueError(
-            f"supports: nothing holds the rotor against {motion}{ends}; add one at "
-            "another interface"
+            f"supports: nothing holds the rotor against {motion}: all stand at "
+            f"{', '.join(map(repr, dict.fromkeys(given))) or 'no place'}; add one at another "
+            "interface"
         )
-
-
-def _check_along(model: LinearModel, static: Mapping) -> None:
-    """Refuse a load along the axis where nothing holds the rotor."""
-    spins = model.free_spins.shape[1]
-    shifts = model.neutral_motions[:, : model.neutral_motions.shape[1] - spins]
-    largest = max((np.abs(F).max() for F in static.values()), default=0.0)
-    if any(np.abs(F @ shifts).max(initial=0.0) > _SMALL * largest for F in static.values()):
-        raise ValueError(
-            "supports: nothing holds the rotor along its axis, with supports at "
-            f"{_ends(model)}; add a stiffness along the axis, or leave out loads along it"
-        )
-
-
-def _ends(model: LinearModel) -> str:
-    given = (one for each in model.supports.values() for one in each)
-    return ", ".join(dict.fromkeys(repr(one.interface) for one in given))

@@ -30,20 +30,6 @@ _SMALL = 1e-12  # share of a receptance or a motion that is rounding
 _DEPENDENT = 1e-8  # of singular values of static motions
 
 
-def journal_motions(model: LinearModel, names: Sequence[str], speed: float) -> Terms:
-    """Return the motion (3b, k) of journals against what carries them, in axes that stand still."""
-    found = []
-    for name in names:
-        outer = ON_FOUNDATION.format(name)
-        against = model.seen(outer, speed) if outer in model.standing_interfaces else {}
-        moved = difference(model.seen(name, speed), against)
-        moved.setdefault(0, np.zeros((6, model.size)))
-        if model.turns == 0:  # supports act on the mean motion
-            moved = {0: moved[0]}
-        found.append({n: U[:3] for n, U in moved.items()})
-    return stacked(found)
-
-
 def resisted(model: LinearModel) -> np.ndarray:
     """Return all motions but shifts along the axis and spins that nothing holds, (k, r)."""
     return np.eye(model.size) if model.moving_basis is None else model.moving_basis
@@ -51,12 +37,21 @@ def resisted(model: LinearModel) -> np.ndarray:
 
 @kept
 def _journals(model: LinearModel, names: tuple[str, ...], moves: bool) -> Terms:
-    """Return the motion (d, r) of journals across the axis, by motions that something resists."""
-    moved = journal_motions(model, names, float(moves))
-    across, basis = np.arange(3 * len(names)) % 3 < 2, resisted(model)
-    moved = {n: U[across] @ basis for n, U in moved.items()}
-    largest = max(np.abs(U).max() for U in moved.values())
-    return {n: U for n, U in moved.items() if np.abs(U).max() > _SMALL * largest}
+    """Return the motion (d, r) of journals against what carries them, by resisted motions.
+
+    Across the axis, in axes that stand still.
+    """
+    speed, basis, found = float(moves), resisted(model), []
+    for name in names:
+        outer = ON_FOUNDATION.format(name)
+        against = model.seen(outer, speed) if outer in model.standing_interfaces else {}
+        moved = difference(model.seen(name, speed), against)
+        moved.setdefault(0, np.zeros((6, model.size)))
+        waves = moved if model.turns else [0]  # supports act on the mean motion
+        found.append({n: moved[n][:2] @ basis for n in waves})
+    motions = stacked(found)
+    largest = max(np.abs(U).max() for U in motions.values())
+    return {n: U for n, U in motions.items() if np.abs(U).max() > _SMALL * largest}
 
 
 @dataclass(frozen=True, eq=False)

@@ -41,13 +41,7 @@ class Listed(NamedTuple):
 
 
 def as_lists(target: Target, body: RotorBody | Sequence[RotorBody] | None, *given: Any) -> Listed:
-    """Return what is given by lists, in the order of :class:`Listed`; of a scene, what it has.
-
-    Raises
-    ------
-    TypeError, ValueError
-        As :func:`listed`, and for a scene and lists together.
-    """
+    """Return what is given by lists, in the order of :class:`Listed`; of a scene, what it has."""
     if isinstance(target, exudyn.MainSystem):
         if any(np.any(each) if isinstance(each, np.ndarray) else each for each in given[:4]):
             raise ValueError(
@@ -60,47 +54,51 @@ def as_lists(target: Target, body: RotorBody | Sequence[RotorBody] | None, *give
 
 
 def listed(mbs: exudyn.MainSystem, body: RotorBody | Sequence[RotorBody]) -> Listed:
-    """Return what an assembled scene consists of, with constant speeds in place of its drives.
-
-    Raises
-    ------
-    TypeError, ValueError
-        For rotors of another system, and for an item that might be nonlinear or vary with time.
-    """
+    """Return what an assembled scene consists of, with constant speeds in place of its drives."""
     if isinstance(body, list | tuple):
         target, level = scene_train(mbs, body)
         bodies, base, supports, foundation = list(body), None, (), None
     else:
         check_scene(mbs, reduced_body(body, how="the rotor in the scene, of add_rotor"))
-        base = _foundation(body)
+        base = foundation_below(body)
         _check_objects(body, base)
         target, level, bodies = body.selection.source, body.stiffening, [body]
         supports = tuple(one.support for one in body.supports)
         foundation = None if base is None else _in_mesh(base, body)
     for one in bodies:
-        if one.formulation.moves_origin:
-            raise ValueError(f"body: rotor {one.name!r} is moved with its place; {_INSTEAD}")
-    gravity = bodies[0].plan.setup.gravity
-    if any(np.any(one.plan.setup.gravity != gravity) for one in bodies):
+        check_origin(one)
+    gravity = bodies[0].gravity
+    if any(np.any(one.gravity != gravity) for one in bodies):
         raise ValueError("body: the rotors of this scene have different gravity; give all the same")
-    gravity = bodies[0].plan.setup.placement.rotation.T @ gravity
+    gravity = bodies[0].placement.rotation.T @ gravity
     loads = tuple(_loads(mbs, bodies, base))
     return Listed(target, supports, foundation, gravity, loads, level)
 
 
-def _foundation(body: RotorBody) -> SceneFoundation | None:
+def check_origin(body: RotorBody) -> None:
+    """Refuse a rotor whose place is moved."""
+    if body.formulation.moves_origin:
+        raise ValueError(
+            f"body: rotor {body.name!r} follows a prescribed translation, which no steady motion "
+            "here has; look at a run"
+        )
+
+
+def foundation_below(body: RotorBody) -> SceneFoundation | None:
     """Return what carries all supports of a rotor; None for the ground."""
     bases = [one.base for one in body.supports]
     for one in body.supports:
         if one.base is not bases[0] or not isinstance(one.base, SceneFoundation | None):
-            raise ValueError(f"body: the support at {one.support.interface!r} stands on something "
-                             f"else; {_INSTEAD}")  # fmt: skip
+            raise ValueError(
+                f"body: the support at {one.support.interface!r} stands on something else; "
+                f"{_INSTEAD}"
+            )
     return bases[0] if bases else None
 
 
 def _in_mesh(base: SceneFoundation, body: RotorBody) -> Foundation:
     """Return a foundation of a scene in axes of the rotor's mesh."""
-    placement, found = body.plan.setup.placement, base.foundation
+    placement, found = body.placement, base.foundation
     back = placement.rotation.T
     if base.gravity_load is None:  # it does not sag, in lists either
         found = replace(found, participation=np.zeros((3, found.size)))

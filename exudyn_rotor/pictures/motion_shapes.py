@@ -1,4 +1,4 @@
-"""Shapes of harmonic motions of a rotor on its surface: pictures, animations, VTK files."""
+"""Shapes of harmonic motions of a rotor on its surface: pictures and animations."""
 
 from __future__ import annotations
 
@@ -19,7 +19,6 @@ from exudyn_rotor.storage import write_bytes
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.rotating_axes import axes_of
 from exudyn_rotor.units import Units
-from exudyn_rotor.vtk import write_surface
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d import Axes3D
@@ -33,8 +32,6 @@ _COLORS = dict(zip(("forward", "backward", "straight"), COLORS, strict=False))
 _STRAIGHT = 0.02
 # frequencies that differ by less than this share are one
 _SAME = 1e-6
-# harmonics below this share of the largest are not written
-_WRITTEN = 1e-6
 
 
 @storable
@@ -251,35 +248,6 @@ class MotionShapes(Result):
         options = {"append_images": pictures[1:], "duration": each, "loop": 0}
         pictures[0].save(film, format="GIF", save_all=True, **options)
         write_bytes(target, film.getvalue())
-
-    def to_vtk(self, path: str | PathLike) -> None:
-        """Write all shapes on the surface for ParaView; needs the package meshio.
-
-        Every harmonic of a shape gives two vectors, its real and its imaginary part, in mesh axes
-        of the rotor frame: the displacement at the time zero, and with the opposite sign that of
-        a quarter of its period later. Names begin with the index of the shape.
-
-        Parameters
-        ----------
-        path : str or path-like
-            Ends with '.vtu' or '.vtk', in which '_' stands for spaces of names.
-
-        Raises
-        ------
-        ImportError
-            Without meshio: ``pip install "exudyn-rotor[vtk]"``.
-        ValueError
-            For another ending, or without a surface.
-        """
-        values = {}
-        for index, label in enumerate(self.labels):
-            sizes = np.abs(self.motion[index]).max(axis=1)
-            for row in np.flatnonzero(sizes > _WRITTEN * sizes.max()):
-                name = f"{index} {label}, order {self.orders[row]}"
-                shape = self.motion[index, row].reshape(-1, 3)
-                values[f"{name}, real"] = shape.real
-                values[f"{name}, imaginary"] = shape.imag
-        write_surface(path, self.positions, self.triangles, values)
 
     # ------------------------------------------------------------------ parts
 

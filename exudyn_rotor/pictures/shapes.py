@@ -147,7 +147,7 @@ def response_shapes(
     load, held = unbalance_load(model, unbalances, own), model.held_basis
     loads = {n: values[:, None] ** 2 * F for n, F in load.items()}
     none = np.zeros(len(values))
-    stack = model.at_all(values, "held")
+    stack = model.at_all(values)
     found = forced_motions(stack, loads, none, held=held, tolerance=tolerance)
     seen = _of_nodes(model, {n: X.T for n, X in found.items()}, 1.0)
     if any(np.any(np.isnan(x)) for x in seen.values()):

@@ -14,6 +14,7 @@ from exudyn.FEM import FEMinterface
 from exudyn_rotor import checks
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.reduction.reduced_rotor import ModeKind, rigid_names
+from exudyn_rotor.results import Checked, numbers, words
 from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers import modes as eigen
@@ -32,7 +33,7 @@ _APART = 2e-2  # relative distance of the frequencies of a pair, at most
 
 
 @dataclass(frozen=True, eq=False)
-class ModeBasis:
+class ModeBasis(Checked):
     """Displacement modes of one mesh.
 
     Parameters
@@ -62,29 +63,18 @@ class ModeBasis:
     ('sideways',) [nan]
     """
 
-    matrix: np.ndarray
-    labels: tuple[str, ...]
-    nodes: np.ndarray
-    frequencies: np.ndarray | None = None
-    stress: np.ndarray | None = None
+    matrix: np.ndarray = numbers("coordinates", "modes")
+    labels: tuple[str, ...] = words("modes")
+    nodes: np.ndarray = numbers("nodes", 3)
+    frequencies: np.ndarray | None = numbers("modes", finite=False, optional=True)
+    stress: np.ndarray | None = numbers("nodes", 6, "modes", optional=True)
 
     def __post_init__(self) -> None:
-        labels = checks.labels(self.labels, "mode basis: labels")
-        nodes = checks.array(self.nodes, "mode basis: nodes", "m", shape=(None, 3))
-        modes, frequencies = len(labels), self.frequencies
-        frequencies = np.full(modes, np.nan) if frequencies is None else frequencies
-        checked = {
-            "labels": labels,
-            "nodes": nodes,
-            "matrix": checks.array(self.matrix, "mode basis: matrix", shape=(nodes.size, modes)),
-            "frequencies": checks.array(
-                frequencies, "mode basis: frequencies", "rad/s", shape=(modes,), finite=False
-            ),
-        }
-        if self.stress is not None:
-            shape = (len(nodes), 6, modes)
-            checked["stress"] = checks.array(self.stress, "mode basis: stress", shape=shape)
-        checks.keep(self, **checked)
+        super().__post_init__()
+        if len(self.matrix) != self.nodes.size:
+            raise ValueError(f"matrix: needs {self.nodes.size} rows, got {len(self.matrix)}")
+        if self.frequencies is None:
+            checks.keep(self, frequencies=checks.read_only(np.full(len(self.labels), np.nan)))
 
 
 def free_modes(rotor: FiniteElementRotor, count: int) -> ModeBasis:
@@ -127,7 +117,7 @@ def free_modes(rotor: FiniteElementRotor, count: int) -> ModeBasis:
     >>> from exudyn_rotor import SolidRotor, free_modes
     >>> spring = 1e6 * np.kron([[1, -1], [-1, 1]], np.diag([0, 0, 1]))
     >>> ends = [[0, 0, 0], [0, 0, 1]]
-    >>> rotor = SolidRotor.from_matrices(np.eye(6), spring, ends, "z", grounded=False)
+    >>> rotor = SolidRotor.from_matrices(np.eye(6), spring, ends, "z")
     >>> modes = free_modes(rotor, 1)
     >>> print(modes.labels, np.round(modes.frequencies**2))
     ('eigenmode 1',) [2000000.]
@@ -143,14 +133,20 @@ def free_modes(rotor: FiniteElementRotor, count: int) -> ModeBasis:
         if eigen.is_small(size, number) and not (graded and 4 * number <= size):
             dense = stiffness.toarray(), mass.toarray()
             return eigen.dense_modes(*dense, number, skip=rigid_count)
-        inverse = inertia_relief(rotor, rigid)
+        inverse = inertia_relief(rotor)
         return eigen.lowest_modes(stiffness, mass, inverse, number)
 
     values, modes = lowest_with_pairs(solve, count, size - rigid_count)
     precision = relative_rounding(stiffness, rigid)
     eigen.check_modes(stiffness, mass, values, modes, precision=precision)
-    modes = eigen.with_fixed_sign(modes)
-    return ModeBasis(modes, numbered("eigenmode", count), rotor.nodes, np.sqrt(values))
+    modes = with_fixed_sign(modes)
+    return ModeBasis(modes, numbered("eigenmode", count), rotor.nodes, frequencies=np.sqrt(values))
+
+
+def with_fixed_sign(modes: np.ndarray) -> np.ndarray:
+    """Return the modes with the largest component of each positive."""
+    largest = np.argmax(np.abs(modes), axis=0)
+    return modes * np.sign(modes[largest, np.arange(modes.shape[1])])
 
 
 def lowest_with_pairs(

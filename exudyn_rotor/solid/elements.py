@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
@@ -51,8 +51,6 @@ class SolidElements:
         Lamé parameters λ, μ of every region [Pa].
     densities : ndarray, shape (regions,)
         [kg/m³].
-    free : scipy.sparse.csr_array, optional
-        Takes held directions of clamped nodes out of displacements, shape (3n, 3n).
     """
 
     nodes: np.ndarray
@@ -60,7 +58,6 @@ class SolidElements:
     materials: Sequence[str]
     lame: np.ndarray
     densities: np.ndarray
-    free: sp.csr_array | None = None
 
     @classmethod
     def of_materials(
@@ -87,11 +84,11 @@ class SolidElements:
                 yield (self.densities[part.regions][:, None] * part.weights) @ products
 
         matrix = self._assembled(entries, 1)
-        return self._without_held(matrices.in_all_directions(matrix))
+        return matrices.in_all_directions(matrix)
 
     def stiffness_matrix(self) -> sp.csr_array:
         """Return the stiffness matrix (3n, 3n)."""
-        return self._without_held(self._of_strains(None, None))
+        return self._of_strains(None, None)
 
     def geometric_stiffness(self, displacement: np.ndarray) -> sp.csr_array:
         """Return ``vᵀ K_G u = ∫ σ⁰ : (∇uᵀ∇v) dV`` with σ⁰ of a displacement (3n,).
@@ -108,7 +105,7 @@ class SolidElements:
 
         # it acts on each direction by itself, the same on all
         matrix = self._assembled(entries, 1)
-        return self._without_held(matrices.in_all_directions(matrix))
+        return matrices.in_all_directions(matrix)
 
     def initial_displacement_stiffness(self, displacement: np.ndarray) -> sp.csr_array:
         """Return ``∫ E₁(v) : C : ε(u) + ε(v) : C : E₁(u) dV``, ``E₁(u) = sym(∇u⁰ᵀ∇u)``.
@@ -118,7 +115,7 @@ class SolidElements:
         ``E = sym ∇u + ½ ∇uᵀ∇u``. Parameters as there.
         """
         half = self._of_strains(self._static(displacement), None)
-        return self._without_held(sp.csr_array(half + half.T))
+        return sp.csr_array(half + half.T)
 
     def squared_displacement_stiffness(self, displacement: np.ndarray) -> sp.csr_array:
         """Return ``∫ E₁(v) : C : E₁(u) dV``, the tangent's part of second order in u⁰.
@@ -126,7 +123,7 @@ class SolidElements:
         Symbols and parameters of :meth:`initial_displacement_stiffness`.
         """
         static = self._static(displacement)
-        return self._without_held(self._of_strains(static, static))
+        return self._of_strains(static, static)
 
     def nodal_stress(self, displacements: np.ndarray) -> np.ndarray:
         """Return the stress (n, 6, k) of displacement columns (3n, k).
@@ -188,10 +185,6 @@ class SolidElements:
             for i, name in enumerate(self.materials)
         ]
 
-    def holding(self, free: sp.csr_array) -> SolidElements:
-        """Return the elements with more directions held, which the projection `free` takes out."""
-        return replace(self, free=free if self.free is None else sp.csr_array(self.free @ free))
-
     def interpolation(self) -> sp.csr_array | None:
         """Return what gives all displacements (3n,) that are linear in every element.
 
@@ -210,8 +203,7 @@ class SolidElements:
         means = sp.csr_array(
             (np.full(every.size, 0.5), (every, ends.ravel())), shape=(len(ends), vertices)
         )
-        linear = sp.csr_array(sp.kron(means, sp.eye_array(3), format="csr"))
-        return linear if self.free is None else sp.csr_array(self.free @ linear)
+        return matrices.in_all_directions(means)
 
     def _of_strains(self, first: np.ndarray | None, second: np.ndarray | None) -> sp.csr_array:
         """Return ``∫ E(v) : C : E(u) dV``, of E = ε for None, else E₁ of nodal displacements."""
@@ -267,9 +259,6 @@ class SolidElements:
 
     def _static(self, displacement: np.ndarray) -> np.ndarray:
         return checks.array(displacement, "displacement", shape=(self.nodes.size,)).reshape(-1, 3)
-
-    def _without_held(self, matrix: sp.csr_array) -> sp.csr_array:
-        return matrix if self.free is None else sp.csr_array(self.free.T @ matrix @ self.free)
 
 
 @dataclass(frozen=True, eq=False)

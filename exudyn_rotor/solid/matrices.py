@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from typing import Any
-from weakref import WeakValueDictionary
 
 import numpy as np
 import scipy.sparse as sp
@@ -23,13 +22,11 @@ _POSITION_TOLERANCE = 1e-9
 def as_nodes(nodes: Any) -> np.ndarray:
     """Return the node positions as a read-only array, shape (n, 3), n ≥ 1."""
     positions = checks.array(nodes, "nodes", "m", finite=False)
-    if positions.ndim == 2 and positions.shape[1] in (6, 7):
-        raise ValueError(
-            f"nodes: {positions.shape[1]} coordinates per node mean rotation-carrying nodes "
-            "(shells, beams); a solid rotor needs solid elements with x, y, z per node"
-        )
     if positions.ndim != 2 or positions.shape[1] != 3 or len(positions) == 0:
-        raise ValueError(f"nodes: the shape must be (n, 3), got {positions.shape}")
+        raise ValueError(
+            f"nodes: the shape must be (n, 3), got {positions.shape}; a solid rotor has no nodes "
+            "with rotations (shells, beams)"
+        )
     bad = np.flatnonzero(~(np.abs(positions) < _FARTHEST).all(axis=1))
     if bad.size:
         raise ValueError(
@@ -37,10 +34,6 @@ def as_nodes(nodes: Any) -> np.ndarray:
             f"{_FARTHEST:g} m: nodes {_numbers(bad)}"
         )
     return positions
-
-
-# what these functions made: rotors made from rotors do not check the same matrix again
-_checked: WeakValueDictionary[tuple[str, int], sp.csr_array] = WeakValueDictionary()
 
 
 def as_mass(matrix: Any, node_count: int) -> sp.csr_array:
@@ -64,11 +57,16 @@ def as_matrix(
     `label` names it in messages; `check` raises if it is wrong otherwise.
     """
     size = 3 * node_count
-    known = _checked.get((label, id(matrix)))
-    if known is not None and known.shape == (size, size):
-        return known
+    is_known = isinstance(matrix, sp.csr_array) and not matrix.data.flags.writeable
+    if is_known and matrix.shape == (size, size):
+        return matrix  # of a rotor, whose matrices were checked
     converted = _to_csr(label, matrix)
-    _check_size(label, converted.shape, node_count)
+    if converted.shape != (size, size):
+        raise ValueError(
+            f"{label}: the shape must be ({size}, {size}), three displacements for each of "
+            f"{node_count} nodes, got {converted.shape}; a solid rotor has no nodes with rotations "
+            "(shells, beams)"
+        )
     bad = int(np.count_nonzero(~np.isfinite(converted.data)))
     if bad:
         raise ValueError(
@@ -77,7 +75,6 @@ def as_matrix(
     result = frozen(_symmetrised(label, converted))
     if check is not None:
         check(result)
-    _checked[label, id(result)] = result
     return result
 
 
@@ -93,19 +90,9 @@ def check_same_mesh(nodes: np.ndarray, others: np.ndarray, label: str = "modal b
         )
 
 
-def in_all_directions(matrix: sp.csr_array) -> sp.csr_array:
-    """Return ``A ⊗ I₃`` of a matrix (n, n) in canonical form, faster than scipy does."""
-    lengths, nnz = np.diff(matrix.indptr), matrix.nnz
-    first = 2 * np.repeat(matrix.indptr[:-1], lengths) + np.arange(nnz, dtype=np.int32)
-    step = np.repeat(lengths, lengths)
-    data, indices = np.empty(3 * nnz), np.empty(3 * nnz, dtype=matrix.indices.dtype)
-    for direction in range(3):
-        place = first + direction * step
-        data[place], indices[place] = matrix.data, 3 * matrix.indices + direction
-    ends = np.append(0, np.cumsum(np.repeat(lengths, 3)))
-    return sp.csr_array(
-        (data, indices, ends.astype(indices.dtype)), shape=3 * np.array(matrix.shape)
-    )
+def in_all_directions(matrix: sp.sparray) -> sp.csr_array:
+    """Return ``A ⊗ I₃`` of a matrix (n, m)."""
+    return sp.csr_array(sp.kron(matrix, sp.eye_array(3), format="csr"))
 
 
 def frozen(matrix: sp.csr_array) -> sp.csr_array:
@@ -226,21 +213,6 @@ def _to_csr(label: str, matrix: Any) -> sp.csr_array:
     if rows.nnz <= np.iinfo(np.int32).max:
         indices = tuple(array.astype(np.int32, copy=False) for array in indices)
     return sp.csr_array((entries, *indices), shape=rows.shape)
-
-
-def _check_size(label: str, shape: tuple[int, int], node_count: int) -> None:
-    size = 3 * node_count
-    if shape in ((2 * size, 2 * size), (7 * node_count, 7 * node_count)):
-        raise ValueError(
-            f"{label}: {shape[0] // node_count} coordinates for each of {node_count} nodes mean "
-            "rotation-carrying nodes (shells, beams); a solid rotor needs solid elements with "
-            "three displacements per node"
-        )
-    if shape != (size, size):
-        raise ValueError(
-            f"{label}: the shape must be ({size}, {size}), three displacements for each of "
-            f"{node_count} nodes, got {shape}"
-        )
 
 
 def _symmetrised(label: str, matrix: sp.csr_array) -> sp.csr_array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
@@ -14,15 +14,17 @@ from exudyn_rotor import checks
 from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.elements import SolidElements
-from exudyn_rotor.solid.model import FiniteElementModel, check_connected, check_model_units
-from exudyn_rotor.solid.rigid_disc import STIFF, PointMass, RigidDisc, add_nodal_mass, as_tensor
-from exudyn_rotor.solid.surface import outer_section
-from exudyn_rotor.solvers.inertia_relief import (
-    SOLVERS,
+from exudyn_rotor.solid.model import (
+    FiniteElementModel,
+    check_connected,
+    check_model_units,
     count_rigid_motions,
     holding_spring,
     rigid_basis,
 )
+from exudyn_rotor.solid.rigid_disc import STIFF, PointMass, RigidDisc, add_nodal_mass, as_tensor
+from exudyn_rotor.solid.surface import outer_section
+from exudyn_rotor.solvers.inertia_relief import SOLVERS
 from exudyn_rotor.theory.axis import SpinAxis, skew
 
 
@@ -198,21 +200,16 @@ class FiniteElementRotor:
         model: FiniteElementModel,
         axis: AxisLike,
         check_units: bool,
-        grounded: bool | None = None,
-        allow_parts: bool = False,
     ) -> Rotor:
         """Return the rotor of a model whose arrays are checked here; as ``from_matrices``."""
         checks.flag(check_units, "check_units")
-        checks.flag(allow_parts, "allow_parts")
-        if grounded is not None:
-            checks.flag(grounded, "grounded")
         nodes = matrices.as_nodes(model.nodes)
         mass = matrices.as_mass(model.mass, len(nodes))
         if check_units:
             check_model_units(nodes, float(mass[::3, ::3].sum()))
         stiffness = matrices.as_stiffness(model.stiffness, len(nodes))
-        if not allow_parts:
-            check_connected(nodes, mass, stiffness, model.elements)
+        if model.elements is not None:
+            check_connected(model.elements, mass, stiffness)
         return cls(
             nodes=nodes,
             mass=mass,
@@ -224,7 +221,7 @@ class FiniteElementRotor:
                 for name, node_set in model.node_sets.items()
             },
             triangles=model.triangles,
-            rigid_motions=count_rigid_motions(nodes, stiffness, grounded),
+            rigid_motions=count_rigid_motions(nodes, stiffness),
             elements=model.elements,
         )
 
@@ -232,14 +229,6 @@ class FiniteElementRotor:
     def node_count(self) -> int:
         """Number of nodes n."""
         return len(self.nodes)
-
-    @property
-    def stress_recovery(self) -> Callable[[np.ndarray], np.ndarray] | None:
-        """Maps displacement columns (3n, k) to nodal stress (n, 6, k) [Pa]; None without elements.
-
-        Components xx, yy, zz, yz, xz, xy in mesh axes.
-        """
-        return None if self.elements is None else self.elements.nodal_stress
 
     @property
     def total_mass(self) -> float:
@@ -260,11 +249,6 @@ class FiniteElementRotor:
     def centrifugal_load(self) -> np.ndarray:
         """Centrifugal nodal load ``f_c = M x_⊥`` per ω², shape (3n,) [N s²]."""
         return self.mass @ self.axis.radial(self.nodes).ravel()
-
-    @property
-    def euler_load(self) -> np.ndarray:
-        """Euler nodal load ``−M ẽx`` per ω̇, shape (3n,) [N s²]."""
-        return -self.mass @ np.cross(self.axis.direction, self.nodes - self.axis.point).ravel()
 
     def with_solver(self: Rotor, solver: str) -> Rotor:
         """Return the rotor with another solver, 'auto', 'direct' or 'iterative'.
@@ -468,12 +452,8 @@ class FiniteElementRotor:
         moves[held] = 0.0
         free = sp.diags_array(moves.ravel(), format="csr")
         springs = sp.diags_array((1.0 - moves.ravel()) * holding_spring(self.stiffness))
-        return replace(
-            self,
-            stiffness=matrices.frozen(sp.csr_array(free @ self.stiffness @ free + springs)),
-            rigid_motions=0,
-            elements=None if self.elements is None else self.elements.holding(free),
-        )
+        stiffness = matrices.frozen(sp.csr_array(free @ self.stiffness @ free + springs))
+        return replace(self, stiffness=stiffness, rigid_motions=0)
 
     def __repr__(self) -> str:
         return (

@@ -4,46 +4,38 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.solid.model import described_part, loose_parts
+from exudyn_rotor.solid.model import box
 from exudyn_rotor.solid.rotor import FiniteElementRotor, Interface
 from exudyn_rotor.theory.axis import SpinAxis
 
 
-def summary(rotor: FiniteElementRotor) -> str:
-    """Return what `rotor` consists of and is held by, as lines of text."""
-    axis, e = rotor.axis, rotor.axis.direction
-    kind = "lumped" if rotor.mass.nnz == np.count_nonzero(rotor.mass.diagonal()) else "consistent"
-    support = "grounded" if rotor.grounded else "not supported"
-    loose = loose_parts(rotor.nodes, rotor.stiffness)
-    parts = loose or [np.arange(rotor.node_count)]
+def summary(self: FiniteElementRotor) -> str:
+    """Return size, mass, supports, materials, interfaces, masses and discs as text."""
+    axis, e = self.axis, self.axis.direction
+    kind = "lumped" if self.mass.nnz == np.count_nonzero(self.mass.diagonal()) else "consistent"
+    support = "grounded" if self.grounded else "not supported"
     lines = [
-        f"nodes            {rotor.node_count}",
-        f"mass             {rotor.total_mass:.6g} kg ({kind} mass matrix)",
-        f"centre of mass   {_vector(rotor.center_of_mass)} m",
+        f"nodes            {self.node_count}",
+        f"mass             {self.total_mass:.6g} kg ({kind} mass matrix)",
+        f"size             {box(self.nodes)}",
+        f"centre of mass   {_vector(self.center_of_mass)} m",
         f"spin axis        direction {_vector(e)}, point {_vector(axis.point)} m",
         f"across the axis  {directions(axis)}",
-        f"rigid motions    {rotor.rigid_motions} of 6 free ({support})",
+        f"rigid motions    {self.rigid_motions} of 6 free ({support})",
     ]
-    if loose:
-        lines.append(f"loose parts      {len(loose)}: nothing connects them")
-    lines += [
-        f"part             {number}: "
-        + described_part(part, rotor.nodes, rotor.mass, rotor.elements)
-        for number, part in enumerate(parts, 1)
-    ]
-    regions = () if rotor.elements is None else rotor.elements.described()
+    regions = () if self.elements is None else self.elements.described()
     lines += [
         f"material         {name}: {mass:.6g} kg, E {young:.5g} Pa, ν {ratio:.4g}, "
         f"ρ {density:.5g} kg/m³"
         for name, mass, young, ratio, density in regions
     ]
-    lines += [_interface_line(rotor, interface) for interface in rotor.interfaces.values()]
+    lines += [_interface_line(self, interface) for interface in self.interfaces.values()]
     lines += [
         f"point mass       {one.mass:.6g} kg at {_vector(one.position)} m, on node {one.node}, "
         f"{one.distance:.3g} m away"
-        for one in rotor.point_masses
+        for one in self.point_masses
     ]
-    for disc in rotor.discs:
+    for disc in self.discs:
         polar = e @ disc.inertia @ e
         lines.append(
             f"rigid disc       {disc.mass:.6g} kg at {_vector(disc.center)} m, polar {polar:.5g}, "

@@ -10,8 +10,6 @@ from exudyn_rotor.solvers.inertia_relief import InertiaRelief
 
 # two constraints are taken for the same one if the scaled matrix is this near to singular
 _SMALLEST_RECIPROCAL_CONDITION = 1e-12
-# share of a node's flexibility, per rigid motion, below which constraints are scaled alike
-_STIFF = 1e-8
 
 
 class ConstrainedInverse:
@@ -35,7 +33,7 @@ class ConstrainedInverse:
         flexibility = constraints @ self._flexibility
         matrix = np.block([[flexibility, -held], [held.T, np.zeros((held.shape[1],) * 2)]])
         # forces and displacements have different units: bring all entries to one or less
-        stiff = 1.0 / np.sqrt(self._flexibilities(flexibility, held))
+        stiff = 1.0 / np.sqrt(np.diag(flexibility))
         loose = 1.0 / np.linalg.norm(stiff[:, None] * held, axis=0)
         self._scale = np.concatenate([stiff, loose])
         scaled = self._scale[:, None] * matrix * self._scale
@@ -75,16 +73,3 @@ class ConstrainedInverse:
         scaled = la.lu_solve(self._factor, (right.T * self._scale).T)
         reaction, rigid = np.split((scaled.T * self._scale).T, [len(gap)])
         return rigid, reaction
-
-    def _flexibilities(self, flexibility: np.ndarray, held: np.ndarray) -> np.ndarray:
-        """Return the flexibility of each constraint, or more than rounding leaves of none.
-
-        Forces on the mean motion of all nodes may deform nothing, as those of inertia do not.
-        """
-        own, rigid = np.diag(flexibility), self._relief.rigid
-        if rigid.shape[1] == 0:  # the ground holds the rotor: what moves deforms it
-            return own
-        at = self._constraints.indices[np.argmax(np.abs(self._constraints.data))]
-        node = np.eye(1, len(rigid), at)[0]
-        of_node = node @ self._relief.solve(node) / np.sum(rigid[at] ** 2)
-        return np.maximum(own, _STIFF * of_node * np.sum(held**2, axis=1))

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 
+Inverse = Any  # an InertiaRelief or a ConstrainedInverse, which import this file
 _BLOCKS = 4  # of as many columns as modes are sought are kept
 _MORE = 5  # modes are sought beside those that are wanted
 _GUARDS = 2  # of them must nearly converge, so that none below is missed
@@ -17,16 +18,6 @@ _ROUNDING_SHARE = 0.1
 _MOST_STEPS = 300
 _DEPENDENT = 1e-13
 _SEED = 6
-
-
-class Inverse(Protocol):
-    """Inverse of a stiffness on the motions that are allowed, exact and approximate."""
-
-    iterative: bool
-
-    def solve(self, load: np.ndarray) -> np.ndarray: ...
-    def precondition(self, load: np.ndarray) -> np.ndarray: ...
-    def start(self, count: int) -> np.ndarray: ...
 
 
 def davidson_modes(

@@ -12,7 +12,6 @@ from contextlib import contextmanager, nullcontext
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
-from threading import Lock
 
 import ngsolve
 import numpy as np
@@ -236,32 +235,6 @@ def _libraries() -> ThreadpoolController:
     return loaded.select(internal_api=sorted(names - {"mkl"} or names))
 
 
-class _Limit:
-    """One thread as long as anyone holds it, also where several threads of Python do."""
-
-    def __init__(self) -> None:
-        self._lock, self._holders = Lock(), 0
-
-    def take(self) -> None:
-        with self._lock:
-            if self._holders == 0:
-                libraries = _libraries().lib_controllers
-                self._before = [(each, each.num_threads) for each in libraries]
-                for library in libraries:
-                    library.set_num_threads(1)
-            self._holders += 1
-
-    def leave(self) -> None:
-        with self._lock:
-            self._holders -= 1
-            if self._holders == 0:
-                for library, count in self._before:
-                    library.set_num_threads(count)
-
-
-_LIMIT = _Limit()
-
-
 @contextmanager
 def one_thread() -> Iterator[None]:
     """Let BLAS and LAPACK use one thread meanwhile; also a decorator.
@@ -269,8 +242,5 @@ def one_thread() -> Iterator[None]:
     Dense problems of some hundred coordinates, many of them one after the other, take up to fifty
     times longer on several threads, which wait for one another.
     """
-    _LIMIT.take()
-    try:
+    with _libraries().limit(limits=1):
         yield
-    finally:
-        _LIMIT.leave()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import weakref
-from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -21,11 +20,14 @@ from exudyn_rotor.solvers.factor import (
     row_norm,
 )
 from exudyn_rotor.solvers.two_level import TwoLevel, conjugate_gradients
-from exudyn_rotor.theory.axis import coupled, rotations, translations
+from exudyn_rotor.theory.axis import rotations, translations
 
 Rotor = Any  # a FiniteElementRotor, of the layer above
 SOLVERS = ("auto", "direct", "iterative")
 PRECISE = 1e-12  # share of a load that iteration may leave
+# steps in which iteration must leave that share of a smooth load: 6 are needed for compact solids,
+# 80 for nearly incompressible ones, 200 for blades, where modes would not converge
+_TRIED, _TRIED_TO, _SEED = 100, 1e-2, 7
 # coordinates below which a factor takes less memory than any machine has, and those from which 20
 # modes by iteration take half the time that they take with a factor of NGSolve, and of Pardiso
 _QUICK = 50_000
@@ -36,165 +38,51 @@ _ITERATIVE_PER_ENTRY, _ITERATIVE_PER_COORDINATE = 6.0, 5200.0
 # to d digits in an export 0.2·10⁻ᵈ (8 digits moved the lowest frequencies by 1e-4); a support of
 # k N/m leaves about k / ‖K‖∞
 _STRAIN_LIMIT = 1e-8
-# Limits of the relative residual ‖K r‖ / ‖ |K| |r| ‖ of a rigid motion r. Measured on meshes from
-# 15 000 to 108 000 coordinates, the same in SI and in mm and tonnes: a free motion leaves 1e-16;
-# rounding K to d digits gives 0.4·10⁻ᵈ in nearly all rows (4e-9 for 8 digits); springs of
-# 1e4 N/m at one node or on one face give 1e-9 to 1e-8, bearings of 1e8 N/m 1e-6 to 1e-4, but in
-# their own rows only. Where most rows cancel far better than the whole, the residual comes from
-# such supports and not from lost digits.
-FREE_BELOW = 1e-9
-HELD_ABOVE = 1e-5
-LOCALLY_HELD_ABOVE = 1e-12
-LOCAL_RATIO = 1e-3
-# springs of clamped nodes over the largest diagonal entry of the stiffness: they move by less than
-# 1e-10 of the others, and dense eigenvalues, whose error is relative to the stiffest spring, keep
-# four digits; above a share of it no spring to the ground means anything else
-_SPRING, _STIFFER = 1e6, 1e4
 
 
-@dataclass(frozen=True, eq=False)
-class Way:
-    """How the stiffness of a model may be inverted.
+def interpolation_of(
+    rotor: Rotor, stiffness: sp.csr_array, nodes: np.ndarray | None = None
+) -> sp.csr_array | None:
+    """Return P of :class:`TwoLevel` if a stiffness is to be inverted by iteration, else None.
 
-    Attributes
-    ----------
-    solver : {'auto', 'direct', 'iterative'}
-    interpolation : scipy.sparse.csr_array, shape (3n, 3v), optional
-        Displacements of all nodes from those of the elements' vertices, which are the first nodes;
-        without it there is only the direct way.
+    The stiffness is that of a rotor, of some `nodes` or of all.
     """
+    size = stiffness.shape[0]
+    if rotor.solver == "direct" or (rotor.solver == "auto" and size < _QUICK):
+        return None
+    linear = None if rotor.elements is None else rotor.elements.interpolation()
+    if rotor.solver == "auto":
+        longest = _ITERATED_BESIDE_PARDISO if has_pardiso() else _ITERATED
+        if size <= longest and factor_bytes(stiffness) <= available_memory():
+            return None
+    elif linear is None:
+        raise ValueError(
+            "solver='iterative' needs a model of second-order elements made by "
+            "SolidRotor.from_ngsolve; matrices without a mesh have the direct solver only"
+        )
+    if linear is None or nodes is None:
+        return linear
+    vertices = nodes[nodes < linear.shape[1] // 3]
+    return linear[coordinates(nodes)][:, coordinates(vertices)]
 
-    solver: str = "direct"
-    interpolation: sp.csr_array | None = None
 
-    @classmethod
-    def of(cls, rotor: Rotor) -> Way:
-        """Return the way of a rotor."""
-        linear = None if rotor.elements is None else rotor.elements.interpolation()
-        return cls(rotor.solver, linear)
-
-    def restricted(self, nodes: np.ndarray) -> Way:
-        """Return the way for the rows and columns of some nodes."""
-        if self.interpolation is None:
-            return self
-        columns = nodes[nodes < self.interpolation.shape[1] // 3]
-        rows = self.interpolation[coordinates(nodes)]
-        return replace(self, interpolation=rows[:, coordinates(columns)])
-
-    def is_iterative(self, stiffness: sp.csr_array) -> bool:
-        """Return whether iteration is asked for, or the better way; raise where none is there."""
-        size = stiffness.shape[0]
-        if self.solver == "iterative":
-            if self.interpolation is None:
-                raise ValueError(
-                    "solver='iterative' needs a model of second-order elements made by "
-                    "SolidRotor.from_ngsolve; matrices without a mesh have the direct solver only"
-                )
-            return True
-        if size < _QUICK:
-            return False
-        iterated = _ITERATED_BESIDE_PARDISO if has_pardiso() else _ITERATED
-        needed, available = factor_bytes(stiffness), available_memory()
-        iterates = self.solver == "auto" and self.interpolation is not None
-        if iterates and (needed > available or size > iterated):
-            needed = _ITERATIVE_PER_ENTRY * stiffness.nnz + _ITERATIVE_PER_COORDINATE * size
-        else:
-            iterates = False
-        if needed > available:
-            raise TooLittleMemoryError(
-                f"a static solution of {size} coordinates needs up to {needed / 1e9:.1f} GB, and "
-                f"{available / 1e9:.1f} GB of memory are available; use a coarser mesh, or "
-                "second-order elements in SolidRotor.from_ngsolve with_solver('auto'), for which "
-                "there is an iterative solver that takes less than a factor"
-            )
-        return iterates
+def _check_memory(stiffness: sp.csr_array, iterative: bool) -> None:
+    size, available = stiffness.shape[0], available_memory()
+    needed = factor_bytes(stiffness)
+    if iterative:
+        needed = _ITERATIVE_PER_ENTRY * stiffness.nnz + _ITERATIVE_PER_COORDINATE * size
+    if size >= _QUICK and needed > available:
+        raise TooLittleMemoryError(
+            f"a static solution of {size} coordinates needs up to {needed / 1e9:.1f} GB, and "
+            f"{available / 1e9:.1f} GB of memory are available; use a coarser mesh, or "
+            "second-order elements in SolidRotor.from_ngsolve with_solver('auto'), for which "
+            "there is an iterative solver that takes less than a factor"
+        )
 
 
 def coordinates(nodes: np.ndarray) -> np.ndarray:
     """Return the numbers of the coordinates of nodes."""
     return (3 * np.asarray(nodes)[:, None] + np.arange(3)).ravel()
-
-
-def rigid_basis(nodes: np.ndarray) -> np.ndarray:
-    """Return orthonormal columns (3n, r) spanning the rigid motions that displace any node.
-
-    r is 6, but 5 for nodes on one line and 3 for a single node.
-    """
-    center = nodes.mean(axis=0)
-    radius = np.sqrt(np.mean(np.sum((nodes - center) ** 2, axis=1))) or 1.0
-    motions = np.hstack([translations(len(nodes)), rotations(nodes, center) / radius])
-    basis, lengths, _ = np.linalg.svd(motions, full_matrices=False)
-    return basis[:, : np.count_nonzero(lengths > 1e-9 * lengths[0])]
-
-
-def rigid_residuals(nodes: np.ndarray, stiffness: sp.csr_array) -> tuple[np.ndarray, np.ndarray]:
-    """Return how strongly `stiffness` resists the rigid motions, as a whole and in most rows.
-
-    The motions are combined such that each is held or free by itself (singular vectors of K R).
-    Returned are ‖K r‖ / ‖ |K| |r| ‖, and the median over the rows of |K r| / (|K| |r|), both (r,):
-    forces relative to the terms that have to cancel, whatever the units and the mesh size.
-    """
-    basis = rigid_basis(nodes)
-    _, _, combinations = np.linalg.svd(stiffness @ basis, full_matrices=False)
-    motions = basis @ combinations.T
-    forces = np.abs(stiffness @ motions)
-    terms = abs(stiffness) @ np.abs(motions)
-    residuals = _ratio(np.linalg.norm(forces, axis=0), np.linalg.norm(terms, axis=0))
-    return residuals, np.median(_ratio(forces, terms), axis=0)
-
-
-def locally_held(residuals: np.ndarray, typical: np.ndarray) -> np.ndarray:
-    """Return which motions are held by springs in few rows, not by lost digits in most."""
-    return (typical < LOCAL_RATIO * residuals) & (residuals > LOCALLY_HELD_ABOVE)
-
-
-def count_rigid_motions(
-    nodes: np.ndarray, stiffness: sp.csr_array, grounded: bool | None = None
-) -> int:
-    """Return how many of the six rigid motions `stiffness` leaves free.
-
-    A rotation that displaces no node (about a line that holds all nodes) counts as free. `grounded`
-    is what the user knows: True if springs to the ground are inside the matrix, False if not;
-    needed only if the matrix itself does not tell. ValueError if it contradicts the matrix.
-    """
-    residuals, typical = rigid_residuals(nodes, stiffness)
-    held = (residuals > HELD_ABOVE) | locally_held(residuals, typical)
-    doubtful = (residuals >= FREE_BELOW) & ~held
-    if grounded is None and np.any(doubtful):
-        raise ValueError(
-            f"stiffness matrix: {np.count_nonzero(doubtful)} rigid motions are neither free nor "
-            f"held (relative residual {residuals[doubtful].max():.2g}, free is below "
-            f"{FREE_BELOW:g}, held above {HELD_ABOVE:g}). Either the matrix lost digits in an "
-            "export: write all 16 digits, or pass grounded=False to take it as free. Or very soft "
-            "springs to the ground act on most nodes: pass grounded=True"
-        )
-    if grounded is False and np.any(held):
-        raise ValueError(
-            f"stiffness matrix: grounded=False, but {np.count_nonzero(held)} rigid motions are "
-            f"held (relative residual {residuals[held].max():.2g}); remove the supports from the "
-            "matrix or leave grounded out"
-        )
-    if grounded is True and not np.any(held | doubtful):
-        raise ValueError(
-            "stiffness matrix: grounded=True, but all six rigid motions are free; leave grounded "
-            "out or add the supports"
-        )
-    return 6 - int(np.count_nonzero(held | doubtful if grounded else held))
-
-
-def _ratio(values: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    return np.divide(values, sizes, out=np.zeros_like(values), where=sizes > 0.0)
-
-
-def holding_spring(stiffness: sp.csr_array) -> float:
-    """Return the spring [N/m] that holds clamped coordinates."""
-    return float(_SPRING * stiffness.diagonal()[~clamped_coordinates(stiffness)].max())
-
-
-def clamped_coordinates(stiffness: sp.csr_array) -> np.ndarray:
-    """Return which coordinates are clamped (3n,): those on nothing but a stiff spring."""
-    joined, diagonal = coupled(stiffness), stiffness.diagonal()
-    return ~joined & joined.any() & (diagonal > _STIFFER * diagonal[joined].max(initial=0.0))
 
 
 def free_rigid_motions(
@@ -246,30 +134,31 @@ class InertiaRelief:
     rigid : ndarray, shape (m, r)
         Mass-orthonormal free rigid motions ``R`` of :func:`free_rigid_motions`; with ``r = 0``
         this is the ordinary inverse.
-    way : Way
+    interpolation : scipy.sparse.csr_array, shape (m, c), optional
+        Displacements from those of the vertices, for iteration; without it there is a factor.
 
     ValueError if the stiffness is singular even with the rigid motions held.
     """
 
     def __init__(
-        self, stiffness: sp.csr_array, mass: sp.csr_array, rigid: np.ndarray, way: Way
+        self,
+        stiffness: sp.csr_array,
+        mass: sp.csr_array,
+        rigid: np.ndarray,
+        interpolation: sp.csr_array | None = None,
     ) -> None:
         self.rigid = rigid
         self._momentum = mass @ rigid
-        self.iterative = way.is_iterative(stiffness)
+        self.iterative = interpolation is not None
+        _check_memory(stiffness, self.iterative)
         try:
             if self.iterative:
-                self._two_level = TwoLevel(
-                    stiffness,
-                    mass,
-                    rigid,
-                    way.interpolation,
-                    lambda *linear: InertiaRelief(*linear, Way()).solve,
-                )
+                self._two_level = TwoLevel(stiffness, mass, rigid, interpolation, InertiaRelief)
                 # not the matrix itself, whose end is the end of what inertia_relief knows
                 arrays = stiffness.data, stiffness.indices, stiffness.indptr
                 self._stiffness = sp.csr_array(arrays, shape=stiffness.shape)
                 self._unit = rounding_unit(stiffness)
+                self._check_rate(mass)
             else:
                 self._factor = SparseCholesky(_held(stiffness, rigid))
         except NotPositiveDefiniteError as error:
@@ -301,6 +190,14 @@ class InertiaRelief:
         """Return `count` motions (m, count) to begin with, near the lowest modes."""
         return self._two_level.start(count)
 
+    def _check_rate(self, mass: sp.csr_array) -> None:
+        """Refuse iteration that a smooth load shows to be too slow."""
+        load = np.random.default_rng(_SEED).standard_normal((mass.shape[0], 1))
+        for _ in range(2):
+            load = mass @ self.precondition(mass @ load)
+        load = self._balanced(load)
+        conjugate_gradients(self._stiffness, self.precondition, load, self._unit, _TRIED_TO, _TRIED)
+
     def _balanced(self, load: np.ndarray) -> np.ndarray:
         return load - self._momentum @ (self.rigid.T @ load)
 
@@ -327,8 +224,8 @@ def held_inverse(rotor: Rotor, nodes: np.ndarray) -> InertiaRelief:
     """
     inner = coordinates(nodes)
     stiffness, mass = (matrix[inner][:, inner] for matrix in (rotor.stiffness, rotor.mass))
-    none = np.zeros((inner.size, 0))
-    return InertiaRelief(stiffness, mass, none, Way.of(rotor).restricted(nodes))
+    linear = interpolation_of(rotor, stiffness, nodes)
+    return InertiaRelief(stiffness, mass, np.zeros((inner.size, 0)), linear)
 
 
 # by the id of a living stiffness matrix: modes, attachment modes and prestress share the factor
@@ -349,18 +246,17 @@ def free_motions_of(rotor: Rotor) -> np.ndarray:
     return free_rigid_motions(rotor.nodes, rotor.mass, rotor.stiffness, rotor.rigid_motions)
 
 
-def inertia_relief(rotor: Rotor, rigid: np.ndarray | None = None) -> InertiaRelief:
+def inertia_relief(rotor: Rotor) -> InertiaRelief:
     """Return the elastic inverse of a rotor; factorised once as long as its matrices live.
 
-    `rigid` are its :func:`free_motions_of`, where they are computed already. ValueError if the
-    stiffness resists a motion that should be free, or leaves others free.
+    ValueError if the stiffness resists a motion that should be free, or leaves others free.
     """
     known = _known_relief(rotor)
     if known is not None:
         return known
     stiffness, mass = rotor.stiffness, rotor.mass
-    rigid = free_motions_of(rotor) if rigid is None else rigid
-    relief = InertiaRelief(stiffness, mass, rigid, Way.of(rotor))
+    linear = interpolation_of(rotor, stiffness)
+    relief = InertiaRelief(stiffness, mass, free_motions_of(rotor), linear)
     if id(stiffness) not in _known:
         weakref.finalize(stiffness, _known.pop, id(stiffness), None)
     _known[id(stiffness)] = weakref.ref(mass), (rotor.rigid_motions, rotor.solver), relief

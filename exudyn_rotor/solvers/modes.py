@@ -64,25 +64,11 @@ def lanczos_modes(
 ) -> Modes:
     """Return the `count` lowest modes by Lanczos iteration on ``K⁻¹ M`` (ARPACK).
 
-    Parameters
-    ----------
-    mass : scipy.sparse.csr_array, shape (n, n)
-    inverse : callable
-        The stiffness's inverse on the motions that are allowed, of loads (n, k): symmetric,
-        positive semi-definite; motions in its null space are left out.
-    count : int
-    tolerance : float
-        Residual of the eigenvalues of ``K⁻¹ M``, relative to them.
+    `inverse` is that of the stiffness on the motions that are allowed, of loads (n, k): symmetric,
+    positive semi-definite; motions in its null space are left out. `tolerance` is the residual of
+    the eigenvalues of ``K⁻¹ M``, relative to them. Returned are ``ω²``, ascending, and
+    mass-normalised modes (n, count); ValueError if the iteration does not converge.
 
-    Returns
-    -------
-    eigenvalues : ndarray, shape (count,)
-        ``ω²``, ascending [rad²/s²]; ValueError if the iteration does not converge.
-    modes : ndarray, shape (n, count)
-        Mass-normalised.
-
-    Notes
-    -----
     The start vector is seeded, so that results repeat. With ``K⁻¹Mφ ≈ φ/ω²`` the modes returned are
     ``ω²K⁻¹Mφ``, one inverse iteration further, which leave smooth forces. Three and more exactly
     equal frequencies of parts that nothing couples may be found once or twice only. Source: of the
@@ -140,9 +126,3 @@ def without_reactions(force: np.ndarray, constraints: sp.csr_array) -> np.ndarra
     """Return the part of `force` that reactions ``Cᵀ λ`` cannot balance."""
     gram = (constraints @ constraints.T).toarray()
     return force - constraints.T @ la.solve(gram, constraints @ force, assume_a="pos")
-
-
-def with_fixed_sign(modes: np.ndarray) -> np.ndarray:
-    """Return the modes with the largest component of each positive."""
-    largest = np.argmax(np.abs(modes), axis=0)
-    return modes * np.sign(modes[largest, np.arange(modes.shape[1])])

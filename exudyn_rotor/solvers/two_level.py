@@ -43,14 +43,14 @@ class TwoLevel:
     """Approximate inverse of a stiffness that holds all motions but `rigid`.
 
     `rigid` (m, r) are mass-orthonormal, `interpolation` P (m, c) gives displacements of all nodes
-    from those of the vertices, which come first, and ``factorised(PᵀKP, PᵀMP, rigid motions)`` the
-    elastic inverse of linear elements.
+    from those of the vertices, which come first, and `inertia_relief` is the class of
+    elastic inverses, for the linear elements.
 
     Cycles are done in single precision, the linear elements excepted; what uses them sees the
     rounding as a slightly worse approximation.
     """
 
-    def __init__(self, stiffness, mass, rigid, interpolation, factorised) -> None:
+    def __init__(self, stiffness, mass, rigid, interpolation, inertia_relief) -> None:
         self._interpolation = interpolation
         self._restriction = sp.csr_array(interpolation.T)
         linear = self._restriction @ (stiffness @ interpolation)
@@ -59,9 +59,9 @@ class TwoLevel:
         self._linear_mass = sp.csr_array(self._restriction @ (mass @ interpolation))
         motions = rigid[: interpolation.shape[1]]
         values, turn = np.linalg.eigh(motions.T @ (self._linear_mass @ motions))
-        self._linear_solve: Solve = factorised(
-            self._linear_stiffness, self._linear_mass, motions @ (turn / np.sqrt(values))
-        )
+        motions = motions @ (turn / np.sqrt(values))
+        relief = inertia_relief(self._linear_stiffness, self._linear_mass, motions)
+        self._linear_solve: Solve = relief.solve
         entries = stiffness.data.astype(np.float32), stiffness.indices, stiffness.indptr
         self._stiffness = sp.csr_array(entries, shape=stiffness.shape)
         self._blocks = _inverse_blocks(stiffness)
@@ -126,12 +126,18 @@ def _inverse_blocks(stiffness: sp.csr_array) -> sp.csr_array:
 
 
 def conjugate_gradients(
-    stiffness: sp.csr_array, precondition: Solve, loads: np.ndarray, unit: float, tolerance: float
+    stiffness: sp.csr_array,
+    precondition: Solve,
+    loads: np.ndarray,
+    unit: float,
+    tolerance: float,
+    steps: int = _MOST_STEPS,
 ) -> np.ndarray:
     """Return the displacements (m, k) of ``K u = f``, to the precision of a factorisation.
 
     The loads must not push motions that K leaves free. `unit` is the rounding error of ``K u`` for
-    a displacement of norm 1 [N], `tolerance` the residual over the load, else ValueError.
+    a displacement of norm 1 [N], `tolerance` the residual over the load. ValueError where more than
+    that is left after `steps`.
     """
     inverse = sla.LinearOperator(
         stiffness.shape, matvec=lambda load: precondition(load.reshape(-1, 1)).ravel(), dtype=float
@@ -142,12 +148,12 @@ def conjugate_gradients(
             left = share * np.linalg.norm(load)
             left += _ROUNDING_SHARE * unit * np.linalg.norm(found)
             found[:], failed = sla.cg(
-                stiffness, load, found, rtol=0.0, atol=left, maxiter=_MOST_STEPS, M=inverse
+                stiffness, load, found, rtol=0.0, atol=left, maxiter=steps, M=inverse
             )
         if failed:
             raise ValueError(
                 f"the iterative solution of static loads leaves more than {left:.1e} N after "
-                f"{_MOST_STEPS} steps; use rotor.with_solver('direct'), or a mesh with less flat "
+                f"{steps} steps; use rotor.with_solver('direct'), or a mesh with less flat "
                 "elements"
             )
     return solution

@@ -12,10 +12,9 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
-from os import PathLike
+from typing import TYPE_CHECKING
 
 import numpy as np
-from mpl_toolkits.mplot3d import Axes3D
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
@@ -27,10 +26,11 @@ from exudyn_rotor.reduction.selection import Selection
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.solid.elements import von_mises
 from exudyn_rotor.units import Units
-from exudyn_rotor.vtk import write_surface
+
+if TYPE_CHECKING:
+    from mpl_toolkits.mplot3d import Axes3D
 
 Nodes = slice | np.ndarray
-_PARAVIEW = [0, 1, 2, 5, 3, 4]  # xx, yy, zz, xy, yz, xz
 
 
 @storable
@@ -69,10 +69,6 @@ class StressField(Result):
     modes: np.ndarray = numbers("nodes", 6, "modes")
     rest: np.ndarray = numbers("nodes", 6)
     has_static: bool
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_triangles(self.triangles, len(self.positions))
 
     @classmethod
     def of(cls, reduced: ReducedRotor, selection: Selection | RotorBody) -> StressField:
@@ -185,40 +181,6 @@ class StressField(Result):
         warn_without_static(self, speed)
         label = "von Mises stress [MPa]"
         return draw_surface(self.positions, self.triangles, 1e-6 * von_mises(stress), label, ax)
-
-    def to_vtk(self, path: str | PathLike, modal_coordinates: ArrayLike, speed: float) -> None:
-        """Write the stress on the surface for ParaView, see :meth:`at`; needs the package meshio.
-
-        'stress' holds the tensor xx, yy, zz, xy, yz, xz, in the order of ParaView, and 'von Mises'
-        the scalar, in mesh axes [Pa].
-
-        Parameters
-        ----------
-        path : str or path-like
-            Ends with '.vtu' or '.vtk', in which '_' stands for spaces of names.
-        modal_coordinates, speed
-            See :meth:`at`.
-
-        Raises
-        ------
-        ImportError
-            Without meshio: ``pip install "exudyn-rotor[vtk]"``.
-        ValueError
-            For another ending, without a surface, or as :meth:`at`.
-        """
-        stress = self.at(modal_coordinates, speed)
-        warn_without_static(self, speed)
-        values = {"stress": stress[:, _PARAVIEW], "von Mises": von_mises(stress)}
-        write_surface(path, self.positions, self.triangles, values)
-
-
-def check_triangles(triangles: np.ndarray, count: int) -> None:
-    """Refuse triangles that do not belong to `count` nodes."""
-    if triangles.size and (triangles.shape[1] not in (3, 6) or triangles.max() >= count):
-        raise ValueError(
-            f"triangles: needs 3 or 6 node numbers below {count} each, got the shape "
-            f"{triangles.shape} with numbers up to {triangles.max()}"
-        )
 
 
 def warn_without_static(field: StressField, speed: ArrayLike) -> None:

@@ -1,6 +1,6 @@
 """The fixed spin axis, and algebra of block-nodal vectors: x0 y0 z0 x1 y1 z1 …
 
-The functions write out the matrices that the paper prints (Φ, ẽ_bd, x̃, Ψ̃). Source of the equation
+The functions write out the matrices that the paper prints (Φ, ẽ_bd). Source of the equation
 numbers: Zwölfer, Rasmussen, Santos, "Rotordynamics Local Frame Formulations for 3D Continuum Finite
 Elements", SSRN 4830498.
 """
@@ -57,22 +57,6 @@ def rotations(nodes: Array, center: Array) -> Array:
     return columns.reshape(3, -1).T
 
 
-def tilde(nodal: Array) -> Array:
-    """Return ``x̃`` (3n × 3): the skew matrices of all nodal vectors, stacked (9)."""
-    return np.vstack([skew(vector) for vector in np.asarray(nodal, float).reshape(-1, 3)])
-
-
-def tilde_basis(modes: Array | sp.csr_array) -> Array | sp.csr_array:
-    """Return ``Ψ̃`` (3n × 3m): the tilde matrix of every mode, side by side (30).
-
-    Sparse where the modes are.
-    """
-    kron = sp.kron if sp.issparse(modes) else np.kron
-    units = np.eye(3)
-    whole = sum(kron(modes[axis::3], skew(units[axis])) for axis in range(3))
-    return sp.csr_array(whole) if sp.issparse(modes) else whole
-
-
 def coupled(matrix: sp.csr_array) -> np.ndarray:
     """Return which coordinates have entries off the diagonal, (3n,); clamped nodes have none."""
     strength = abs(matrix)
@@ -116,16 +100,13 @@ class SpinAxis:
     def __post_init__(self) -> None:
         direction = checks.vector(self.direction, "spin axis: direction")
         point = checks.vector(self.point, "spin axis: point", "m")
-        largest = np.abs(direction).max()
-        if largest == 0.0:
+        length = np.linalg.norm(direction)
+        if length == 0.0:
             raise ValueError(
                 "spin axis: the direction [0, 0, 0] has no length; "
                 "give a vector along the axis, e.g. [0, 0, 1] or 'z'"
             )
-        # scaled first: the squares of very long and very short vectors leave the range of floats
-        scaled = direction / largest
-        object.__setattr__(self, "direction", checks.read_only(scaled / np.linalg.norm(scaled)))
-        object.__setattr__(self, "point", point)
+        checks.keep(self, direction=checks.read_only(direction / length), point=point)
 
     @classmethod
     def of(cls, axis: SpinAxis | str | ArrayLike) -> SpinAxis:
@@ -153,16 +134,6 @@ class SpinAxis:
         return checks.read_only(skew(self.direction))
 
     @cached_property
-    def _along(self) -> np.ndarray:
-        """``e eᵀ``."""
-        return np.outer(self.direction, self.direction)
-
-    @cached_property
-    def _across(self) -> np.ndarray:
-        """``I − e eᵀ``."""
-        return np.eye(3) - self._along
-
-    @cached_property
     def plane(self) -> np.ndarray:
         """``N = null(eᵀ)`` (89), shape (3, 2): unit vectors with n1 × n2 = e.
 
@@ -178,23 +149,18 @@ class SpinAxis:
         return checks.read_only(np.column_stack([first, np.cross(e, first)]))
 
     def rotation(self, angle: float) -> np.ndarray:
-        """``A(θ) = I cos θ + ẽ sin θ + (1 − cos θ) e eᵀ`` (55), shape (3, 3); θ in rad."""
-        angle = checks.number(angle, "angle", "rad")
-        return self._along + np.cos(angle) * self._across + np.sin(angle) * self.skew
+        """``A(θ) = I + ẽ sin θ + ẽẽ (1 − cos θ)`` (55), shape (3, 3); θ in rad."""
+        angle, e = checks.number(angle, "angle", "rad"), self.skew
+        return np.eye(3) + np.sin(angle) * e + (1.0 - np.cos(angle)) * (e @ e)
 
     def project(self, points: ArrayLike) -> np.ndarray:
         """Return the feet of the perpendiculars from `points` (…, 3) to the axis [m]."""
-        arms = _points(points) - self.point
+        values = checks.array(points, "points", "m")
+        if values.ndim == 0 or values.shape[-1] != 3:
+            raise ValueError(f"points: need three coordinates each, got the shape {values.shape}")
+        arms = values - self.point
         return self.point + (arms @ self.direction)[..., None] * self.direction
 
     def radial(self, points: ArrayLike) -> np.ndarray:
         """Return the offsets (…, 3) of `points` from the axis, ``x_⊥ = −ẽẽ(x − p)`` [m]."""
-        points = _points(points)
         return points - self.project(points)
-
-
-def _points(points: ArrayLike) -> np.ndarray:
-    values = checks.array(points, "points", "m")
-    if values.ndim == 0 or values.shape[-1] != 3:
-        raise ValueError(f"points: need three coordinates each, got an array of {values.shape}")
-    return values

@@ -137,11 +137,8 @@ class Motion(FloatingFrame):
         varies = self.is_coupled or form.moves_origin or self.has_body_force
         return form.is_constant_speed and not varies
 
-    def mass_matrix(self, t: float, q: ArrayLike, q_t: ArrayLike | None = None) -> np.ndarray:
-        """Return the mass matrix (65, 41–43, 84, 85), shape (size, size).
-
-        It does not depend on the rates `q_t`.
-        """
+    def mass_matrix(self, t: float, q: ArrayLike) -> np.ndarray:
+        """Return the mass matrix (65, 41–43, 84, 85), shape (size, size)."""
         kernel, mass = self._kernel, self._constant_mass.copy()
         values = kernel.mass_entries(checked_time(t), self._checked(q, "q").tolist())
         mass[kernel.rows, kernel.columns] = mass[kernel.columns, kernel.rows] = values

@@ -146,13 +146,7 @@ class SpinTerms:
 
 
 def chosen_level(choice: str, stress_is_known: bool) -> str:
-    """Return the level of a choice, which may be ``'auto'``.
-
-    Raises
-    ------
-    TypeError, ValueError
-        For an unknown choice.
-    """
+    """Return the level of a choice, which may be ``'auto'``."""
     if checks.choice(choice, "stiffening", CHOICES) != "auto":
         return choice
     return "full" if stress_is_known else "tilt"

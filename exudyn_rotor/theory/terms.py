@@ -80,11 +80,6 @@ def terms_of(motion: FloatingFrame, t: float, q: ArrayLike, q_t: ArrayLike) -> T
         Time [s].
     q, q_t : array_like, shape (size,)
         Unknowns of `motion` and their rates.
-
-    Raises
-    ------
-    TypeError, ValueError
-        For coordinates of a wrong number or kind.
     """
     now = motion.at(t, q, q_t)
     parts = [_invariants(motion), _translation(motion, now), _in_plane(motion, now)]

@@ -100,7 +100,7 @@ def _steady_orbit(rotor, proposal, stiffness, finer=1):
     return mbs.GetSensorStoredData(sensor)[-2 * steps :, 1:]
 
 
-@pytest.mark.parametrize(("speed", "accuracy"), [(150.0, 1e-2), (150.0, 1e-3), (400.0, 1e-2)])
+@pytest.mark.parametrize(("speed", "accuracy"), [(150.0, 1e-2), (400.0, 1e-2)])
 def test_steady_orbit_at_the_proposed_step_meets_the_accuracy(plain, speed, accuracy):
     """Against steps a quarter as long, which err by a 16th; 400 rad/s is near a critical speed."""
     stiffness = [2e6, 4e6, 2e6]

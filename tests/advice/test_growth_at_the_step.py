@@ -10,6 +10,7 @@ from exudyn_rotor import (
     Support,
     add_rotor,
     add_supports,
+    check_run,
     recommended_settings,
     stability,
 )
@@ -22,10 +23,11 @@ FREQUENCY = np.sqrt(STIFFNESS / MASS)
 
 
 def run(rotor, support, step):
-    """Return the growth over two beats of the two whirls in a run in the rotor frame [1/s]."""
+    """Return the growth over two beats of two whirls in the rotor frame [1/s], and its check."""
     mbs = exudyn.SystemContainer().AddSystem()
     body = add_rotor(mbs, rotor, spin=SPEED, translation="none")
     add_supports(body, support)
+    body.start_recording()
     sensor = body.add_interface_sensor("all", exudyn.OutputVariableType.Displacement)
     mbs.Assemble()
     start = np.zeros(len(mbs.systemData.GetODE2Coordinates()))
@@ -40,7 +42,8 @@ def run(rotor, support, step):
     mbs.SolveDynamic(settings)
     squares = np.sum(mbs.GetSensorStoredData(sensor)[:, 1:3] ** 2, axis=1)
     first, second = np.array_split(squares, 2)
-    return 0.5 * np.log(second.mean() / first.mean()) / BEAT
+    growth = 0.5 * np.log(second.mean() / first.mean()) / BEAT
+    return growth, check_run(body, warn=False)["growth"]
 
 
 def test_growth_of_close_whirls_is_right_at_the_proposed_step():
@@ -57,5 +60,10 @@ def test_growth_of_close_whirls_is_right_at_the_proposed_step():
     growth = stability(rotor, [SPEED], supports=support).growth[0]
     request = Request.of(SPEED, None, 0.1)
     step = choose_step(Candidate.of(rotor, support), request).size
-    assert run(rotor, support, request.step) > 0.5  # right for periods
-    assert run(rotor, support, step) == pytest.approx(growth, rel=0.5)
+    found, row = run(rotor, support, request.step)  # right for periods
+    assert found > 0.5
+    assert row.value == pytest.approx(1.0 - found / growth, rel=0.1)
+    assert not row.ok
+    found, row = run(rotor, support, step)
+    assert found == pytest.approx(growth, rel=0.5)
+    assert row.ok

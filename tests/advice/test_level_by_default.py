@@ -30,10 +30,7 @@ ROTORS = {"disc on a shaft": disc_rotor, "shaft": shaft, "blade": blade}
 
 
 def without_elements(rotor: SolidRotor) -> SolidRotor:
-    grounded = {"grounded": True} if rotor.grounded else {}
-    return SolidRotor.from_matrices(
-        rotor.mass, rotor.stiffness, rotor.nodes, rotor.axis, **grounded
-    )
+    return SolidRotor.from_matrices(rotor.mass, rotor.stiffness, rotor.nodes, rotor.axis)
 
 
 @pytest.mark.parametrize("make", ROTORS.values(), ids=ROTORS)

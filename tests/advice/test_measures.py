@@ -87,7 +87,7 @@ def test_energy_of_the_motion_is_that_of_the_nodes_in_space(turn):
     assert found == pytest.approx(elastic / (elastic + kinetic), rel=1e-9)
 
 
-@pytest.mark.parametrize("speed", [-40.0, 4.0, 20.0, 40.0])
+@pytest.mark.parametrize("speed", [-40.0, 20.0])
 @pytest.mark.parametrize("forward", [True, False])
 def test_left_out_stiffening_is_the_change_of_a_frequency(rings, speed, forward):
     """Two rings on springs in a steady conical whirl at the speed λ, without stiffening.

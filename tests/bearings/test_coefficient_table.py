@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from exudyn_rotor import SqueezeFilmDamper, Support
+from exudyn_rotor import BaseRecord, SqueezeFilmDamper, Support
 
 SPEEDS, FREQUENCIES = [100.0, 200.0, 400.0], [0.0, 50.0, 60.0, 300.0]
 
@@ -44,7 +44,7 @@ def test_tables_and_matrices_are_told_apart():
         assert Support("left", given).matrices(5.0)[0][entry] == expected
     for wrong, match in (
         (((0.0, 1e5), (-1e5, 0.0)), "may be a matrix or a table"),
-        (([0.0, 1.0], [1.0]), "its table need 2 numbers"),
+        (([0.0, 1.0], [1.0]), "its table need 2 matrices"),
         (np.eye(4), "needs a number or a matrix of"),
         ([[1.0, 2.0], [3.0]], "stiffness: needs"),
     ):
@@ -93,9 +93,8 @@ GIVEN = {
     "needs speeds, frequencies": dict(stiffness=K2),
     "ascending": dict(speeds=[2.0, 1.0, 3.0], stiffness=K2),
     "needs values ≥ 0": dict(frequencies=[-1.0, 0.0, 1.0], stiffness=K2),
-    r"needs 3 × 4 matrices": dict(speeds=SPEEDS, frequencies=FREQUENCIES, stiffness=K2),
+    r"need 3 × 4 matrices": dict(speeds=SPEEDS, frequencies=FREQUENCIES, stiffness=K2),
     "2, 3 or 6 rows": dict(speeds=SPEEDS, stiffness=np.ones((3, 4, 4))),
-    "of one size": dict(speeds=SPEEDS, stiffness=K2, damping=np.ones((3, 3, 3))),
 }
 COLUMNS = {
     "neither speed": {"speed": [1.0], "stiffness": [2.0]},
@@ -117,6 +116,13 @@ def test_bad_tables_are_refused(message):
     )
     with pytest.raises(ValueError, match=message):
         call("left")
+
+
+@pytest.mark.parametrize("read", [Support.from_columns, BaseRecord.from_csv])
+def test_a_file_that_is_not_there_is_named(read, tmp_path):
+    arguments = ("left", tmp_path / "no.csv") if read == Support.from_columns else ("no.csv", "g")
+    with pytest.raises(FileNotFoundError, match=r": there is no file '.*no.csv'; give its whole"):
+        read(*arguments)
 
 
 def test_uneven_lines_of_a_file_are_refused(tmp_path):

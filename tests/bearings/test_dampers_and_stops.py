@@ -61,7 +61,6 @@ def test_stop_pushes_back_and_rubs():
     drag = np.dot(tangent, [fx, fy])
     assert torque == pytest.approx(0.05 * drag)
     assert torque * speed + fx * vx + fy * vy < 0.0
-    assert stop(friction=0.0).law_with_torque is None
     assert not np.any(stop().force([0.9e-4, 0.0], [1.0, 1.0], 100.0))
 
 

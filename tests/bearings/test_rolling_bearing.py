@@ -13,6 +13,7 @@ from exudyn_rotor import (
     spectra,
     steady_state,
 )
+from exudyn_rotor.bearings.rolling import contacts
 
 BALLS = {"count": 8, "pitch_radius": 0.0326, "element_radius": 0.006, "stiffness": 7e9}
 
@@ -26,7 +27,7 @@ def test_most_loaded_element_without_clearance(elements, factor):
     """Q_max = 4.37 W/Z for balls, 4.08 W/Z for rollers; Stribeck 1901, Harris (2001) Sect. 7."""
     many = bearing(count=60, element_radius=1e-3, elements=elements, load=[300.0, 0.0])
     place = many.equilibrium(0.0)
-    loads = many.element_loads(place)
+    loads = contacts(many, place, 0.0)[0]
     assert loads.max() * 60 / 300.0 == pytest.approx(factor, rel=3e-3)
     assert np.count_nonzero(loads) in (29, 30, 31)
 
@@ -42,7 +43,7 @@ def test_one_ball_carries_by_hertz():
 def test_preloaded_elements_hold_the_centre_without_a_load(elements, exponent, count):
     """All carry k p^n at an interference p: a stiffness of n k p^(n−1) Z/2 in every direction."""
     preloaded = bearing(count=count, clearance=-5e-6, elements=elements, stiffness=1e9)
-    np.testing.assert_allclose(preloaded.element_loads([0.0, 0.0], 0.7), 1e9 * 5e-6**exponent)
+    np.testing.assert_allclose(contacts(preloaded, np.zeros(2), 0.7)[0], 1e9 * 5e-6**exponent)
     assert not np.any(preloaded.equilibrium(100.0))
     K = preloaded.coefficients(100.0)[0]
     expected = 0.5 * count * exponent * 1e9 * 5e-6 ** (exponent - 1.0)

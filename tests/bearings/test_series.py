@@ -83,11 +83,12 @@ def floating(load=None, name="left", **changes):
 
 
 @pytest.mark.parametrize("speed", [1e3, -1e3])
-def test_speed_of_a_ring_in_the_middle(speed):
-    """Both films shear by μ 2π R³ L/c times what their surfaces slip."""
-    made = floating()
-    shear = [x.viscosity * x.radius**3 * x.length / x.clearance for x in (made.inner, made.outer)]
-    assert made.ring(speed).speed / speed == pytest.approx(shear[0] / sum(shear), rel=1e-9)
+@pytest.mark.parametrize("clearance", [2e-5, 4e-5, 1e-4])
+def test_speed_of_a_ring_is_that_of_shaw_and_nussdorfer(clearance, speed):
+    """1/(1 + (c₁/c₂)(R₂/R₁)³(L₂/L₁)(μ₂/μ₁)) in the middle; NACA Report 866 (1947)."""
+    ratio = 1.0 / (1.0 + 2e-5 / clearance * (8.0 / 5.0) ** 3 * (6.0 / 8.0) * (12.0 / 10.0))
+    found = floating(clearance=clearance, length=0.006).ring(speed)
+    assert found.speed / speed == pytest.approx(ratio, rel=1e-9)
 
 
 def test_a_loaded_ring_is_in_balance_and_loads_are_carried():
@@ -107,7 +108,10 @@ def test_a_loaded_ring_is_in_balance_and_loads_are_carried():
 
 
 def test_films_in_the_middle_whirl_with_the_means_of_their_surfaces():
-    """Without a load, K = D·i·(mean speed): each film alone drives a whirl of its mean speed."""
+    """Without a load, K = D·i·(mean speed): each film alone drives a whirl of its mean speed.
+
+    As turbochargers whirl: B. Schweizer, Nonlinear Dynamics 57 (2009) 509.
+    """
     made, speed = floating(), 2e3
     ring = made.ring(speed).speed
     linear = made.linearised()

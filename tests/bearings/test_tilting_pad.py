@@ -35,11 +35,7 @@ def film(preload=0.5, **changes):
 
 
 def bearing(load=(0.0, -2079.5), interface="left", **changes):
-    own = {
-        name: changes.pop(name)
-        for name in ("pivot", "whirl_ratio", "pad_inertia")
-        if name in changes
-    }
+    own = {name: changes.pop(name) for name in ("pivot", "pad_inertia") if name in changes}
     return TiltingPadBearing(interface=interface, load=load, film=film(**changes), **own)
 
 
@@ -134,7 +130,6 @@ def test_scene_and_linear_analyses_agree(axis, foundation):
 def test_refused_input():
     for changes, match in (
         ({"pivot": 1.0}, "pivot: needs"),
-        ({"whirl_ratio": 0.0}, "whirl_ratio: needs"),
         ({"pad_inertia": 0.0}, "pad_inertia: needs"),
     ):
         with pytest.raises(ValueError, match=match):

@@ -44,7 +44,7 @@ LEFT_OUT = {
 
 # methods that scenes call in every step, with the numbers of the equations
 OF_SCENES = (
-    *("law", "law_with_torque", "law_along", "slopes", "clearance_along", "coupling"),
+    *("law", "law_with_torque", "law_along", "slopes", "clearance_along", "film_edge", "coupling"),
     *("solved", "beside", "reach_along", "coefficients_at", "body_acceleration", "unbalance"),
     *("forces", "tangent", "transmitted", "energy", "loss", "check_places"),
 )
@@ -249,16 +249,18 @@ RIGHT = {
     "number": "Support.stiffness Support.damping tilt_stiffness tilt_damping",
     "empty": """
         eulerParametersRef rotationMatrixRef triangles variation
-        BaseRecord.integrals.times PIDController.transfer.frequencies
+        BaseRecord.integrals.times Motion.mass_matrix.q_t
         PeriodicResponse.displacement.time
         Spectra.plot.orders grooved_pads.grooves
         keep_modes.indices""",
-    "nan": "ModeBasis.frequencies",
-    "inf": "ModeBasis.frequencies",
-    "shape": "BaseRecord.at.time",
-    "text": "at report.contents Proposal.reasons ReducedRotor.dropped",
+    "nan": "Motion.mass_matrix.q_t ModeBasis.frequencies",
+    "inf": "Motion.mass_matrix.q_t ModeBasis.frequencies",
+    "shape": "Motion.mass_matrix.q_t",
+    "texts": "Motion.mass_matrix.q_t",
+    "text": "Motion.mass_matrix.q_t at report.contents Proposal.reasons ReducedRotor.dropped",
     "entry": "SolidRotor.from_ngsolve.materials",
-    "None": "UFforce UFmassMatrix",
+    "an object": "Motion.mass_matrix.q_t report.contents",
+    "None": "UFforce UFmassMatrix BaseResponse.between.place",
 }
 # functions and methods where it is wrong all the same
 WRONG = {
@@ -289,9 +291,10 @@ def is_right(call, argument, label):
 
 
 def is_result(call):
-    """Return whether a call constructs a result: analyses do, and the tests of files check it."""
+    """Return whether a call constructs a result or a body: analyses and `add_rotor` do."""
     owner = getattr(er, call, None)
-    return inspect.isclass(owner) and issubclass(owner, er.Result)
+    made = (er.Result, er.RotorBody, er.FullRotorBody)
+    return inspect.isclass(owner) and issubclass(owner, made)
 
 
 def cases():

@@ -27,6 +27,7 @@ from exudyn_rotor import (
     check_run,
     periodic_response,
     propose,
+    recommended_settings,
     select_modes,
     steady_state,
     stress_history,
@@ -48,7 +49,7 @@ def small_rotor_in_millimetres(beam):
     """A shaft of 6 mm × 30 mm, which would be of 6.7e6 kg."""
     corners = np.array([[x, y, z] for x in (-3.0, 3.0) for y in (-3.0, 3.0) for z in (0.0, 30.0)])
     mass = 7850.0 * np.pi * 3.0**2 * 30.0 / 8.0
-    SolidRotor.from_matrices(mass * np.eye(24), np.zeros((24, 24)), corners, "z", allow_parts=True)
+    SolidRotor.from_matrices(mass * np.eye(24), np.zeros((24, 24)), corners, "z")
 
 
 def mass_on_balls(speed, tolerance=1e-2, **bearing):
@@ -125,6 +126,15 @@ def asked_for_connections(beam, source=None):
     body.check_connections()
 
 
+def run_of_a_full_body_with_a_dense_solver(_):
+    mbs = exu.SystemContainer().AddSystem()
+    add_rotor(mbs, disc_rotor(1), spin=1.0, translation="none")
+    mbs.Assemble()
+    settings = recommended_settings(1e-4, 1e-4)
+    settings.timeIntegration.verboseMode = 0
+    mbs.SolveDynamic(settings)
+
+
 def full_body_asked_for_connections(beam):
     asked_for_connections(beam, ring_rotor(0.1, 0.1, 2.0))
 
@@ -140,7 +150,7 @@ PLACES = {
     "bearings/annular_seal.py:__post_init__": (
         lambda _: AnnularSeal(interface="a", **LAMINAR),
         UserWarning, "may be laminar"),
-    "multibody/rotor/sensors.py:_warn_of_static_stress": (
+    "multibody/rotor/rotor_body.py:_warn_of_static_stress": (
         native_stress_of_a_prestressed_rotor, UserWarning, "stress of the modes alone"),
     "reduction/component.py:lowest_with_pairs": (
         lambda _: disc_rotor().reduce(1), UserWarning, "one of a pair in two planes"),
@@ -158,12 +168,14 @@ PLACES = {
         scene_of_a_full_lossy_rotor, UserWarning, "A scene runs without it"),
     "multibody/rotor/rotor_body.py:check_connections": (
         asked_for_connections, ConnectionWarning, "does not tilt"),
+    "multibody/rotor/assembly.py:watch": (
+        run_of_a_full_body_with_a_dense_solver, UserWarning, "EigenSparse"),
     "multibody/rotor/assembly.py:warn_of_lost_connections": (
         torque_on_a_tilt_of_the_node, ConnectionWarning, "does not tilt"),
     "advice/run_check.py:check_run": (
         run_beyond_its_assumptions, AssumptionWarning, "tilt .* exceeds"),
     "linear/response/steady_state.py:steady_state": (
-        steady_motion_on_a_stop_that_opens, UserWarning, "of the motion is left to higher harmonics"),
+        steady_motion_on_a_stop_that_opens, UserWarning, "is left to higher harmonics"),
 }  # fmt: skip
 # part of the text of warnings that the tests of their analyses make fire
 ELSEWHERE = {

@@ -150,8 +150,7 @@ def test_placement_by_mode():
 def test_bearings_share_the_mass_by_their_levers(axis):
     nodes = np.zeros((2, 3))
     nodes[:, "xyz".index(axis)] = 0.1, 0.5
-    rotor = SolidRotor.from_matrices(np.diag([1.0] * 3 + [4.0] * 3), np.zeros((6, 6)), nodes, axis,
-                                     allow_parts=True)  # fmt: skip
+    rotor = SolidRotor.from_matrices(np.diag([1.0] * 3 + [4.0] * 3), np.zeros((6, 6)), nodes, axis)
     rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
     np.testing.assert_allclose(bearing_masses(rotor, ["left", "right"]), [1.0, 4.0])
     np.testing.assert_allclose(bearing_masses(rotor, ["right", "left"]), [4.0, 1.0])

@@ -146,7 +146,7 @@ def compared(supports, turn=None, rotation=None, block=BLOCK, **options):
     body = add_rotor(mbs, rotor, rotation=rotation, **options)
     add_supports(body, supports, add_foundation(mbs, block, rotation=rotation))
     mbs.Assemble()
-    found = linear_model(mbs, body=body, about="given")
+    found = linear_model(mbs, body=body)
     listed = without_spin(rotor) if "spin" in options else rotor
     return distance(found, linear_model(listed, supports=supports, foundation=block), SPEED)
 
@@ -180,13 +180,13 @@ def test_a_block_is_exudyns_rigid_body():
         )
     add_supports(body, supports, base)
     mbs.Assemble()
-    expected = linear_model(mbs, body=body, about="given")
+    expected = linear_model(mbs, body=body)
     mounts = [Mount(corner, [1e6, 2e6, 3e6], 100.0) for corner in CORNERS]
     block = Foundation.rigid(30.0, [2.0, 2.5, 1.0], [0.0, -0.2, 0.0], mounts, POINTS)
     scene = exu.SystemContainer().AddSystem()
     body = add_rotor(scene, rings(), spin=SPEED)
     add_supports(body, supports, add_foundation(scene, block))
     scene.Assemble()
-    found = linear_model(scene, body=body, about="given")
+    found = linear_model(scene, body=body)
     # differences of Exudyn's forces give K to 4e-8 of its largest entry
     assert distance(found, expected, SPEED) < 1e-6

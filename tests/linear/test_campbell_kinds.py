@@ -13,7 +13,7 @@ def test_overdamped_motions_stand_behind_the_others():
     """Two masses, one of them overdamped across the axis: λ = −5 ± √24 times 100."""
     rotor = SolidRotor.from_matrices(
         np.eye(6), np.zeros((6, 6)), [[0, 0, 0], [0, 0, 1.0]], "z",
-        interfaces={"damped": [0], "free": [1]}, allow_parts=True,
+        interfaces={"damped": [0], "free": [1]},
     )  # fmt: skip
     supports = [
         Support("damped", 1e4 * np.eye(3), 1e3 * np.eye(3)),

@@ -117,7 +117,7 @@ LOADS = {
 }
 
 
-@pytest.mark.parametrize("omega", [1.0, 6.3, 190.0, 500.0])
+@pytest.mark.parametrize("omega", [1.0, 190.0])
 @pytest.mark.parametrize("load", LOADS)
 @pytest.mark.parametrize("torsion", [0.0, 40.0])
 def test_a_spin_at_rest_is_a_coordinate_as_any(load, omega, torsion):

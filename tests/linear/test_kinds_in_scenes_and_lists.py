@@ -90,12 +90,12 @@ KINDS = {
 THRUST = Support("right", np.diag([0.0, 0.0, 1e6]), np.diag([0.0, 0.0, 100.0]))
 
 
-def models(make, base=None, free=False, gravity=HEAVY, heavy=0.0, about="equilibrium"):
+def models(make, base=None, free=False, gravity=HEAVY, heavy=0.0):
     """Return the scene and the list of a disc on a shaft, as linear models."""
-    return on_ends(disc_with_two_modes(heavy), make, base, free, gravity, about)
+    return on_ends(disc_with_two_modes(heavy), make, base, free, gravity)
 
 
-def on_ends(reduced, make, base=None, free=False, gravity=HEAVY, about="equilibrium"):
+def on_ends(reduced, make, base=None, free=False, gravity=HEAVY):
     loads = bearing_loads(reduced, list(ENDS), gravity)
     supports = [each for pair in zip(ENDS, loads, strict=True) for each in make(*pair)]
     supports.append(THRUST)
@@ -105,7 +105,7 @@ def on_ends(reduced, make, base=None, free=False, gravity=HEAVY, about="equilibr
     add_supports(body, supports, base and add_foundation(mbs, base, rotation=SKEW))
     mbs.Assemble()
     in_list = linear_model(reduced, supports=supports, foundation=base)
-    return linear_model(mbs, body=body, about=about), in_list
+    return linear_model(mbs, body=body), in_list
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -33,9 +33,9 @@ def test_modes_of_a_disc_have_the_nodal_diameters_that_the_rim_shows(plate):
     checked = []
     for column, vector in enumerate(found.vectors[0].T):
         n, share = counted(plate, vector)
-        if share < 0.5:
-            continue  # motion in the plane of the disc
         named, whirl = found.nodal_diameters[0, column], found.whirl[0, column]
+        if share < 0.5 or whirl == "torsional":
+            continue  # motion in the plane of the disc
         assert named == (n if n <= 4 else -1)
         assert (whirl == "axial") == (n == 0)
         assert (whirl == "unknown") == (n > 4)

@@ -47,7 +47,7 @@ def scene(ratio, axis="z", rotation=None, **options):
     magnet = bearing("b", DELAYED, LinearActuator(80.0, 1e5), angle=0.3)
     add_supports(second, [magnet, Support("a", 1e5 * np.eye(3), 9.0)])
     between = Support("a", 2e5, 15.0, 300.0)
-    add_supports(second, between, base={"a": first.marker("a")})
+    add_supports(second, between, base=first.marker("a"))
     mbs.Assemble()
     return mbs, (first, second), rotors
 

@@ -146,3 +146,19 @@ def test_growth_is_not_missed_among_many_motions(delta, epsilon, growth):
     for method in ("auto", "floquet"):
         found = motions_of(joined([system]), method, least_stable=True).values.real
         assert np.nanmax(found) == pytest.approx(growth, abs=2e-5)
+
+
+@pytest.mark.parametrize(
+    ("damping", "stiffness", "lost"), [(20.0, 130.0, ()), (2.0, 300.0, (1.0,))]
+)
+def test_decays_that_are_over_at_once_are_not_told_as_lost(damping, stiffness, lost):
+    """Both motions need more harmonics than there are; nobody looks at the first one."""
+    D = np.diag([damping, 0.1])
+    K = np.diag([stiffness, 0.3])
+    waves = [np.diag([share * X[0, 0], 0.0]).astype(complex) for share, X in ((0.45, D), (0.4, K))]
+    system = PeriodicSystem(
+        1.0, np.eye(2), *({0: X, 1: wave, -1: wave} for X, wave in zip((D, K), waves, strict=True))
+    )
+    found = motions_of(joined([system]), "hill")
+    assert np.count_nonzero(np.isnan(found.values)) == 1
+    assert tuple(found.lost) == lost

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from asymmetric import asymmetric_shaft
 
-from exudyn_rotor import SolidRotor, Support, stability_threshold, unstable_ranges
+from exudyn_rotor import SolidRotor, Support, stability, stability_threshold, unstable_ranges
 
 MASS, STIFFNESS = 2.0, 2e4  # ω = 100 rad/s
 
@@ -64,6 +64,18 @@ def test_an_asymmetric_shaft_is_unstable_between_its_critical_speeds():
     assert len(found.values) % 2 == 0
     assert len(found.values) >= 2
     assert np.all(np.diff(found.ranges, axis=1) > 0.0)
+
+
+@pytest.mark.parametrize("damping", [20.0, 150.0])
+def test_limits_of_an_uneven_rotor_on_uneven_bearings(damping):
+    """Floquet's method has growth on one side of each, and decay on the other."""
+    shaft = asymmetric_shaft()
+    supports = [Support(name, np.diag([1e6, 3e6, 1e6]), damping) for name in shaft.interfaces]
+    given = {"supports": supports, "accuracy": None}
+    found = stability_threshold(shaft, 180.0, 232.0, samples=4, **given)
+    beside = np.outer(found.values, [1.0 - 3e-7, 1.0 + 3e-7]).ravel()
+    growth = stability(shaft, beside, method="floquet", **given).growth_of("lateral")
+    assert (growth > 0.0).tolist() == [False, True, True, False]
 
 
 @pytest.mark.parametrize("ratio", [1.2, 1.5, 3.0])

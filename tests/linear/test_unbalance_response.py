@@ -165,7 +165,7 @@ def test_nothing_of_an_uneven_rotor_is_averaged(supports):
     speed, rotor = 170.0, rings(modes=4, point_mass=0.3)
     model = linear_model(rotor, supports=supports, stiffening="none").for_responses
     load = {n: speed**2 * F for n, F in unbalance_load(model, (), own=True).items()}
-    stack, held = model.at_all([speed], "held"), model.held_basis
+    stack, held = model.at_all([speed]), model.held_basis
     found = forced_motions(stack, load, np.zeros(1), held=held, tolerance=1e-9)
     inv = rotor.invariants.moved(rotor.axis.project(rotor.center_of_mass) - rotor.center_of_mass)
     U = rotor.interfaces["mid"].motion

@@ -13,14 +13,13 @@ def model():
     return scenes.Model.of(scenes.disc_on_shaft(), 6)
 
 
-@pytest.fixture(scope="module", params=["isotropic", "anisotropic"])
-def rows(model, request):
-    """Return deviations by stiffening and nominal tilt."""
-    bearings = against_3d.SUPPORTS[request.param]
+@pytest.fixture(scope="module")
+def rows(model):
+    """Return deviations by nominal tilt, on anisotropic bearings."""
+    given = against_3d.SUPPORTS["anisotropic"]
     return {
-        (row["stiffening"], tilt): row
-        for tilt in (1e-2, 1e-3, 1e-4)
-        for row in against_3d.compare(model, bearings, tilt, DURATION, STEP, 100)
+        tilt: against_3d.compare(model, given, tilt, DURATION, STEP, 100, ["tilt"])[0]
+        for tilt in (1e-3, 1e-4)
     }
 
 
@@ -30,24 +29,20 @@ def worst(row):
 
 def test_relative_deviation_falls_with_the_tilt(rows):
     """First-order agreement: a tenth of the tilt, a tenth of the relative deviation."""
-    found = [worst(rows["tilt", tilt]) for tilt in (1e-2, 1e-3, 1e-4)]
-    np.testing.assert_allclose(found[0] / found[1], 10.0, rtol=0.1)
-    np.testing.assert_allclose(found[1] / found[2], 10.0, rtol=0.3)
+    np.testing.assert_allclose(worst(rows[1e-3]) / worst(rows[1e-4]), 10.0, rtol=0.3)
 
 
 def test_bodies_agree_at_small_tilts(rows):
-    row = rows["tilt", 1e-4]
+    row = rows[1e-4]
     assert worst(row) < 1e-3
     assert row["lateral"] < 1e-4
     assert row["rim"] < 1e-4
     assert row["step error"] < 2e-4
 
 
-@pytest.fixture(
-    scope="module", params=[(0.05, 0.3, 0.03), (0.15, 0.1, 0.08)], ids=["shaft", "disc"]
-)
-def unstable(request):
-    model = scenes.Model.of(scenes.cylinder(*request.param), 4)
+@pytest.fixture(scope="module")
+def unstable():
+    model = scenes.Model.of(scenes.cylinder(0.15, 0.1, 0.08), 4)
     return against_3d.instability(model, 1.2, steps=1600)
 
 

@@ -126,5 +126,5 @@ def test_sensors_at_mesh_nodes_read_the_mode_shapes(solid, reduced):
     for value, wanted in zip(values, expected, strict=False):
         assert abs(value - wanted).max() < 1e-9 * abs(wanted).max()
     assert abs(expected[2]).max() > 1e6
-    rest = body.frame.position + body.frame.orientation @ (solid.nodes[node] - body.frame.origin)
+    rest = body.frame.position + body.placement.rotation @ (solid.nodes[node] - body.frame.origin)
     assert abs(values[3] - (expected[0] - rest)).max() < 1e-12

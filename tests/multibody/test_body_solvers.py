@@ -7,6 +7,7 @@ from models import centered_disc
 
 from exudyn_rotor import (
     PrescribedMotion,
+    SolidRotor,
     add_rotor,
     check_run,
 )
@@ -104,11 +105,30 @@ def test_check_of_an_explicit_run_finds_nothing_lost(reduced):
 
 
 @pytest.mark.parametrize("motion", [{"spin": 300.0}, {"spin": RUN_UP}, {"translation": SHAKE}])
-def test_explicit_solvers_ask_for_locking_by_mass_where_a_motion_is_prescribed(reduced, motion):
-    mbs, _ = scene(reduced, **motion)
-    mbs.Assemble()
-    with pytest.raises(Exception, match="constraints that cannot be solved"):
+@pytest.mark.parametrize("full", [False, True])
+def test_explicit_solvers_ask_for_locking_by_mass_and_then_agree(full, motion):
+    """An error names the argument, other solvers go on, and the run with it is right."""
+    pair = SolidRotor.from_matrices(
+        np.eye(6), 1e6 * np.eye(6), [[0.1, 0.0, 0.0], [-0.1, 0.0, 0.0]], "z"
+    )
+    motion = {"spin": 300.0, "translation": "none"} | motion
+
+    def added(**options):
+        mbs = exu.SystemContainer().AddSystem()
+        body = add_rotor(mbs, pair if full else pair.reduce(6), **motion, **options)
+        mbs.Assemble()
+        return mbs, body
+
+    mbs, body = added()
+    with pytest.raises(Exception, match=r"rotor 'rotor'.*locking='mass'"):
         mbs.SolveDynamic(settings(20, 1e-3), solverType=SOLVERS.RK44)
+    assert mbs.SolveStatic(settings(20, 1e-3))
+    mbs, body = added()
+    mbs.SolveDynamic(settings(400, 4e-3))
+    other, explicit = added(locking="mass")
+    other.SolveDynamic(settings(400, 4e-3), solverType=SOLVERS.RK44)
+    expected = body.coordinates()[0]
+    assert abs(explicit.coordinates()[0] - expected).max() < 2e-3 * abs(expected).max()
 
 
 # ------------------------------------------------------------------ static solutions

@@ -15,7 +15,7 @@ from exudyn_rotor import (
     add_supports,
     recommended_settings,
 )
-from exudyn_rotor.multibody.full import full_plan
+from exudyn_rotor.multibody.full import add_full
 from exudyn_rotor.solvers.factor import TooLittleMemoryError
 
 STEP, STEPS, NEWTON = 1e-4, 20, 1e-10
@@ -194,10 +194,10 @@ def test_stress_is_that_of_the_rotation(bar):
 
 
 def test_too_little_memory_is_said_before_anything_is_added(bar, monkeypatch):
-    monkeypatch.setattr(full_plan, "available_memory", lambda: 1e5)
+    monkeypatch.setattr(add_full, "available_memory", lambda: 1e5)
     mbs = exudyn.SystemContainer().AddSystem()
     with pytest.raises(TooLittleMemoryError, match=r"60 displacements needs .*rotor\.reduce"):
         add_rotor(mbs, bar, spin=10.0)
     assert mbs.systemData.NumberOfNodes() == 0
-    monkeypatch.setattr(full_plan, "available_memory", lambda: 1e9)
+    monkeypatch.setattr(add_full, "available_memory", lambda: 1e9)
     add_rotor(mbs, bar, spin=10.0)

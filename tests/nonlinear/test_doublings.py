@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from exudyn_rotor import SolidRotor, Unbalance, periodic_response
+from exudyn_rotor import HarmonicForce, SolidRotor, Unbalance, periodic_response
 from exudyn_rotor.bearings.bearing import Bearing
 
 DAMPING, SPEED = 0.3, 1.2  # x″ + δ x′ − x + x³ = γ cos(ωt): δ, ω of textbooks
@@ -77,3 +77,30 @@ def test_period_doubling_and_the_branch_of_twice_the_period():
         per_two = np.abs(multipliers).max() ** (2 // turns)
         assert np.abs(found.multipliers[point]) == pytest.approx(per_two, rel=1e-3)
     assert found.stable[[once, double]].tolist() == [False, True]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Hardening(Wells):
+    """A force along n1 that is as large to both sides."""
+
+    def law(self, x, y, vx, vy, angle, speed):
+        return -0.2 * x - x**3 - 0.2 * vx, -4.0 * y - 0.2 * vy
+
+    def _rest(self, speed, load):
+        return np.zeros(2)
+
+
+@pytest.mark.parametrize(("load", "stable"), [(0.0, False), (0.01, True)])
+def test_a_small_load_leads_onto_the_branch_that_leaves_the_symmetry(load, stable):
+    rotor = SolidRotor.from_matrices(np.eye(3), np.zeros((3, 3)), [[0.0, 0, 0]], "z")
+    found = periodic_response(
+        rotor.with_interface("seat", [0]).reduce(0), [1.5, 4.0], Unbalance("seat", 1.0),
+        supports=Hardening(interface="seat"), over="unbalance", speed=1.0,
+        loads=[HarmonicForce("seat", [load, 0.0, 0.0])] if load else (),
+    )  # fmt: skip
+    assert ("branching" in found.kinds) == (not stable)
+    end = found.at(4.0)[0]
+    mean = found.phasor("seat", "n1", spin=0.0)[end].real
+    assert found.stable[end] == stable
+    assert (mean > 0.3) == stable
+    assert found.multipliers[end].real > 1.0 or stable

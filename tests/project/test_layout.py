@@ -39,6 +39,12 @@ MODULES = modules()
 
 
 @cache
+def tree(module: str) -> ast.Module:
+    """Return the syntax of a module."""
+    return ast.parse(MODULES[module].read_text(encoding="utf-8"))
+
+
+@cache
 def imports(module: str) -> frozenset[str]:
     """Return what a module imports of the package, anywhere: in functions and for types, too."""
     return frozenset(_imports(module))
@@ -47,7 +53,7 @@ def imports(module: str) -> frozenset[str]:
 def _imports(module: str) -> Iterator[str]:
     path = MODULES[module]
     folder = module.split(".") if path.name == "__init__.py" else module.split(".")[:-1]
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in ast.walk(tree(module)):
         if isinstance(node, ast.Import):
             yield from (_below(alias.name) for alias in node.names if _is_own(alias.name))
         elif isinstance(node, ast.ImportFrom):
@@ -93,7 +99,7 @@ def private_names(entry: str) -> frozenset[str]:
     """Return the private names that an entry of the listing makes: defined, assigned, quoted."""
     found = set()
     for module in (module for module in MODULES if order()[place(module)] == entry):
-        for node in ast.walk(ast.parse(MODULES[module].read_text(encoding="utf-8"))):
+        for node in ast.walk(tree(module)):
             made = getattr(node, "name", None) or getattr(node, "value", None)
             if isinstance(node, ast.Attribute | ast.Name) and isinstance(node.ctx, ast.Store):
                 made = node.attr if isinstance(node, ast.Attribute) else node.id
@@ -101,28 +107,26 @@ def private_names(entry: str) -> frozenset[str]:
     return frozenset(name for name in found if name and name.startswith("_"))
 
 
-@pytest.mark.parametrize("module", sorted(MODULES))
-def test_private_names_stay_in_their_entry(module):
-    own = private_names(order()[place(module)]) | OTHERS_OWN
-    tree = ast.parse(MODULES[module].read_text(encoding="utf-8"))
-    used = {
-        node.attr
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Attribute) and getattr(node.value, "id", "") not in ("self", "cls")
-    }
-    used |= {
-        alias.name
-        for node in ast.walk(tree)
-        if isinstance(node, ast.ImportFrom) and _is_own(node.module or "")
-        for alias in node.names
-    }
-    private = {name for name in used if name.startswith("_") and not name.startswith("__")}
-    assert private <= own, private - own
+def used_names(module: str) -> Iterator[str]:
+    """Return the names that a module takes of other objects and of the package's modules."""
+    for node in ast.walk(tree(module)):
+        if isinstance(node, ast.Attribute) and getattr(node.value, "id", "") not in ("self", "cls"):
+            yield node.attr
+        elif isinstance(node, ast.ImportFrom) and _is_own(node.module or ""):
+            yield from (alias.name for alias in node.names)
 
 
-@pytest.mark.parametrize("module", sorted(MODULES))
-def test_imports_go_up_the_listing(module):
-    assert not {imported for imported in imports(module) if place(imported) > place(module)}
+def test_private_names_stay_in_their_entry():
+    strange = {}
+    for module in MODULES:
+        names = {name for name in used_names(module) if re.match("_[^_]", name)}
+        strange[module] = names - private_names(order()[place(module)]) - OTHERS_OWN
+    assert not {module: names for module, names in strange.items() if names}
+
+
+def test_imports_go_up_the_listing():
+    pairs = {(module, imported) for module in MODULES for imported in imports(module)}
+    assert not {(one, other) for one, other in pairs if place(other) > place(one)}
 
 
 FOLDERS = sorted(name for name, path in MODULES.items() if path.name == "__init__.py" and name)

@@ -70,7 +70,6 @@ print(*sorted(others))
         "exudyn_rotor.multibody",
         "exudyn_rotor.multibody.twins",
         "exudyn_rotor.multibody.twins.exudyn_call",
-        "exudyn_rotor.multibody.wrapping",
     ]
 
 

@@ -74,7 +74,7 @@ def test_nodes_on_the_axis_have_no_spin():
     springs = np.zeros((9, 9))
     springs[2, 2] = springs[5, 5] = 10.0
     springs[2, 5] = springs[5, 2] = -10.0
-    rotor = SolidRotor.from_matrices(np.eye(9), springs, nodes, "z", allow_parts=True)
+    rotor = SolidRotor.from_matrices(np.eye(9), springs, nodes, "z")
     stretch = np.eye(9)[:, 5:6] - np.eye(9)[:, 2:3]
     reduced = rotor.reduce(stretch)
     assert "spin" in reduced.dropped

@@ -36,11 +36,11 @@ def make(changes):
     [
         ({"nodes": np.zeros((3, 2))}, r"nodes: the shape must be \(n, 3\), got \(3, 2\)"),
         ({"nodes": np.zeros((0, 3))}, r"nodes: the shape must be \(n, 3\)"),
-        ({"nodes": np.zeros((3, 6))}, "6 coordinates per node mean rotation-carrying"),
+        ({"nodes": np.zeros((3, 6))}, r"got \(3, 6\); a solid rotor has no nodes with rotations"),
         ({"nodes": [[0, 0, np.nan], [1, 0, 0], [2, 1, 0]]}, "1 of 3 positions are not finite"),
         ({"mass": np.eye(8)}, r"mass matrix: the shape must be \(9, 9\).*got \(8, 8\)"),
         ({"stiffness": np.ones(9)}, r"stiffness matrix: needs a square matrix.*\(9,\)"),
-        ({"mass": np.eye(18)}, "mass matrix: 6 coordinates for each of 3 nodes.*rotation-carrying"),
+        ({"mass": np.eye(18)}, r"mass matrix: the shape must be \(9, 9\).*no nodes with rotations"),
         ({"stiffness": None}, r"stiffness matrix: is missing"),
         ({"damping": np.eye(6)}, r"damping matrix: the shape must be \(9, 9\)"),
         ({"stiffness": 1j * np.eye(9)}, "stiffness matrix: needs real numbers, got imaginary"),
@@ -100,8 +100,8 @@ def test_regions_without_material():
         ({"colour": 1.0}, "materials: 'steel': needs exactly the keys"),
         ({"density": 7.85e-9, "youngsModulus": 2.1e5}, "mm and tonnes.*check_units=False"),
         ({"density": 7.85e-6}, "mm and kg.*convert to SI"),
-        ({"youngsModulus": 2.1e5}, "wave speed of 5.17 m/s.*cannot be"),
-        ({"youngsModulus": 2.1e14}, r"wave speed of 1\.64e\+05 m/s"),
+        ({"youngsModulus": 2.1e5}, r"wave speed .* of 5.17 m/s.*cannot be"),
+        ({"youngsModulus": 2.1e14}, r"wave speed .* of 1\.64e\+05 m/s"),
     ],
 )
 def test_materials_that_cannot_be(mesh, changes, message):
@@ -136,7 +136,7 @@ def node_set(name, *numbers):
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"nodes": {"RigidBodyRxyz": np.zeros((3, 6))}}, "rotation-carrying"),
+        ({"nodes": {"RigidBodyRxyz": np.zeros((3, 6))}}, "no nodes with rotations"),
         ({"nodes": {"Position2D": np.zeros((3, 2))}}, r"'Position' nodes only.*Position2D"),
         ({"nodes": {}}, "got no nodes"),
         ({"massMatrix": None}, "massMatrix is missing"),

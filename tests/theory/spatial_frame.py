@@ -13,11 +13,27 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from exudyn_rotor.theory.axis import skew, tilde, tilde_basis, translations
+from exudyn_rotor.theory.axis import skew, translations
 from exudyn_rotor.theory.terms import Term, Terms
 
 Matrix = np.ndarray | sp.csr_array
 Vector = np.ndarray
+
+
+def tilde(nodal: np.ndarray) -> np.ndarray:
+    """Return ``x̃`` (3n × 3): the skew matrices of all nodal vectors, stacked (9)."""
+    return np.vstack([skew(vector) for vector in np.asarray(nodal, float).reshape(-1, 3)])
+
+
+def tilde_basis(modes: np.ndarray | sp.csr_array) -> np.ndarray | sp.csr_array:
+    """Return ``Ψ̃`` (3n × 3m): the tilde matrix of every mode, side by side (30).
+
+    Sparse where the modes are.
+    """
+    kron = sp.kron if sp.issparse(modes) else np.kron
+    units = np.eye(3)
+    whole = sum(kron(modes[axis::3], skew(units[axis])) for axis in range(3))
+    return sp.csr_array(whole) if sp.issparse(modes) else whole
 
 
 class SpatialFrame:

@@ -6,9 +6,9 @@ or printed with 15 digits, and the eigenvalue problems are well conditioned: 1e-
 
 import numpy as np
 import pytest
+from spatial_frame import tilde_basis
 
 from exudyn_rotor import Invariants, SolidRotor, free_modes
-from exudyn_rotor.theory.axis import tilde_basis
 
 STIFFNESS = 1e4 * np.array(
     [  # (123)

@@ -14,9 +14,9 @@ from exudyn_rotor import (
     PrescribedMotion,
     select_modes,
 )
-from exudyn_rotor.multibody.add_rotor import Layout, user_function_object
 from exudyn_rotor.multibody.solver_settings import recommended_settings
 from exudyn_rotor.theory.formulation import ConstantSpeed
+from exudyn_rotor.theory.kernel import Kernel
 from exudyn_rotor.theory.stiffening import stiffening
 
 ORIENTATION = Rotation.from_rotvec([0.3, -0.5, 0.8]).as_matrix()
@@ -82,18 +82,17 @@ def test_jacobian_for_the_solver_is_the_derivative_of_its_forces(formulation):
     motion, step, time = motion_of(formulation, 4, 1.0), 1e-5, 0.4
     assert motion.invariants.D.any()
     size = motion.size
-    layout = Layout(size, np.arange(size), np.zeros(size))
-    scene = user_function_object(motion, layout, [0], None)
+    kernel = Kernel(motion, np.arange(size), size)
     state = np.random.default_rng(7).normal(size=2 * size)
 
     def force(shift: np.ndarray) -> np.ndarray:
         q, q_t = np.split(state + shift, 2)
-        return np.array(scene.forceUserFunction(None, time, 0, q.tolist(), q_t.tolist()))
+        return np.array(kernel.forces(time, q.tolist(), q_t.tolist()))
 
     shifts = step * np.eye(2 * size)
     slopes = np.array([force(shift) - force(-shift) for shift in shifts]).T / (2.0 * step)
     q, q_t = (part.tolist() for part in np.split(state, 2))
-    found = scene.jacobianUserFunction(None, time, 0, q, q_t, 2.0, 3.0)
+    found = kernel.jacobian(time, q, q_t, 2.0, 3.0)
     expected = -2.0 * slopes[:, :size] - 3.0 * slopes[:, size:]
     assert found == pytest.approx(expected, abs=1e-8 * np.abs(expected).max())
 

@@ -146,7 +146,7 @@ def test_blocks_make_the_equations(rotor, translation, spin, coupling, level):
             [t_f.T, r_f.T[:, held], value["M_ζζ"]],
         ]
     )
-    assert_same(motion.mass_matrix(TIME, q, q_t), mass, 1e-12)
+    assert_same(motion.mass_matrix(TIME, q), mass, 1e-12)
     on_modes = value["Q_ζ"] - value["K_ψψ"] @ q[motion.modes] - value["D_ψψ"] @ q_t[motion.modes]
     if not form.has_spin:
         zeta, zeta_t = q[motion.modes], q_t[motion.modes]

@@ -62,7 +62,13 @@ def refined(simulate, step: float, **options) -> tuple[Orbits, Orbits]:
 
 
 def compare(
-    model: Model, bearings: Bearings, tilt: float, duration: float, step: float, samples: int
+    model: Model,
+    bearings: Bearings,
+    tilt: float,
+    duration: float,
+    step: float,
+    samples: int,
+    levels: Sequence[str] = LEVELS,
 ) -> list[Row]:
     """Return one row per stiffening level: deviations from the 3D body relative to the motion.
 
@@ -81,7 +87,7 @@ def compare(
     scale = dict.fromkeys(("lateral", "radius", "axial"), size["lateral"]) | {"rim": size["rim"]}
     own_error = deviation(fine, reference)["lateral"] / size["lateral"]
     rows = []
-    for level in LEVELS:
+    for level in levels:
         body_fine, body = refined(fixed_axis_orbits, step, **common, stiffening=level)
         limit, at_step = deviation(body, reference), deviation(body_fine, fine)
         row = {"stiffening": level, "tilt": float(np.abs(reference.tilt).max())}

@@ -35,7 +35,7 @@ from exudyn.itemInterface import (
 from exudyn.utilities import AngularVelocity2EulerParameters_t
 
 from exudyn_rotor import SolidRotor
-from exudyn_rotor.theory.axis import tilde, translations
+from exudyn_rotor.theory.axis import rotations, translations
 
 STORED = {"storeInternal": True, "writeToFile": False}
 
@@ -96,7 +96,7 @@ def add_spatial_rotor(
             **damping,
         )
     )
-    motions = np.hstack([translations(len(local)), tilde(local)])
+    motions = np.hstack([translations(len(local)), rotations(local, np.zeros(3))])
     rows = (rotor.mass @ motions).T
     lengths = np.linalg.norm(rows, axis=1, keepdims=True)
     rows = np.hstack([np.zeros((6, 7)), rows / np.where(lengths, lengths, 1.0)])

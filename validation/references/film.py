@@ -65,8 +65,8 @@ def closed_forms() -> list[str]:
         shape = np.array([-(ratio**2) / left**2, np.pi * ratio / (4.0 * left**1.5)])
         exact_short = unit * short**3 * shape
         errors = (
-            full.force(*at)[1] / exact_long - 1.0,
-            np.linalg.norm(cut.force(*at) - exact_short) / np.linalg.norm(exact_short),
+            full.state(*at).force[1] / exact_long - 1.0,
+            np.linalg.norm(cut.state(*at).force - exact_short) / np.linalg.norm(exact_short),
         )
         lines.append(f"{'':30} {nodes:5} {errors[0]:12.1e} {errors[1]:12.1e}")
     return lines
@@ -164,10 +164,9 @@ def own_stiffness(table: np.ndarray) -> np.ndarray:
 def approached(state, velocity: float) -> float:
     """Return the radial damping over W/(c Ω) by one difference, `velocity` c Ω to the bore."""
     outward = state.position / np.linalg.norm(state.position)
-    moved = state.film.force(
-        state.position, velocity * CLEARANCE * state.speed * outward, state.speed
-    )
-    return -float((moved - state.force) @ outward) / (velocity * LOAD)
+    rate = velocity * CLEARANCE * state.speed * outward
+    moved = state.film.state(state.position, rate, state.speed)
+    return -float((moved.force - state.force) @ outward) / (velocity * LOAD)
 
 
 def someya() -> list[str]:
@@ -233,7 +232,7 @@ def lobed() -> list[str]:
             unit = CLEARANCE * RADIUS * state.speed * bearing.length
             place = row[1] * bearing.clearance * polar_axes(np.radians(row[2]))[:, 0]
             lobes = [
-                -replace(bearing, pads=[pad]).force(place, [0.0, 0.0], state.speed)[0] / LOAD
+                -replace(bearing, pads=[pad]).state(place, [0.0, 0.0], state.speed).force[0] / LOAD
                 for pad in bearing.pads[::-1]
             ]
             lines.append(

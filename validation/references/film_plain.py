@@ -56,7 +56,7 @@ def compared(bearing: OilFilm, row: np.ndarray, slope: np.ndarray) -> tuple[dict
     across = 2.0 * load / ratio * np.array([-np.cos(attitude), np.sin(attitude)])
     closed = replace(bearing, pads=grooved_pads(CLEARANCE))
     found = [
-        np.linalg.norm(closed.force(place, [sign * CLEARANCE * SPEED, 0.0], 0.0)) / unit
+        np.linalg.norm(closed.state(place, [sign * CLEARANCE * SPEED, 0.0], 0.0).force) / unit
         for sign in (1.0, -1.0)
     ]
     side = state.side_flow / (CLEARANCE * RADIUS * SPEED * RADIUS)

@@ -18,9 +18,10 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.film.grid import Axial, Grid
 from exudyn_rotor.bearings.film.pads import Pad
 from exudyn_rotor.bearings.film.reynolds import CAVITATION, Equation, Solution
+from exudyn_rotor.calls import kept
 
 _PEAK = 4.5  # the pressure's peak, √(2 h_min/c) wide, holds three nodes
-_STEPS, _VAIN = 100, 3  # of Newton's method, of those in vain
+_STEPS, _VAIN, _HALVES = 100, 3, 12  # of Newton's method, in vain, halvings of one
 _CLOSE = 1e-9  # of the load: it stops there
 # places at which it begins: over the clearance, and turned from the most likely side
 _STARTS = [
@@ -52,32 +53,22 @@ class FilmState:
 
     @cached_property
     def force(self) -> np.ndarray:
-        """Force on the journal along n1 and n2, that of the supply in the grooves with it [N].
+        """Force on the journal along n1 and n2 [N]."""
+        return self._resultant(self.solution.bearing)
 
-        The supply's pressure all around has no resultant, so the pads' excess over it is enough.
-        """
-        film, grid = self.film, self.film.grid
-        supply = film.radius * film.length * film.supply_pressure * (grid.step @ grid.u[0])
-        return supply + self._resultant(self.solution.bearing)
-
+    @kept
     def coefficients(self) -> tuple[np.ndarray, np.ndarray]:
         """Return stiffness −∂F/∂q [N/m] and damping −∂F/∂q̇ [N s/m] along n1 and n2, each (2, 2).
 
         The derivatives of the discrete film's force (Lund's perturbation): where the film is
         broken it stays so, and the pressure at the rim of a void stays zero.
         """
-        stiffness, damping = self.tangent
-        return stiffness.copy(), damping.copy()
-
-    @cached_property
-    def tangent(self) -> tuple[np.ndarray, np.ndarray]:
-        """What :meth:`coefficients` returns, kept."""
         u = np.moveaxis(self.film.grid.u, 2, 0)
         still = np.zeros_like(u)
         heights, rates = np.concatenate([-u, still]), np.concatenate([still, -u])[:, 0]
         changes = self.solution.change(heights, rates)
         gradient = -np.array([self._resultant(change) for change in changes]).T
-        return gradient[:, :2], gradient[:, 2:]
+        return checks.read_only(gradient[:, :2]), checks.read_only(gradient[:, 2:])
 
     def _resultant(self, pressure: np.ndarray) -> np.ndarray:
         grid = self.film.grid
@@ -117,15 +108,6 @@ class FilmState:
         return float(sense * np.arctan2(f1 * q2 - f2 * q1, f1 * q1 + f2 * q2))
 
     @property
-    def sommerfeld_number(self) -> float:
-        """S = μ N L D/W (R/c)², N in revolutions per second, c the least clearance."""
-        film = self.film
-        turns = abs(self.speed) / (2.0 * np.pi)
-        load = np.linalg.norm(self.force)
-        area = 2.0 * film.radius * film.length
-        return float(film.viscosity * turns * area / load * (film.radius / film.clearance) ** 2)
-
-    @property
     def torque(self) -> float:
         """Torque that the film takes from the journal, positive against a positive spin [N m].
 
@@ -140,8 +122,7 @@ class FilmState:
         covered = grid.step * (1.0 / self.heights + 0.5 * ends.sum(axis=0))
         shear = film.viscosity * film.radius**4 * self.speed * size * covered.sum()
         slope = equation.heights[2] - equation.heights[1]
-        excess = self.solution.bearing @ axial.weights - size * film.supply_pressure
-        lift = -(slope @ excess)
+        lift = -(slope @ (self.solution.bearing @ axial.weights))
         return float(shear + 0.5 * film.radius**2 * lift)
 
     @property
@@ -151,12 +132,7 @@ class FilmState:
 
     @property
     def side_flow(self) -> float:
-        """Oil that leaves the pads at both ends [m³/s].
-
-        A supply pressure drops to zero where a pad's edge meets an end, so that the flow there is
-        not bounded: every doubling of the nodes, along and around, adds ``ln 2 h³ p_s/(6π μ)`` at
-        each such corner. What leaves the grooves' own ends is not in it.
-        """
+        """Oil that leaves the pads at both ends [m³/s]."""
         film, grid = self.film, self.film.grid
         slope = self.solution.bearing @ grid.axial.edge
         return float((grid.step * self.heights**3) @ slope / (6.0 * film.viscosity))
@@ -177,8 +153,6 @@ class OilFilm:
     cavitation : {'reynolds', 'half-sommerfeld', 'none'}, optional
         What holds where the film would be pulled. 'reynolds' (p ≥ 0, p and its slope vanish where
         the film breaks) is what tables of coefficients mostly hold.
-    supply_pressure : float, optional
-        In the grooves, which are as long as the bore, above the ambient [Pa].
     nodes : int, optional
         Around the whole circle.
     axial_nodes : int, optional
@@ -188,7 +162,7 @@ class OilFilm:
     Raises
     ------
     TypeError, ValueError
-        For sizes that are not positive, pads that overlap, a supply without a groove.
+        For sizes that are not positive, and pads that overlap.
 
     Examples
     --------
@@ -207,7 +181,6 @@ class OilFilm:
     viscosity: float
     pads: Sequence[Pad]
     cavitation: str = "reynolds"
-    supply_pressure: float = 0.0
     nodes: int = 120
     axial_nodes: int = 12
     grid: Grid = field(init=False, repr=False)
@@ -217,7 +190,6 @@ class OilFilm:
         checks.number(self.length, "length", "m", above=0.0)
         checks.number(self.viscosity, "viscosity", "Pa s", above=0.0)
         checks.choice(self.cavitation, "cavitation", CAVITATION)
-        checks.number(self.supply_pressure, "supply_pressure", "Pa", least=0.0)
         checks.count(self.nodes, "nodes", least=12, most=10_000)
         checks.count(self.axial_nodes, "axial_nodes", most=1000)
         if self.axial_nodes == 1:
@@ -228,8 +200,6 @@ class OilFilm:
             raise ValueError(
                 f"pads: need clearances far below the radius of {self.radius:g} m, got {widest:g} m"
             )
-        if pads[0].closed and self.supply_pressure > 0.0:
-            raise ValueError("supply_pressure: needs pads with a groove between them")
         object.__setattr__(self, "pads", pads)
         half = 0.5 * self.length / self.radius
         axial = Axial.volumes(half, self.axial_nodes) if self.axial_nodes else Axial.profile(half)
@@ -257,13 +227,6 @@ class OilFilm:
     def _heights(self, position: np.ndarray) -> np.ndarray:
         """Return h in the middle, at the left and the right face of each volume, (3, n) [m]."""
         return self.grid.offset - self.grid.u @ position
-
-    def force(self, displacement: ArrayLike, velocity: ArrayLike, speed: float) -> np.ndarray:
-        """Return the force of the film on the journal along n1 and n2, (2,) [N].
-
-        Parameters are those of :meth:`state`.
-        """
-        return self.state(displacement, velocity, speed).force
 
     def state(self, displacement: ArrayLike, velocity: ArrayLike, speed: float) -> FilmState:
         """Return the film at one place and motion of the journal.
@@ -347,7 +310,7 @@ class OilFilm:
         if found is None or self.cavitation == "none":
             return None
         left = float(np.linalg.norm(found.force + load))
-        held = left < _CLOSE * np.linalg.norm(load) and np.linalg.det(found.tangent[0]) > 0.0
+        held = left < _CLOSE * np.linalg.norm(load) and np.linalg.det(found.coefficients()[0]) > 0.0
         return found if held else None
 
     def _newton(
@@ -356,28 +319,24 @@ class OilFilm:
         """Return where Newton's method ends; None for a film thinner than the grid resolves."""
         state, vain, size = self.solved(start, np.zeros(2), speed, empty), 0, np.linalg.norm(load)
         for _ in range(_STEPS):
-            unbalanced = np.linalg.norm(state.force + load)
-            if unbalanced < _CLOSE * size or vain == _VAIN:
+            unbalanced = state.force + load
+            left = np.linalg.norm(unbalanced)
+            if left < _CLOSE * size or vain == _VAIN:
                 break
-            state = self._next(state, load)
-            if self._heights(state.position).min() < self.thinnest:
+            move = np.linalg.lstsq(state.coefficients()[0], unbalanced, rcond=1e-12)[0]
+            move *= min(1.0, 0.6 / state.closing(move))
+            for _ in range(_HALVES):
+                # the cells that are empty now: few steps from those of the next place
+                place, empty = state.position + move, state.solution.empty
+                found = self.solved(place, np.zeros(2), speed, empty)
+                if np.linalg.norm(found.force + load) < left:
+                    break
+                move *= 0.5
+            vain += np.linalg.norm(found.force + load) >= left
+            state = found
+            if state.heights.min() < self.thinnest:
                 return None
-            vain += np.linalg.norm(state.force + load) >= unbalanced
         return state
-
-    def _next(self, state: FilmState, load: np.ndarray) -> FilmState:
-        """Return the state after one step, shortened until the force comes closer to the load."""
-        unbalanced = state.force + load
-        move = np.linalg.lstsq(state.tangent[0], unbalanced, rcond=1e-12)[0]
-        move *= min(1.0, 0.6 / state.closing(move))
-        for _ in range(12):
-            # the cells that are empty now: few steps from those of the next place
-            motion = state.position + move, state.velocity, state.speed
-            found = self.solved(*motion, state.solution.empty)
-            if np.linalg.norm(found.force + load) < np.linalg.norm(unbalanced):
-                break
-            move *= 0.5
-        return found
 
     def solved(
         self,
@@ -395,10 +354,8 @@ class OilFilm:
             )
         rates = -self.grid.u[0] @ velocity
         source = 12.0 * self.viscosity * self.radius**2
-        film = self.grid, self.cavitation, source, self.supply_pressure
-        return FilmState(
-            self, position, velocity, speed, Equation(*film, heights, rates, speed).solve(empty)
-        )
+        equation = Equation(self.grid, self.cavitation, source, heights, rates, speed)
+        return FilmState(self, position, velocity, speed, equation.solve(empty))
 
 
 def _in_order(pads: tuple[Pad, ...]) -> tuple[Pad, ...]:

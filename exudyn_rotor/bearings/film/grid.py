@@ -4,7 +4,7 @@ With the journal's surface at the speed ΩR, the film's equation times R² is
 
     ∂φ(h³ ∂φ p) + h³ ∂ζζ p = 12 μ R² (Ω/2 ∂φ h + ∂t h),        ζ = z/R                    (1)
 
-p = 0 at the ends ζ = ±L/(2R) and p = p_s at the pads' edges. Finite volumes in φ and, in ζ, either
+p = 0 at the ends ζ = ±L/(2R) and at the pads' edges. Finite volumes in φ and, in ζ, either
 finite volumes of the half length, or the one function ``f = 1 − cosh ζ / cosh(L/2R)`` with
 Galerkin's condition: exact for small eccentricities of a whole circle, where p ~ sin φ, and in
 proportion to the parabola of a short bearing. The thickness depends on φ alone, so both give
@@ -19,24 +19,14 @@ import numpy as np
 
 from exudyn_rotor.bearings.film.pads import WHOLE, Pad, direction
 
-_SHORT = 0.03  # L/(2R), whose square is what a parabola leaves out
-
 
 @dataclass(frozen=True, eq=False)
 class Axial:
-    """What the grid is along ζ, of the whole length.
+    """What the grid is along ζ, of the whole length, by the integrals of each unknown's function f.
 
-    Attributes
-    ----------
-    mass, weights : numpy.ndarray, (m,)
-        ∫ f² dζ of each unknown, and ∫ f dζ.
-    stiffness : numpy.ndarray, (m, m)
-        ∫ f' f' dζ, of at most three diagonals.
-    edge : numpy.ndarray, (m,)
-        The slope −∂p/∂ζ at one end per unknown.
-    places : numpy.ndarray, (k,)
-        ζ at which `shapes` gives the pressure, from the middle to the end.
-    shapes : numpy.ndarray, (k, m)
+    `mass` and `weights` (m,) are ∫ f² dζ and ∫ f dζ, `stiffness` (m, m) is ∫ f' f' dζ, of at most
+    three diagonals, `edge` (m,) the slope −∂p/∂ζ at one end; `shapes` (k, m) gives the pressure at
+    the `places` ζ (k,) from the middle on.
     """
 
     mass: np.ndarray
@@ -61,26 +51,15 @@ class Axial:
 
     @classmethod
     def profile(cls, half: float) -> Axial:
-        """Return the one function f; for short bores the parabola, which does not cancel."""
-        places = np.linspace(0.0, half, 21)
-        if half < _SHORT:
-            weight, mass, edge = 2.0 / 3.0 * half**3, 4.0 / 15.0 * half**5, half
-            stiffness, shapes = weight, 0.5 * (half**2 - places**2)
-        else:
-            edge, decayed = np.tanh(half), np.exp(-2.0 * half)
-            weight = 2.0 * (half - edge)
-            stiffness = edge - 4.0 * half * decayed / (1.0 + decayed) ** 2
-            shapes = 1.0 - (np.exp(places - half) + np.exp(-places - half)) / (1.0 + decayed)
-            # ∫ f f'' = −∫ f'², and f'' = f − 1
-            mass = weight - stiffness
-        return cls(
-            np.array([mass]),
-            np.array([weight]),
-            np.array([[stiffness]]),
-            np.array([edge]),
-            places,
-            shapes[:, None],
-        )
+        """Return the one function f."""
+        places, decayed = np.linspace(0.0, half, 21), np.exp(-2.0 * half)
+        edge = np.tanh(half)
+        weight = np.array([2.0 * (half - edge)])
+        stiffness = edge - 4.0 * half * decayed / (1.0 + decayed) ** 2
+        shapes = 1.0 - (np.exp(places - half) + np.exp(-places - half)) / (1.0 + decayed)
+        # ∫ f f'' = −∫ f'², and f'' = f − 1
+        mass, stiff = weight - stiffness, np.array([[stiffness]])
+        return cls(mass, weight, stiff, np.array([edge]), places, shapes[:, None])
 
 
 class Grid:

@@ -50,7 +50,7 @@ def plot_pressure(state: FilmState, ax: Axes | None = None) -> Axes:
         if pad.closed:
             angle, values = np.append(angle, angle[0] + pad.arc), np.append(values, values[:1], 0)
         else:
-            edge = np.full((1, len(along)), film.supply_pressure / 1e6)
+            edge = np.zeros((1, len(along)))
             angle = np.concatenate([[pad.start], angle, [pad.start + pad.arc]])
             values = np.concatenate([edge, values, edge])
         drawn = ax.contourf(np.degrees(angle), along, values.T, levels, cmap="viridis")

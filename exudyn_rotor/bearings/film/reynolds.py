@@ -29,47 +29,29 @@ _ITERATIONS = 200
 class Equation:
     """Eq. (1) of a grid at one place and motion of the journal.
 
-    Parameters
-    ----------
-    grid : Grid
-    cavitation : str
-        One of CAVITATION.
-    source : float
-        12 μ R² [N s].
-    edge : float
-        Pressure at the pads' edges [Pa].
-    heights : numpy.ndarray, (3, n)
-        Thickness in the middle, at the left and the right face of each volume [m].
-    rates : numpy.ndarray, (n,)
-        ∂t h [m/s].
-    speed : float
-        Ω [rad/s].
+    `source` is 12 μ R² [N s], `heights` (3, n) the thickness in the middle, at the left and the
+    right face of each volume [m], and `rates` (n,) are ∂t h [m/s].
     """
 
     grid: Grid
     cavitation: str
     source: float
-    edge: float
     heights: np.ndarray
     rates: np.ndarray
     speed: float
 
     def pressed(self, pressure: np.ndarray, cubes: np.ndarray) -> np.ndarray:
         """Return the flow that a pressure drives out of each volume, by h³ (3, n) or many of it."""
-        grid, axial = self.grid, self.grid.axial
-        edge = self.edge * axial.weights / axial.mass
+        grid, axial, step = self.grid, self.grid.axial, self.grid.step[:, None]
         left, right = (
-            np.where(inside[:, None], pressure[at], edge)
-            for inside, at in ((grid.at_left, grid.left), (grid.at_right, grid.right))
+            cubes[..., face, :, None] * (pressure - np.where(inside[:, None], pressure[at], 0.0))
+            for face, inside, at in (
+                (1, grid.at_left, grid.left),
+                (2, grid.at_right, grid.right),
+            )
         )
-        drop_left, drop_right = pressure - left, pressure - right
-        step = grid.step[:, None]
-        through = (
-            axial.mass
-            / step
-            * (cubes[..., 1, :, None] * drop_left + cubes[..., 2, :, None] * drop_right)
-        )
-        return through + step * cubes[..., 0, :, None] * (pressure @ axial.stiffness)
+        along = step * cubes[..., 0, :, None] * (pressure @ axial.stiffness)
+        return axial.mass / step * (left + right) + along
 
     def fed(self, heights: np.ndarray, rates: np.ndarray) -> np.ndarray:
         """Return what the surface carries out of each volume, and what its growth takes in."""
@@ -86,8 +68,6 @@ class Equation:
         """
         shape = (len(self.grid.angle), self.grid.width)
         load = -self.fed(self.heights, self.rates)
-        if self.edge:
-            load -= self.pressed(np.zeros(shape), self.heights**3)
         breaks = self.cavitation == "reynolds"
         empty = np.zeros(shape, dtype=bool) if empty is None or not breaks else empty
         for _ in range(_ITERATIONS):
@@ -140,16 +120,7 @@ class Equation:
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """Pressure in a film.
-
-    Attributes
-    ----------
-    equation : Equation
-    pressure : numpy.ndarray, (n, m)
-        At the nodes, negative parts included [Pa].
-    empty : numpy.ndarray of bool, (n, m)
-        Where the film is broken.
-    """
+    """Pressure at the nodes (n, m) [Pa], negative parts included, and where the film is broken."""
 
     equation: Equation
     pressure: np.ndarray

@@ -41,30 +41,41 @@ def points(count: int) -> np.ndarray:
     return np.unique(np.linspace(0, count - 1, min(count, _POINTS)).round().astype(int))
 
 
-def shifts_over(model: LinearModel, named: Named, *, held: bool = False) -> np.ndarray | None:
-    """Return ``λ_richer − λ`` of motions at all speeds, in the frame of the rotor, (s, k).
+def motion_errors(model: LinearModel, named: Named, *, held: bool = False) -> np.ndarray | None:
+    """Return relative errors of motions by the basis, the larger of frequency and growth, (s, k).
 
-    The motions of one column are the same at all speeds. Between the speeds at which the richer
-    model is solved shifts follow straight lines; NaN where a motion is not found again, None where
-    nothing is known. Zero where the basis leaves nothing out.
+    At the first, the middle and the last speed; NaN elsewhere, and where a motion is not found
+    again. Zero where the basis leaves nothing out, None where that is not known. A frequency counts
+    as at least a tenth of the spin speed, a growth as at least a hundredth of the frequency. At
+    rest, what neither oscillates nor grows has no relative error.
     """
-    speeds, known, shape = named.motions.speeds, named.motions.known, named.inertial.shape
+    richer, errors = model.richer, np.zeros(named.inertial.shape)
     if model.is_full:
-        return np.zeros(shape, dtype=complex)
-    richer = model.richer
+        return errors
     if richer is None:
         return None
-    chosen, lifted = known[points(len(known))], lifting(model, richer)
+    lifted = lifting(model, richer)
     if lifted.shape[0] == lifted.shape[1]:
-        return np.zeros(shape, dtype=complex)
-    better = Content.of(richer).named(motions_over(richer, speeds[chosen], held=held))
-    shifts = _shifts(named.rows(chosen), better, lifted, richer.mass_matrix)
-    lines = [
-        np.interp(speeds, speeds[chosen], part.real)
-        + 1j * np.interp(speeds, speeds[chosen], part.imag)
-        for part in shifts.T
-    ]
-    return np.array(lines).T
+        return errors
+    rows = named.motions.known[points(len(named.motions.known))]
+    given = named.rows(rows)
+    speeds = given.motions.speeds
+    better = Content.of(richer).named(motions_over(richer, speeds, held=held))
+    lift = replace(given.motions, vectors=lifted @ given.motions.vectors)
+    chosen, same = matched(given._replace(motions=lift), better, richer.mass_matrix, _SPREAD)
+    better = better.columns(chosen)
+    # of a train, which rotor's frame a motion is seen from may differ between both models
+    seen, turning = better.inertial - given.inertial, better.rotor - given.rotor
+    change = np.minimum(np.abs(seen), np.abs(turning))
+    least = np.maximum(given.inertial, _SLOW * np.abs(speeds)[:, None])
+    growth = given.motions.values.real
+    grown = np.abs(better.motions.values.real - growth)
+    sizes = np.maximum(np.abs(growth), _DAMPED * least)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = np.maximum(change / least, grown / sizes)
+    errors[:] = np.nan
+    errors[rows] = np.where(same & np.isfinite(found), found, np.nan)
+    return errors
 
 
 def lifting(model: LinearModel, richer: LinearModel) -> np.ndarray:
@@ -77,42 +88,6 @@ def lifting(model: LinearModel, richer: LinearModel) -> np.ndarray:
         else:
             blocks.append(np.eye(body.size))
     return la.block_diag(*blocks)
-
-
-def _shifts(given: Named, richer: Named, lifted: np.ndarray, M: np.ndarray) -> np.ndarray:
-    """Return the shifts (s, k) of motions, of richer ones at the same speeds."""
-    lift = replace(given.motions, vectors=lifted @ given.motions.vectors)
-    chosen, same = matched(given._replace(motions=lift), richer, M, _SPREAD)
-    better = richer.columns(chosen)
-    # of a train, which rotor's frame a motion is seen from may differ between both models
-    change, seen = better.rotor - given.rotor, better.inertial - given.inertial
-    change = np.where(np.abs(seen) < 0.5 * np.abs(change), seen, change)
-    growth = better.motions.values.real - given.motions.values.real
-    return np.where(same, growth + 1j * change, np.nan)
-
-
-def relative_errors(
-    shifts: np.ndarray, growth: np.ndarray, frequencies: np.ndarray, speeds: np.ndarray
-) -> np.ndarray:
-    """Return the larger of the relative errors of frequency and growth, shape (s, k).
-
-    Parameters
-    ----------
-    shifts : ndarray, shape (s, k)
-        ``λ_richer − λ`` [1/s].
-    growth, frequencies : ndarray, shape (s, k)
-        The latter in the inertial frame. A frequency counts as at least a tenth of the spin speed,
-        a growth as at least a hundredth of the frequency. At rest, what neither oscillates nor
-        grows has no relative error, NaN.
-    speeds : ndarray, shape (s,)
-        [rad/s]
-    """
-    least = np.maximum(np.abs(frequencies), _SLOW * np.abs(speeds)[:, None])
-    sizes = np.maximum(np.abs(growth), _DAMPED * least)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        parts = np.abs(shifts.imag) / least, np.abs(shifts.real) / sizes
-    errors = np.where(shifts == 0.0, 0.0, np.maximum(*parts))
-    return np.where(np.isinf(errors), np.nan, errors)
 
 
 def judged(
@@ -142,21 +117,10 @@ def basis_errors(
     motions: Amplitudes,
     solve: Callable[[LinearModel, np.ndarray], Amplitudes],
 ) -> np.ndarray | None:
-    """Return relative errors (s, p) by the basis, NaN where none is looked at.
+    """Return relative errors (s, p) by the basis, NaN where none is looked at; None if not known.
 
-    None where they are not known.
-
-    Parameters
-    ----------
-    model : LinearModel
-    accuracy : float or None
-        None for no estimate.
-    values : ndarray, shape (s,)
-        Speeds or frequencies [rad/s].
-    motions : mapping of int to ndarray, shape (s, p, 6)
-        Harmonics there.
-    solve : callable
-        Takes a model, and speeds or frequencies; gives the motions.
+    Of `motions`, harmonics (s, p, 6), at speeds or frequencies `values` (s,) [rad/s]; `solve` takes
+    a model and such values, and gives the motions.
     """
     if not is_known(model, accuracy):
         return None

@@ -89,12 +89,13 @@ class Campbell(ModelResult):
         it had to be another one, as where a mode leaves those that were computed.
     free_motions : tuple of str
         Rigid motions that nothing holds.
-    basis_shifts : ndarray, shape (s, k), or None
-        Estimated ``λ − λ_reduced`` with λ of the full model: its real part is what the basis of a
-        reduced rotor lacks in growth [1/s], its imaginary part in the frequency in the rotor frame
-        [rad/s]. Zero for a full model; where no number of modes was asked for, NaN of those beyond
-        twice the highest speed and the lowest six, and always of overdamped motions that decay
-        faster than these; None where it is not known.
+    basis_errors : ndarray, shape (s, k), or None
+        Estimated relative error by the basis of a reduced rotor at the first, the middle and the
+        last speed, NaN elsewhere: the larger of those of the inertial frequency and of the growth.
+        A frequency counts as at least a tenth of the spin speed, a growth as at least a hundredth
+        of the frequency. Zero for a full model; where no number of modes was asked for, NaN of
+        those beyond twice the highest speed and the lowest six, and always of overdamped motions
+        that decay faster than these. None where it is not known.
     frame : {'inertial', 'rotor'}
         In which columns ascend, and modes were chosen.
     stiffening, axes, unevenness
@@ -132,9 +133,7 @@ class Campbell(ModelResult):
     order: np.ndarray = numbers("speeds", "modes", dtype=int, least=0)
     continued: np.ndarray = numbers("speeds", "modes", dtype=bool)
     free_motions: tuple[str, ...] = ()
-    basis_shifts: np.ndarray | None = numbers(
-        "speeds", "modes", dtype=complex, finite=False, optional=True
-    )
+    basis_errors: np.ndarray | None = numbers("speeds", "modes", finite=False, optional=True)
     frame: str = "inertial"
 
     def __post_init__(self) -> None:
@@ -154,20 +153,6 @@ class Campbell(ModelResult):
         """
         return np.array(WHIRLS)[self.whirl_codes]
 
-    @property
-    def basis_errors(self) -> np.ndarray | None:
-        """Estimated relative error by the basis of a reduced rotor, shape (s, k).
-
-        The larger of those of the inertial frequency and of the growth. A frequency counts as at
-        least a tenth of the spin speed, a growth as at least a hundredth of the frequency. None
-        where it is not known.
-        """
-        if self.basis_shifts is None:
-            return None
-        return basis_error.relative_errors(
-            self.basis_shifts, self.growth, self.frequencies_inertial, self.speeds
-        )
-
     def tracked(self) -> Campbell:
         """Return the same result with columns that follow each mode over the speeds.
 
@@ -177,7 +162,7 @@ class Campbell(ModelResult):
         """
         names = ("frequencies_rotor", "growth", "frequencies_inertial", "damping_ratio",
                  "log_decrement", "whirl_codes", "nodal_diameters")  # fmt: skip
-        names += ("basis_shifts",) if self.basis_shifts is not None else ()
+        names += ("basis_errors",) if self.basis_errors is not None else ()
         moved = {name: np.take_along_axis(getattr(self, name), self.order, 1) for name in names}
         moved["vectors"] = np.take_along_axis(self.vectors, self.order[:, None, :], 2)
         moved["order"] = np.broadcast_to(np.arange(self.order.shape[1]), self.order.shape).copy()
@@ -250,7 +235,9 @@ class Campbell(ModelResult):
         frame = self.frame if frame is None else checks.choice(frame, "frame", FRAMES)
         shown, inertial = Units.of(units), frame == "inertial"
         limits = diagram.checked_range(operating_range)
-        shares = diagram.checked_margins(margins, limits is not None)
+        shares = diagram.checked_margins(margins)
+        if margins is not None and limits is None:
+            raise ValueError("margins: are beside operating_range=(low, high), got none")
         if orders is not None:
             orders = diagram.checked_orders(orders)
         ax = plotting.axes_or_new(ax)
@@ -426,13 +413,14 @@ def campbell(
     named = Content.of(model).named(motions)
     if model.free_motions:
         named = _resting(named)
-    named = named.columns(_ascending(named, frame))
     order, continued = track(named, model.mass_matrix)
-    kept = _lowest(named, order, modes, frame, model)
-    tracked, continued = named.columns(order[:, kept]), continued[:, kept]
-    shifts = None if accuracy is None else basis_error.shifts_over(model, tracked)
-    result = _collected(tracked, continued, shifts, model, frame, modes)
-    _warn_of_basis(result, model, accuracy)
+    first = named.rows(named.motions.known[:1]).columns(order[named.motions.known[:1]])
+    kept = _ascending(first, frame)[0, : modes or _complete(first, model)]
+    tracked = named.columns(order[:, kept])
+    errors = None if accuracy is None else basis_error.motion_errors(model, tracked)
+    result = _collected(tracked, continued[:, kept], errors, model, frame, modes)
+    if errors is not None:
+        _warn_of_basis(result, model, accuracy)
     return result
 
 
@@ -468,25 +456,16 @@ def _overdamped(found: Named) -> np.ndarray:
     return (found.inertial == 0.0) & (growth < -bounds)
 
 
-def _lowest(
-    named: Named, order: np.ndarray, modes: int | None, frame: str, model: LinearModel
-) -> np.ndarray:
-    """Return the tracked columns that are kept: the lowest at the first speed with values."""
-    row = named.motions.known[:1]
-    first = named.rows(row).columns(order[row])
-    frequencies = first.inertial if frame == "inertial" else first.rotor
-    count = modes or frequencies.shape[1]
-    if modes is None and np.isfinite(model.complete_up_to):
-        complete = np.count_nonzero(np.abs(first.motions.values) < model.complete_up_to)
-        count = max(min(_FEWEST, count), complete)
-    last = _overdamped(first) | np.isnan(first.motions.values)
-    return np.sort(np.lexsort((rounded(frequencies), last), axis=-1)[0, :count])
+def _complete(first: Named, model: LinearModel) -> int:
+    """Return how many of the motions at one speed a basis is asked for that cuts pairs."""
+    below = np.count_nonzero(np.abs(first.motions.values) < model.complete_up_to)
+    return max(min(_FEWEST, first.inertial.shape[1]), below)
 
 
 def _collected(
     tracked: Named,
     continued: np.ndarray,
-    shifts: np.ndarray | None,
+    errors: np.ndarray | None,
     model: LinearModel,
     frame: str,
     modes: int | None,
@@ -498,9 +477,9 @@ def _collected(
     found = tracked.columns(upwards)
     growth, bounds = found.motions.values.real, found.motions.bounds[:, None]
     growth = np.where(np.abs(growth) <= bounds, 0.0, growth)
-    if shifts is not None:
+    if errors is not None:
         chosen = basis_error.judged(found.inertial, growth, speeds, modes is not None)
-        shifts = np.where(chosen, np.take_along_axis(shifts, upwards, 1), np.nan)
+        errors = np.where(chosen, np.take_along_axis(errors, upwards, 1), np.nan)
     ratio, decrement = damping_of(growth, found.inertial)
     return Campbell(
         speeds=speeds,
@@ -516,19 +495,16 @@ def _collected(
         continued=continued,
         free_motions=model.free_motions,
         stiffening=model.stiffening,
-        basis_shifts=shifts,
+        basis_errors=errors,
         frame=frame,
         axes=model.axes,
         unevenness=model.unevenness,
     )
 
 
-def _warn_of_basis(result: Campbell, model: LinearModel, accuracy: float | None) -> None:
+def _warn_of_basis(result: Campbell, model: LinearModel, accuracy: float) -> None:
     """Warn where the basis leaves out too much for the modes that count."""
-    errors = result.basis_errors
-    if accuracy is None or errors is None:
-        return
-    errors, shown = np.nan_to_num(errors), Units.of("rpm")
+    errors, shown = np.nan_to_num(result.basis_errors), Units.of("rpm")
     at = np.unravel_index(np.argmax(errors), errors.shape)
     heard, speed = shown.frequencies(result.frequencies_inertial[at]), result.speeds[at[0]]
     mode = f"mode {at[1] + 1} ({result.whirl[at]}, {heard:.4g} Hz)"

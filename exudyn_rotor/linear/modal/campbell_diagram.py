@@ -56,43 +56,24 @@ def checked_range(values: ArrayLike | None) -> np.ndarray | None:
     return np.array([low, high])
 
 
-def checked_margins(margins: ArrayLike | None, has_range: bool) -> np.ndarray:
+def checked_margins(margins: ArrayLike | None) -> np.ndarray:
     """Return the shares of separation below and above the range; zeros for None."""
-    if margins is None:
-        return np.zeros(2)
-    values = checks.vector(margins, "margins", size=2)
+    values = checks.vector((0.0, 0.0) if margins is None else margins, "margins", size=2)
     if np.any(values < 0.0) or values[0] >= 1.0:
         raise ValueError(
             "margins: needs shares of the lowest and of the highest speed, as (0.16, 0.26), got "
             + checks.shown(margins)
         )
-    if not has_range:
-        raise ValueError("margins: are beside an operating range; give operating_range=(low, high)")
     return values
 
 
 def crossings(
     speeds: np.ndarray, values: np.ndarray, continued: np.ndarray, order: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return where modes have the frequency pΩ, between two speeds by linear interpolation.
+    """Return where modes have the frequency pΩ, (c,) ascending [rad/s], and their columns, (c,).
 
-    Parameters
-    ----------
-    speeds : ndarray, shape (s,)
-        Spin speeds Ω [rad/s].
-    values : ndarray, shape (s, k)
-        Frequencies of each mode in the frame of the diagram [rad/s].
-    continued : ndarray of bool, shape (s, k)
-        Where a column is the same mode as at the speed before.
-    order : float
-        p.
-
-    Returns
-    -------
-    speeds : ndarray, shape (c,)
-        Ascending [rad/s].
-    columns : ndarray of int, shape (c,)
-        Which mode.
+    Frequencies `values` (s, k) [rad/s] of modes that are `continued` (s, k) since the speed before,
+    are straight lines between speeds (s,); p is the `order`.
     """
     line = order * np.abs(speeds)[:, None]
     apart = values - line
@@ -118,37 +99,30 @@ def draw_orders(
 
     `speeds`, `values` and `continued` are those of :func:`crossings`.
     """
-    handles, last = [], speeds[np.argmax(np.abs(speeds))]
-    for number, order in enumerate(orders):
+    handles, last, places = [], speeds[np.argmax(np.abs(speeds))], []
+    for order, style in zip(orders, itertools.cycle(plotting.LINES)):
         label = "spin speed" if order == 1.0 else f"{order:g} × spin speed"
-        style = plotting.LINES[number % len(plotting.LINES)]
         drawn = units.frequencies(order * np.abs(speeds))
         handles += ax.plot(units.speeds(speeds), drawn, color="0.6", lw=0.8, ls=style, label=label)
         ax.annotate(f"{order:g}×", (units.speeds(last), units.frequencies(order * abs(last))),
                     textcoords="offset points", xytext=(2, 0), fontsize=8, color="0.4",
                     annotation_clip=True)  # fmt: skip
-    at = [crossings(speeds, values, continued, order)[0] for order in orders]
-    if sum(map(len, at)):
-        x = units.speeds(np.concatenate(at))
-        y = [units.frequencies(p * np.abs(one)) for p, one in zip(orders, at, strict=True)]
-        handles += ax.plot(x, np.concatenate(y), "o", mfc="none", mec="0.2", ms=6, label="crossing")
+        met, _ = crossings(speeds, values, continued, order)
+        places += zip(units.speeds(met), units.frequencies(order * np.abs(met)), strict=True)
+    if places:
+        style = {"mfc": "none", "mec": "0.2", "ms": 6, "label": "crossing"}
+        handles += ax.plot(*zip(*places, strict=True), "o", **style)
     return handles
 
 
-def shade_range(
-    ax: Axes, limits: np.ndarray, margins: np.ndarray, units: Units, *, across: bool = False
-) -> list[Patch]:
-    """Shade operating speeds [rad/s] and the margins beside them; return what the legend needs.
-
-    Upright where the speed runs to the right, `across` where it runs upwards.
-    """
-    shade = ax.axhspan if across else ax.axvspan
+def shade_range(ax: Axes, limits: np.ndarray, margins: np.ndarray, units: Units) -> list[Patch]:
+    """Shade operating speeds [rad/s] and the margins beside them; return what the legend needs."""
     low, high = units.speeds(limits)
-    handles = [shade(low, high, color=plotting.COLORS[2], alpha=0.15, lw=0.0)]
+    handles = [ax.axvspan(low, high, color=plotting.COLORS[2], alpha=0.15, lw=0.0)]
     handles[0].set_label("operating range")
     if np.any(margins > 0.0):
         beside = [((1.0 - margins[0]) * low, low), (high, (1.0 + margins[1]) * high)]
-        drawn = [shade(*span, color="0.75", alpha=0.5, lw=0.0) for span in beside]
+        drawn = [ax.axvspan(*span, color="0.75", alpha=0.5, lw=0.0) for span in beside]
         drawn[0].set_label("separation margin")
         handles.append(drawn[0])
     return handles
@@ -164,18 +138,8 @@ def draw_campbell(
 ) -> list[Line2D]:
     """Draw modes over the spin speed, coloured by whirl; return what the legend needs.
 
-    Parameters
-    ----------
-    ax : matplotlib.axes.Axes
-    speeds : ndarray, shape (s,)
-    values : ndarray, shape (s, k)
-        Each column one mode.
-    codes : ndarray of int, shape (s, k)
-        Index into :data:`WHIRLS`.
-    continued : ndarray of bool, shape (s, k)
-        Where a column is the same mode as at the speed before.
-    unstable : ndarray of bool, shape (s, k)
-        Where a mode is marked by a cross.
+    Each column of `values` (s, k) is a mode of whirl `codes`, the same as at the speed before where
+    it is `continued`; `unstable` ones are marked by a cross.
     """
     from matplotlib.lines import Line2D
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from tqdm import tqdm
 
-from exudyn_rotor import checks
+from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.magnetic import MagneticBearing
@@ -26,7 +26,7 @@ from exudyn_rotor.linear.modal.critical_speeds import (
 from exudyn_rotor.linear.modal.resonance import NO_EQUATIONS, Search
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS
 from exudyn_rotor.linear.model.build import linear_model, warn_of_left_out_stiffening
-from exudyn_rotor.linear.model.linear_model import AXES, LinearModel, warn_of_refused
+from exudyn_rotor.linear.model.linear_model import AXES, warn_of_refused
 from exudyn_rotor.linear.over import ModelResult, basis_column, table_lines
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import numbers, storable
@@ -39,7 +39,6 @@ if TYPE_CHECKING:
 
 _CURVE = 200  # speeds of a bearing's own curve
 _FILM = 1e-3  # error of a critical speed on films
-_UNIT = 1e15  # N/m, beside which all others are rounding
 
 
 @storable
@@ -112,32 +111,13 @@ class CriticalSpeedMap(ModelResult):
         lines += table_lines(self.columns(units))
         return "\n".join([*lines, *self._closing(self.basis_errors)])
 
-    def plot(
-        self,
-        ax: Axes | None = None,
-        *,
-        units: str = "rpm",
-        operating_range: ArrayLike | None = None,
-        margins: ArrayLike | None = None,
-    ) -> Axes:
+    def plot(self, ax: Axes | None = None, *, units: str = "rpm") -> Axes:
         """Draw the critical speeds over the stiffness, both logarithmic, as lines.
 
-        A bearing is drawn by its own direct stiffnesses over the speed.
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-            A new figure by default.
-        units : {'rpm', 'Hz', 'SI'}
-        operating_range, margins : two floats, optional
-            Shaded; see :meth:`Campbell.plot`.
+        A bearing is drawn by its own direct stiffnesses over the speed. `units` are those of
+        :meth:`table`.
         """
-        from exudyn_rotor import plotting
-        from exudyn_rotor.linear.modal import campbell_diagram as diagram
-
         shown = Units.of(units)
-        limits = diagram.checked_range(operating_range)
-        shares = diagram.checked_margins(margins, limits is not None)
         ax = plotting.axes_or_new(ax)
         styles = {FORWARD: (plotting.COLORS[0], "o"), BACKWARD: (plotting.COLORS[1], "v")}
         for code in np.unique(self.whirl_codes[self.whirl_codes >= 0]):
@@ -156,8 +136,6 @@ class CriticalSpeedMap(ModelResult):
         if ends[0] < ends[1]:  # also where no critical speed is found
             room = (ends[1] / ends[0]) ** 0.05
             ax.set_xlim(ends[0] / room, ends[1] * room)
-        if limits is not None:
-            diagram.shade_range(ax, limits, shares, shown, across=True)
         ax.set_xlabel("support stiffness [N/m]")
         ax.set_ylabel(f"undamped critical speed of order {self.order:g} [{shown.speed}]")
         ax.grid(alpha=0.3, which="both")
@@ -238,86 +216,47 @@ def critical_speed_map(
     checks.choice(axes, "axes", AXES)
     checks.accuracy(accuracy)
     checks.flag(progress, "progress")
-    curve = None if bearing is None else _as_support(bearing)
-    kept = tuple(map(_made_once, given_supports(supports)))
+    if bearing is not None:
+        checks.instance(bearing, "bearing", (Support, Bearing, MagneticBearing))
+    kept = given_supports(supports)
     first = linear_model(
         target, supports=_with(kept, names, values[0]), foundation=foundation,
         stiffening=stiffening, axes=axes,
     ).undamped()  # fmt: skip
-    # a map takes what a film is within its own smoothness, for films are solved at each speed
-    allowed = 1e-7 if first.table_speeds.size else _FILM
-    search = Search(first, *given, _added(first, names), allowed)
     judged = set() if accuracy is None else set(points(len(values)).tolist())
     solved: dict[int, CriticalSpeeds] = {}
     failed: list[tuple[str, Exception]] = []
     for row, stiffness in enumerate(tqdm(values, "critical speed map", disable=not progress)):
-        model = first
-        if row in judged:
-            model = replace(first, supports={"": _with(kept, names, stiffness)})
-        search.stiffness.factor = stiffness - values[0]
+        model = replace(first, supports={"": _with(kept, names, stiffness)})
+        # a map takes what a film is within its own smoothness
+        search = Search(model, *given, 1e-7 if model.table_speeds.size else _FILM)
         try:
-            solved[row] = collected(search, model, row in judged)
+            solved[row] = collected(search, row in judged)
         except ValueError as error:  # as of a support whose stiffness is negative
             failed.append((f"{stiffness:.4g} N/m", error))
     warn_of_refused(failed, len(values))
     search.warn()
-    result = _collected(values, solved, curve, max_speed, is_known(first, accuracy))
-    if np.any(result.speeds > 0.0):
-        warn_of_left_out_stiffening(first, max_speed or np.nanmin(result.speeds))
-    warn_of_critical(first, result.speeds, result.basis_errors, accuracy)
-    return result
-
-
-def _with(supports: tuple[Given, ...], names: Sequence[str], stiffness: float) -> tuple[Given, ...]:
-    return (*supports, *(Support(name, float(stiffness)) for name in names))
-
-
-def _added(model: LinearModel, names: Sequence[str]) -> dict[int, np.ndarray]:
-    """Return the Fourier terms of what supports of 1 N/m add, in the coordinates of H."""
-    given = {"wanted_axes": model.axes, "largest_unevenness": np.inf}
-    stiff, none = (
-        replace(model, supports={"": supports}, **given).at(1.0).K
-        for supports in (_with((), names, _UNIT), ())
-    )
-    basis = np.eye(model.size) if model.moving_basis is None else model.moving_basis
-    added = {n: (X - none.get(n, 0.0)) / _UNIT for n, X in stiff.items()}
-    own = model.size - len(added[0])  # rings of supports in series, whose coordinates are the last
-    return {n: basis.T @ np.pad(X, (0, own)) @ basis for n, X in added.items()}
-
-
-def _made_once(given: Given) -> Given:
-    """Return a bearing as the support that it is for all stiffnesses, if it is one."""
-    made = given if isinstance(given, MagneticBearing | Support) else given.linearised()
-    return made if isinstance(made, Support) else given
-
-
-def _collected(
-    values: np.ndarray,
-    solved: dict[int, CriticalSpeeds],
-    curve: Support | None,
-    max_speed: float | None,
-    has_errors: bool,
-) -> CriticalSpeedMap:
-    """Return the result of all stiffnesses, NaN where there is none."""
-    first = next(iter(solved.values()))
     shape = len(values), max(len(entry.speeds) for entry in solved.values())
-    speeds, errors = np.full(shape, np.nan), np.full(shape, np.nan)
-    codes = np.full(shape, -1)
+    speeds, errors, codes = np.full(shape, np.nan), np.full(shape, np.nan), np.full(shape, -1)
     for row, entry in solved.items():
         count = len(entry.speeds)
         speeds[row, :count] = entry.speeds
         codes[row, :count] = [WHIRLS.index(word) for word in entry.whirl]
         if entry.basis_errors is not None:
             errors[row, :count] = entry.basis_errors
-    own = (None, None)
-    if curve is not None:
-        own = _curve(curve, max_speed or float(np.nanmax(speeds, initial=1.0)))
+    if np.any(speeds > 0.0):
+        warn_of_left_out_stiffening(first, max_speed or np.nanmin(speeds))
+    known = is_known(first, accuracy)
+    if known:
+        warn_of_critical(first, speeds, errors, accuracy)
+    top = max_speed or float(np.nanmax(speeds, initial=1.0))
+    own = (None, None) if bearing is None else _curve(bearing, top)
     return CriticalSpeedMap(
         values,
         speeds,
-        codes.astype(np.int64),
-        first.order,
-        basis_errors=errors if has_errors else None,
+        codes,
+        order,
+        basis_errors=errors if known else None,
         bearing_speeds=own[0],
         bearing_stiffnesses=own[1],
         stiffening=first.stiffening,
@@ -326,22 +265,21 @@ def _collected(
     )
 
 
-def _as_support(bearing: Given) -> Support:
-    """Return what has the stiffness of a bearing over the speed."""
-    checks.instance(bearing, "bearing", (Support, Bearing, MagneticBearing))
+def _with(supports: tuple[Given, ...], names: Sequence[str], stiffness: float) -> tuple[Given, ...]:
+    return (*supports, *(Support(name, float(stiffness)) for name in names))
+
+
+def _curve(bearing: Given, top: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return speeds up to the largest [rad/s], and the direct stiffnesses (b, 2) of a bearing."""
     one = bearing if isinstance(bearing, Support) else bearing.linearised()
-    return one if isinstance(one, Support) else Support(one.interface, one.static_stiffness)
-
-
-def _curve(bearing: Support, top: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return speeds up to the largest [rad/s], and the direct stiffnesses (b, 2) of a support."""
+    if not isinstance(one, Support):  # it has states of its own
+        one = Support(one.interface, one.static_stiffness)
     speeds, stiffnesses = [], []
     for speed in np.linspace(top / _CURVE, top, _CURVE).tolist():
         try:
-            bearing.check_range(speed)
-            K, _ = bearing.matrices(speed)
+            one.check_range(speed)
+            stiffnesses.append(np.diag(one.matrices(speed)[0])[:2])
+            speeds.append(speed)
         except NO_EQUATIONS:
             continue
-        speeds.append(speed)
-        stiffnesses.append(np.diag(K)[:2])
     return np.array(speeds), np.array(stiffnesses).reshape(-1, 2)

@@ -16,12 +16,13 @@ from exudyn_rotor.linear.modal.resonance import (
     Resonance,
     Search,
     Stiffness,
-    named,
+    groups_of,
 )
-from exudyn_rotor.linear.modal.whirl import WHIRLS
+from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, signed_diameters
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import ModelResult, basis_column, table_lines
+from exudyn_rotor.linear.solve.motions import Motions
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.results import numbers, storable, words
 from exudyn_rotor.solvers.factor import one_thread
@@ -35,7 +36,7 @@ _BESIDE, _ERROR = 0.97, 1e-6  # of a critical speed: where its change is told, a
 @storable
 @dataclass(frozen=True, eq=False)
 class CriticalSpeeds(ModelResult):
-    """Critical speeds, ascending; an uneven rotor has both of a pair.
+    """Critical speeds, ascending; an uneven rotor has both of a pair, from 0.5 % apart on.
 
     Attributes
     ----------
@@ -188,7 +189,7 @@ def critical_speeds(
         axes=axes,
     ).undamped()  # fmt: skip
     search = Search(model, *given)
-    result = collected(search, model, accuracy is not None)
+    result = collected(search, accuracy is not None)
     search.warn()
     model.warn_beyond(result.order * result.speeds)
     if result.speeds.size:
@@ -210,13 +211,14 @@ def checked(
     return order, sorted({int(n) for n in values}), max_speed
 
 
-def collected(search: Search, model: LinearModel, estimate: bool) -> CriticalSpeeds:
-    """Return the result of a search; errors by the basis of a model where they are asked for."""
-    found, rotor, codes, diameters = named(search.resonances(), search.content)
+def collected(search: Search, estimate: bool) -> CriticalSpeeds:
+    """Return the result of a search; errors by the basis where they are asked for."""
+    model = search.model
+    found, rotor, codes, diameters = _named(search.resonances(), search.content)
     speeds = np.array([one.speed for one in found])
     errors = None
     if estimate and basis_error.is_known(model, 1.0):
-        errors = _basis_errors(search, model, found)
+        errors = _basis_errors(search, found)
     shapes = [x[np.argmax(np.linalg.norm(x, axis=1))] for _, x, _ in found]
     shapes = np.array(shapes, dtype=complex).reshape(-1, model.size).T
     return CriticalSpeeds(
@@ -233,13 +235,35 @@ def collected(search: Search, model: LinearModel, estimate: bool) -> CriticalSpe
     )
 
 
+def _named(
+    found: Sequence[Resonance], content: Content
+) -> tuple[list[Resonance], np.ndarray, np.ndarray, np.ndarray]:
+    """Return ascending critical speeds, those of one speed from backward to forward waves.
+
+    With their frequencies in the frame of the rotor over Ω, whirl codes and nodal diameters.
+    """
+    rotor, codes, diameters = [np.zeros(len(found), dtype=kind) for kind in (float, int, int)]
+    for i, (_, vectors, multiples) in enumerate(found):
+        center = multiples[len(multiples) // 2]
+        orders = np.round(multiples - center).astype(int)
+        shape = vectors[None, :, :, None] / np.linalg.norm(vectors)
+        # all frequencies go with the speed, so that one speed stands for all
+        motion = Motions(np.ones(1), np.array([[1j * center]]), shape, orders, np.zeros(1))
+        name = content.named(motion, apart=True)
+        codes[i], diameters[i] = name.codes[0, 0], name.diameters[0, 0]
+        rotor[i] = name.rotor[0, 0]
+    groups = groups_of(np.array([one.speed for one in found]))
+    row = np.lexsort((signed_diameters(codes, diameters), groups))
+    return [found[i] for i in row], rotor[row], codes[row], diameters[row]
+
+
 @one_thread()
-def _basis_errors(search: Search, model: LinearModel, found: Sequence[Resonance]) -> np.ndarray:
+def _basis_errors(search: Search, found: Sequence[Resonance]) -> np.ndarray:
     """Return relative errors of the lowest critical speeds by the basis, NaN of others, (c,).
 
     Each motion is followed into the model with the shapes that the basis lacks.
     """
-    errors = np.full(len(found), np.nan)
+    model, errors = search.model, np.full(len(found), np.nan)
     judged = found if search.limit is not None else found[:_JUDGED]
     if model.is_full:
         errors[: len(judged)] = 0.0

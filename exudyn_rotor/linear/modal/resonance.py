@@ -20,23 +20,21 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-import scipy.linalg as la
 from scipy.optimize import brentq
 
 from exudyn_rotor.bearings.support import NoCoefficientsError
 from exudyn_rotor.calls import user_level
-from exudyn_rotor.linear.equations import PeriodicSystem, Terms, UnconvergedError
-from exudyn_rotor.linear.modal.whirl import Content, signed_diameters
+from exudyn_rotor.linear.equations import PeriodicSystem, UnconvergedError
+from exudyn_rotor.linear.modal.whirl import Content
 from exudyn_rotor.linear.model.assembly import rotors_of
+from exudyn_rotor.linear.model.body import EVEN
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.solve.hill import real_waves
-from exudyn_rotor.linear.solve.motions import Motions
 from exudyn_rotor.solvers.factor import one_thread
 
 NO_EQUATIONS = NoCoefficientsError, UnconvergedError
@@ -44,6 +42,9 @@ _SHARE = 0.4  # of a motion's energy that must turn with the excitation
 # a motion whose mean order is below minus this share of the order is the conjugate of another
 _CONJUGATE = 0.25
 _SAME = 1e-7  # relative distance of speeds that are one
+# relative distance of the speeds of one motion in the two planes of a rotor that counts as round,
+# and likeness of the two motions
+_PLANES, _ALIKE = 0.5 * EVEN, 0.975
 _FINE, _DIGITS = 1e-9, 7  # of a place between two speeds, and digits of places that are one
 _AT_REST = 1e-8  # rad/s: a rotor runs, and its inertia is below the rounding of any stiffness
 _FREE = 1e-13  # share of the largest stiffness that is rounding
@@ -73,14 +74,11 @@ class Stiffness:
     """The dynamic stiffness of an undamped model, whose equations are made once per speed.
 
     Motions that nothing holds at any speed, like a free spin, are none of its coordinates. Tables
-    over the frequency are taken at `order` times the speed. A stiffness with the Fourier terms
-    `unit` is added by its `factor`.
+    over the frequency are taken at `order` times the speed.
     """
 
     model: LinearModel
-    order: float = 1.0
-    unit: Terms = field(default_factory=dict)
-    factor: float = 0.0
+    order: float
     known: dict[float, PeriodicSystem] = field(default_factory=dict)
 
     def system(self, speed: float) -> PeriodicSystem:
@@ -90,42 +88,22 @@ class Stiffness:
             self.known[speed] = system if basis is None else system.projected(basis)
         return self.known[speed]
 
+    def stacked(self, speeds: np.ndarray) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
+        """Return the equations at speeds (s,) where there are any, and why there are none else."""
+        basis = self.model.moving_basis
+        stack, refused = self.model.systems(speeds, self.order * speeds)
+        projects = basis is not None and stack is not None
+        return stack.projected(basis) if projects else stack, refused
+
     def __call__(self, speed: float, multiples: np.ndarray) -> np.ndarray:
         """Return H at a speed for frequencies `multiples` (h,) of it, (h·k, h·k)."""
-        system, h = self.system(speed), len(multiples)
-        H = _blocks(multiples, system.K, system.size)
-        for a, f in enumerate(multiples):
-            for b, g in enumerate(multiples):
-                D = system.D.get(round(f - g))
-                # the Hermitian part: what damps and what drives a motion is the other
-                if D is not None:
-                    H[a, :, b] += 0.5j * speed * (g * D - f * D.T)
-            H[a, :, a] -= (f * speed) ** 2 * system.M
-        H = H.reshape(h * system.size, -1)
-        return H + self.factor * self.added(multiples) if self.factor else H
-
-    def added(self, multiples: np.ndarray) -> np.ndarray:
-        """Return what a factor of one adds to H."""
-        k = self.model.size - self.model.neutral_motions.shape[1]
-        return _blocks(multiples, self.unit, k).reshape(len(multiples) * k, -1)
+        return dynamic_stiffness(self.system(speed), multiples)
 
     def motions(self, vectors: np.ndarray, multiples: np.ndarray) -> np.ndarray:
         """Return vectors (h·k, …) of H as harmonics (h, c, …) in all coordinates of the model."""
         basis = self.model.moving_basis
         harmonics = vectors.reshape(len(multiples), -1, *vectors.shape[1:])
         return harmonics if basis is None else np.einsum("ck,hk...->hc...", basis, harmonics)
-
-    def _solve(self, H: np.ndarray, load: np.ndarray, speed: float) -> np.ndarray:
-        """Return ``H⁻¹ load`` at a speed, of blocks of which only near ones are coupled."""
-        system = self.system(speed)
-        reach = max(abs(n) for terms in (system.D, system.K) for n in terms)
-        width = system.size * (1 + reach // (system.step or 1)) - 1
-        if 4 * width > len(H):
-            return np.linalg.solve(H, load)
-        band = np.zeros((2 * width + 1, len(H)), dtype=complex)
-        for d in range(-width, width + 1):
-            band[width - d, max(d, 0) : len(H) + min(d, 0)] = np.diagonal(H, d)
-        return la.solve_banded((width, width), band, load)
 
     def within(self, vectors: np.ndarray) -> np.ndarray:
         """Return harmonics (h, c) as a vector (h·k,) of H."""
@@ -146,7 +124,7 @@ class Stiffness:
                 slope = (H - earlier) / (speed - last)
                 last, earlier = speed, H
             try:
-                moved = self._solve(H, slope @ x, speed)
+                moved = np.linalg.solve(H, slope @ x)
             except np.linalg.LinAlgError:  # there already
                 return speed, x
             change = (np.vdot(x, x) / np.vdot(x, moved)).real
@@ -158,35 +136,46 @@ class Stiffness:
         return np.nan, x
 
 
+def dynamic_stiffness(system: PeriodicSystem, multiples: np.ndarray) -> np.ndarray:
+    """Return H of equations, or of a stack, for frequencies `multiples` (h,) of the speed.
+
+    Its shape is (…, h·k, h·k). Of K the symmetric part, of D the skew one of a Hermitian matrix:
+    what damps and what drives a motion is the other.
+    """
+    h, k = len(multiples), system.size
+    speed = np.asarray(system.speed)[..., None, None]
+    H = np.zeros((*np.shape(system.speed), h, k, h, k), dtype=complex)
+    apart = np.round(multiples[:, None] - multiples)
+    for n, K in system.K.items():
+        for a, b in np.argwhere(apart == n):
+            H[..., a, :, b, :] += 0.5 * (K + np.swapaxes(K, -1, -2))
+    for n, D in system.D.items():
+        for a, b in np.argwhere(apart == n):
+            f, g = multiples[a], multiples[b]
+            H[..., a, :, b, :] += 0.5j * speed * (g * D - f * np.swapaxes(D, -1, -2))
+    for a, f in enumerate(multiples):
+        H[..., a, :, a, :] -= (f * speed) ** 2 * system.M
+    return H.reshape(*H.shape[:-4], h * k, h * k)
+
+
 @dataclass(eq=False)
 class Search:
     """The search for critical speeds of an undamped model.
 
-    Attributes
-    ----------
-    model : LinearModel
-    order : float
-        p ≥ 0.
-    diameters : sequence of int
-        Nodal diameters that may be excited.
-    limit : float or None
-        Largest speed [rad/s]; needed where the stiffness varies with it.
-    unit : mapping of int to ndarray
-        What :class:`Stiffness` adds.
-    error : float
-        Relative change of a critical speed in the last step, which errs by its square.
-    lost, jumps : list of float
-        Speeds that did not settle, and at which a film jumps.
+    Of order p ≥ 0 and nodal `diameters`, up to the speed `limit` [rad/s], which has to be given
+    where the stiffness varies with it. The `error` is the relative change of a critical speed in
+    the last step, which errs by its square. What is left out stands in `lost`, speeds that did not
+    settle, in `jumps`, where a film jumps, and in `refused`, speeds without equations.
     """
 
     model: LinearModel
     order: float
     diameters: Sequence[int]
     limit: float | None
-    unit: Terms = field(default_factory=dict)
     error: float = 1e-7
     lost: list[float] = field(default_factory=list)
     jumps: list[float] = field(default_factory=list)
+    refused: dict[float, Exception] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.varies = self.model.stiffness_varies
@@ -195,31 +184,28 @@ class Search:
                 "max_speed: a system that varies with the speed needs the largest speed of "
                 "interest [rad/s]"
             )
-        self.stiffness = Stiffness(self.model, self.order, self.unit)
+        self.stiffness = Stiffness(self.model, self.order)
         self.content = Content.of(self.model)
 
     @one_thread()
     def resonances(self) -> list[Resonance]:
-        """Return all critical speeds up to the limit.
+        """Return all critical speeds up to the limit, ascending.
 
         Raises
         ------
         ValueError
             Where a support has a negative stiffness.
         """
-        step = self.stiffness.system(self.grid[0][0][1] if self.varies else 1.0).step
+        step = self.grid.step if self.varies else self.stiffness.system(1.0).step
         most, found = _FEW // (step or 1), []
         for center in self._centers(step):
             few = center + step * np.arange(-most, most + 1) if step else np.array([center])
-            if self.varies:
-                pairs = [self._exact(pair, few) for pair in self._bracketed(few)]
-            else:
-                pairs = _direct(*_quadratic(self.stiffness, few))
+            pairs = self._bracketed(few) if self.varies else _direct(self.stiffness, few)
             reach = np.inf if self.limit is None else self.limit
             answering = self._answering([pair for pair in pairs if pair[0] <= reach], few)
             settled = (self._settled(one, step) if step else one for one in answering)
             found += [one for one in settled if one is not None]
-        return found
+        return self._of_one_plane(sorted(found, key=lambda one: one.speed))
 
     def _centers(self, step: int) -> list[float]:
         """Return the frequencies over Ω at which waves answer; of those that are coupled, one."""
@@ -239,8 +225,8 @@ class Search:
     # ------------------------------------------------------------------ stiffness over the speed
 
     @cached_property
-    def grid(self) -> tuple[list[tuple[float, float]], dict[float, Exception]]:
-        """Neighbouring speeds that both have equations, and speeds from the first on without.
+    def grid(self) -> PeriodicSystem:
+        """The equations at the speeds that are looked at, ascending, where there are any.
 
         Slow speeds at which films are too thin are not missed.
         """
@@ -249,93 +235,45 @@ class Search:
         slow = first * _RATIO ** np.arange(-_SLOW, _SLOW)
         even = np.linspace(first, self.limit, count)
         wanted = np.unique([*even, *slow, *kinks[(kinks > first) & (kinks < self.limit)]])
-        wanted = wanted[np.diff(wanted, prepend=0.0) > _SAME * first].tolist()
-        refused: dict[float, Exception] = {}
-        for speed in reversed(wanted):
-            try:
-                self.stiffness.system(speed)
-            except NO_EQUATIONS as error:
-                refused[speed] = error
-                if speed < first:
-                    break
-        known = self.stiffness.known.keys()
-        near = [pair for pair in pairwise(wanted) if known >= set(pair)]
-        if not near:
-            raise refused[min(refused)]
-        return near, {speed: refused[speed] for speed in refused if speed >= first}
+        wanted = wanted[np.diff(wanted, prepend=0.0) > _SAME * first]
+        stack, errors = self.stiffness.stacked(wanted)
+        if stack is None or len(stack.speed) < 2:
+            raise errors[min(errors)]
+        self.refused = {float(wanted[i]): errors[i] for i in errors if wanted[i] >= first}
+        return stack
 
     def _bracketed(self, multiples: np.ndarray) -> list[Pair]:
-        """Return where H, linear between neighbours of the grid, is singular, and null vectors.
-
-        Only where a part of the motion turns with the excitation.
-        """
-        basis, place, stack, added = self._sampled(multiples)
-        stack = stack + self.stiffness.factor * added
-        signs, found = _eigenvalues(stack), []
-        for low, high in self.grid[0]:
-            A, B = stack[place[low]], stack[place[high]]
-            a, b = signs[place[low]], signs[place[high]]
-            changes = np.flatnonzero((a < 0.0) != (b < 0.0))
-            if not changes.size:
+        """Return where H is singular, by its eigenvalues over the grid, and null vectors."""
+        stack, found = dynamic_stiffness(self.grid, multiples), []
+        lost, signs = np.array(list(self.refused)), _eigenvalues(stack) < 0.0
+        for row, (low, high) in enumerate(pairwise(self.grid.speed.tolist())):
+            if np.any((low < lost) & (lost < high)):
                 continue
-
-            def value(at: float, j: int, A: np.ndarray = A, B: np.ndarray = B) -> float:
-                return _eigenvalues((1.0 - at) * A + at * B)[j]
-
-            zeros = [brentq(value, 0.0, 1.0, args=(j,), xtol=_FINE) for j in changes]
-            zeros = np.round(zeros, _DIGITS)
-            for at in np.unique(zeros):
-                vectors = basis @ np.linalg.eigh((1.0 - at) * A + at * B)[1]
-                for j in changes[zeros == at]:
-                    beside = vectors[:, max(j - 1, 0) : j + 2]
-                    share, _ = self._shares(self.stiffness.motions(beside, multiples), multiples)
-                    if share.max() >= 0.5 * _SHARE:
-                        found.append((low + (high - low) * at, vectors[:, j]))
+            A, B = stack[row], stack[row + 1]
+            for j in np.flatnonzero(signs[row] != signs[row + 1]):
+                at = brentq(_between, 0.0, 1.0, args=(A, B, j), xtol=_FINE)
+                at = np.round(at, _DIGITS)  # of zeros that are one, orthogonal vectors
+                guess = low + (high - low) * at, np.linalg.eigh((1.0 - at) * A + at * B)[1][:, j]
+                exact, slack = self._exact(guess, multiples), _BEYOND * (high - low)
+                if low - slack < exact[0] < high + slack:
+                    found.append(exact)
+                else:
+                    self.jumps.append(guess[0])
         return found
 
-    def _sampled(self, multiples: np.ndarray) -> tuple:
-        """Return a basis, the places of the grid's speeds, H there in the basis, and the unit.
-
-        Real where the frequencies lie on both sides of zero alike.
-        """
-        key = multiples.tobytes()
-        if key not in self._samples:
-            speeds = sorted({speed for pair in self.grid[0] for speed in pair})
-            plain = replace(self.stiffness, factor=0.0)
-            parts = [*(plain(speed, multiples) for speed in speeds), plain.added(multiples)]
-            h = len(multiples)
-            basis = np.eye(len(parts[0]))
-            if h > 1 and np.array_equal(multiples, -multiples[::-1]):
-                basis = np.kron(real_waves(h), np.eye(len(basis) // h))
-                parts = [(basis.conj().T @ X @ basis).real for X in parts]
-            place = {speed: i for i, speed in enumerate(speeds)}
-            self._samples[key] = basis, place, np.array(parts[:-1]), parts[-1]
-        return self._samples[key]
-
-    @cached_property
-    def _samples(self) -> dict[bytes, tuple]:
-        """H over the grid for given frequencies, made once for all factors."""
-        return {}
-
     def _exact(self, found: Pair, multiples: np.ndarray) -> Pair:
-        """Return a zero with the equations that are there; NaN where they jump."""
-        low, high = next(pair for pair in self.grid[0] if pair[1] >= found[0])
-        slack = _BEYOND * (high - low)
+        """Return a zero with the equations that are there."""
         try:
-            speed, x = self.stiffness.refined(found, multiples, self._before(found[0]), self.error)
+            return self.stiffness.refined(found, multiples, self._before(found[0]), self.error)
         except NO_EQUATIONS:  # beyond the end of a table, by rounding
             return found
-        if low - slack < speed < high + slack:
-            return speed, x
-        self.jumps.append(found[0])
-        return np.nan, x
 
     def _before(self, speed: float) -> float:
         """Return a slower speed, for the slope of H."""
         if not self.varies:
             return (1.0 - _STEP) * speed
-        lower = [low for low, _ in self.grid[0] if low < (1.0 - _STEP) * speed]
-        return max(lower, default=self.grid[0][0][1])
+        lower = self.grid.speed[self.grid.speed < (1.0 - _STEP) * speed]
+        return float(lower[-1] if lower.size else self.grid.speed[1])
 
     def _settled(self, found: Resonance, step: int) -> Resonance | None:
         """Add harmonics to a motion until its critical speed does not change; None if it does."""
@@ -358,6 +296,26 @@ class Search:
 
     # ------------------------------------------------------------------ which motions answer
 
+    def _answering(self, pairs: list[Pair], multiples: np.ndarray) -> list[Resonance]:
+        """Return the motions that turn with the excitation; of one and its conjugate, one."""
+        if not pairs:
+            return []
+        pairs = sorted(pairs, key=lambda pair: pair[0])
+        speeds = np.array([speed for speed, _ in pairs])
+        vectors = np.array([vector for _, vector in pairs], dtype=complex).T
+        vectors = self.stiffness.motions(vectors, multiples)
+        vectors = vectors / np.linalg.norm(vectors, axis=(0, 1))
+        # each motion of one speed turns one way in time, or in space
+        seen = multiples[:, None] + self.content.shifts
+        senses = 10.0 * np.sign(np.where(np.abs(seen) < 1e-9, 0.0, seen)) + self.content.waves
+        groups = groups_of(speeds)
+        for group in np.flatnonzero(np.bincount(groups) > 1):
+            chosen = groups == group
+            vectors[..., chosen] = self.content.extremal(vectors[None][..., chosen], senses)[0]
+        share, mean = self._shares(vectors, multiples)
+        kept = np.flatnonzero((share >= _SHARE) & (mean >= -_CONJUGATE))
+        return [Resonance(speeds[i], vectors[:, :, i], multiples) for i in kept]
+
     def _shares(self, vectors: np.ndarray, multiples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the share of energy of motions (h, c, n) that turns so, and the mean order, (n,).
 
@@ -375,37 +333,43 @@ class Search:
         mean = np.einsum("hw,hwn->n", seen, energy)
         return turning / total, mean / (total * (p or 1.0))
 
-    def _answering(self, pairs: list[Pair], multiples: np.ndarray) -> list[Resonance]:
-        """Return the motions that turn with the excitation; of one and its conjugate, one."""
-        if not pairs:
-            return []
-        pairs = sorted(pairs, key=lambda pair: pair[0])
-        speeds = np.array([speed for speed, _ in pairs])
-        vectors = np.array([vector for _, vector in pairs], dtype=complex).T
-        vectors = self.stiffness.motions(vectors, multiples)
-        vectors = vectors / np.linalg.norm(vectors, axis=(0, 1))
-        # each motion of one speed turns one way in time, or in space
-        seen = multiples[:, None] + self.content.shifts
-        senses = 10.0 * np.sign(np.where(np.abs(seen) < 1e-9, 0.0, seen)) + self.content.waves
-        groups = _groups(speeds)
-        for group in np.flatnonzero(np.bincount(groups) > 1):
-            chosen = groups == group
-            vectors[..., chosen] = self.content.extremal(vectors[None][..., chosen], senses)[0]
-        share, mean = self._shares(vectors, multiples)
-        kept = np.flatnonzero((share >= _SHARE) & (mean >= -_CONJUGATE))
-        return [Resonance(speeds[i], vectors[:, :, i], multiples) for i in kept]
+    def _of_one_plane(self, found: list[Resonance]) -> list[Resonance]:
+        """Return critical speeds without those of the same motion in the other plane of a rotor.
+
+        Bending modes of which a basis holds one half alone make both planes of a round rotor
+        differ. The motion seen from outside is the same in both; the softer plane has more modes.
+        """
+        kept: list[tuple[Resonance, np.ndarray]] = []
+        for one in found:
+            seen = self._seen(one)
+            for other, before in kept if self.model.turns else ():
+                near = _SAME < 1.0 - other.speed / one.speed < _PLANES
+                if near and abs(np.vdot(before, seen)) > _ALIKE:
+                    break
+            else:
+                kept.append((one, seen))
+        return [one for one, _ in kept]
+
+    def _seen(self, one: Resonance) -> np.ndarray:
+        """Return the amplitudes of all waves that turn with the excitation, of unit length."""
+        content, parts = self.content, []
+        shifts, rows = [*content.shifts, 0.0], [*content.rows[:-5], content.rows[-1]]
+        for shift, R in zip(shifts, rows, strict=True):
+            at = np.isclose(one.multiples + shift, self.order, rtol=0.0, atol=1e-9)
+            parts.append(R @ one.vectors[at].sum(axis=0))
+        seen = np.concatenate(parts)
+        return seen / max(np.linalg.norm(seen), 1e-300)
 
     # ------------------------------------------------------------------ what is left out
 
     def warn(self) -> None:
         """Warn of critical speeds that are left out, once of all kinds."""
         told = []
-        if self.varies and self.grid[1]:
-            near, refused = self.grid
-            first, last = min(refused), max(refused)
+        if self.refused:
+            first, last, count = min(self.refused), max(self.refused), len(self.refused)
             told.append(
-                f"none are looked for at {len(refused)} of {len(near) + len(refused)} speeds "
-                f"from {first:.4g} to {last:.4g} rad/s: {refused[first]}"
+                f"none are looked for at {count} of {len(self.grid.speed) + count - 1} speeds "
+                f"from {first:.4g} to {last:.4g} rad/s: {self.refused[first]}"
             )
         if self.lost:
             told.append(
@@ -431,7 +395,7 @@ def _is_order(frequencies: np.ndarray, order: float) -> np.ndarray:
     return np.abs(np.abs(frequencies) - order) < 1e-9
 
 
-def _groups(speeds: np.ndarray) -> np.ndarray:
+def groups_of(speeds: np.ndarray) -> np.ndarray:
     """Return the number of each of ascending speeds, the same where they are one."""
     return np.cumsum(np.diff(speeds, prepend=speeds[:1]) > _SAME * speeds)
 
@@ -443,34 +407,22 @@ def _eigenvalues(H: np.ndarray) -> np.ndarray:
     return np.where(np.abs(values) <= rounding, 0.0, values)
 
 
-def _blocks(multiples: np.ndarray, terms: Terms, k: int) -> np.ndarray:
-    """Return the symmetric part of Fourier terms (k, k) between frequencies, (h, k, h, k)."""
-    H = np.zeros((len(multiples), k, len(multiples), k), dtype=complex)
-    for a, f in enumerate(multiples):
-        for b, g in enumerate(multiples):
-            X = terms.get(round(f - g))
-            if X is not None:
-                H[a, :, b] = 0.5 * (X + X.T)
-    return H
+def _between(at: float, A: np.ndarray, B: np.ndarray, j: int) -> float:
+    """Return an eigenvalue of what lies between two matrices, at a share from 0 to 1."""
+    return _eigenvalues((1.0 - at) * A + at * B)[j]
 
 
-def _quadratic(stiffness: Stiffness, multiples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return K0 and B of ``H = K0 − Ω² B``."""
-    K0 = stiffness(_AT_REST, multiples)
-    M = stiffness.system(_AT_REST).M
-    speed = float(np.sqrt(np.abs(K0).max() / np.abs(M).max())) if len(M) else 0.0
-    speed = speed or 1.0
-    return K0, (K0 - stiffness(speed, multiples)) / speed**2
-
-
-def _direct(A: np.ndarray, B: np.ndarray) -> list[Pair]:
-    """Solve ``A φ = Ω² B φ`` for positive Ω²; A Hermitian, not negative, B Hermitian.
+def _direct(stiffness: Stiffness, multiples: np.ndarray) -> list[Pair]:
+    """Return all zeros of ``H = A − Ω² B``, A not negative, with null vectors.
 
     Free motions, the null space R of A, follow the others by their inertia: ``Rᴴ B φ = 0``. Those
     without any stay at rest.
     """
+    A, M = stiffness(_AT_REST, multiples), stiffness.system(_AT_REST).M
     if not len(A):
         return []
+    speed = float(np.sqrt(np.abs(A).max() / np.abs(M).max())) or 1.0
+    B = (A - stiffness(speed, multiples)) / speed**2
     values, vectors = np.linalg.eigh(A)
     if values[0] < -1e-9 * values[-1]:
         raise ValueError("critical speeds: a support has a negative stiffness; see campbell")
@@ -485,26 +437,3 @@ def _direct(A: np.ndarray, B: np.ndarray) -> list[Pair]:
     positive = inverse > 1e-12 * np.abs(inverse).max(initial=0.0)
     speeds = 1.0 / np.sqrt(inverse[positive])
     return list(zip(speeds.tolist(), (W @ shapes[:, positive]).T, strict=True))
-
-
-def named(
-    found: Sequence[Resonance], content: Content
-) -> tuple[list[Resonance], np.ndarray, np.ndarray, np.ndarray]:
-    """Return critical speeds, ascending, those of one speed from backward to forward waves.
-
-    With their frequencies in the frame of the rotor over Ω, whirl codes and nodal diameters.
-    """
-    found = sorted(found, key=lambda one: one.speed)
-    rotor, codes, diameters = [np.zeros(len(found), dtype=kind) for kind in (float, int, int)]
-    for i, (_, vectors, multiples) in enumerate(found):
-        center = multiples[len(multiples) // 2]
-        orders = np.round(multiples - center).astype(int)
-        shape = vectors[None, :, :, None] / np.linalg.norm(vectors)
-        # all frequencies go with the speed, so that one speed stands for all
-        motion = Motions(np.ones(1), np.array([[1j * center]]), shape, orders, np.zeros(1))
-        name = content.named(motion, apart=True)
-        codes[i], diameters[i] = name.codes[0, 0], name.diameters[0, 0]
-        rotor[i] = name.rotor[0, 0]
-    groups = _groups(np.array([one.speed for one in found]))
-    row = np.lexsort((signed_diameters(codes, diameters), groups))
-    return [found[i] for i in row], rotor[row], codes[row], diameters[row]

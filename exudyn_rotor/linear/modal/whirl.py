@@ -139,43 +139,13 @@ class Content:
 
     @cached_property
     def _forms(self) -> np.ndarray:
+        """Energy ``xᴴ F x`` of each part, in the order of the rows, (w + 5, k, k)."""
         return np.array([R.conj().T @ R for R in self.rows])
-
-    @property
-    def forms(self) -> np.ndarray:
-        """Energy ``xᴴ F x`` of each wave, (w, k, k)."""
-        return self._forms[:-5]
-
-    @property
-    def axial(self) -> np.ndarray:
-        """Form of the energy along the axis, (k, k)."""
-        return self._forms[-5].real
-
-    @property
-    def whole(self) -> np.ndarray:
-        """Form of the energy of all motion of the rotors, (k, k)."""
-        return self._forms[-2].real
-
-    @property
-    def standing(self) -> np.ndarray:
-        """Form of the energy of what stands still beside the rotors, (k, k)."""
-        return self._forms[-1].real
-
-    @cached_property
-    def _mean(self) -> np.ndarray:
-        """Form of the mean wave number; 0.4 of axial motion parts it from torsion."""
-        return np.tensordot(self.waves, self.forms, 1) + 0.4 * self.axial
-
-    @cached_property
-    def _stacked(self) -> tuple[np.ndarray, np.ndarray]:
-        """All rows below one another, and where those of each energy begin."""
-        counts = [len(R) for R in self.rows]
-        return np.vstack(self.rows), np.r_[0, np.cumsum(counts)[:-1]]
 
     def energies(self, vectors: np.ndarray) -> np.ndarray:
         """Return the energies (s, h, w + 5, k) of harmonics (s, h, c, k)."""
-        rows, begins = self._stacked
-        moved = rows @ vectors
+        begins = np.cumsum([0, *map(len, self.rows[:-1])])
+        moved = np.vstack(self.rows) @ vectors
         return np.add.reduceat(moved.real**2 + moved.imag**2, begins, axis=2)
 
     def named(self, motions: Motions, *, apart: bool = False) -> Named:
@@ -241,17 +211,12 @@ class Content:
         """Return repeated motions, whose shapes are arbitrary, as waves of one sense each."""
         values, vectors, alike = motions.values, motions.vectors, {}
         scale = _SAME * np.maximum(np.abs(values), np.abs(motions.speeds[:, None]))
-        near = (
-            np.abs(values[:, :, None] - values[:, None])
-            <= (scale + motions.bounds[:, None])[:, :, None]
-        )
-        for row in np.flatnonzero(near.sum(axis=2).max(axis=1, initial=0) > 1):
-            left = np.ones(values.shape[1], dtype=bool)
-            for i in np.flatnonzero(near[row].sum(axis=1) > 1):
-                group = np.flatnonzero(near[row, i] & left)
-                if left[i] and group.size > 1:
+        allowed = (scale + motions.bounds[:, None])[:, 1:]
+        near = np.abs(np.diff(values, axis=1)) <= allowed  # they stand side by side
+        for row in np.flatnonzero(near.any(axis=1)):
+            for group in np.split(np.arange(values.shape[1]), np.flatnonzero(~near[row]) + 1):
+                if group.size > 1:
                     alike.setdefault(tuple(group), []).append(row)
-                left[group] = False
         if not alike:
             return motions
         changed = vectors.copy()
@@ -263,16 +228,16 @@ class Content:
     def extremal(self, vectors: np.ndarray, weights: np.ndarray | None = None) -> np.ndarray:
         """Return combinations of motions (s, h, c, g) whose mean wave number is extremal.
 
-        Or the mean of other `weights` (h, w) of the waves in each harmonic.
+        Or the mean of other `weights` (h, w) of the waves in each harmonic; 0.4 of axial motion
+        parts it from torsion.
         """
         flat = vectors.reshape(len(vectors), -1, vectors.shape[3])
         flat = flat / np.abs(flat).max(axis=1, keepdims=True)
         span, lengths, _ = np.linalg.svd(flat, full_matrices=False)
         span = span.reshape(vectors.shape)
-        across = np.swapaxes(span.conj(), 2, 3)
-        every, mean = self.whole + self.standing, self._mean
-        if weights is not None:
-            mean = np.tensordot(weights, self.forms, 1) + 0.4 * self.axial
+        across, forms = np.swapaxes(span.conj(), 2, 3), self._forms
+        every, weights = forms[-2] + forms[-1], self.waves if weights is None else weights
+        mean = np.tensordot(weights, forms[:-5], 1) + 0.4 * forms[-5]
         form, whole = (np.sum(across @ F @ span, axis=1) for F in (mean, every))
         # what moves nothing that has waves has the mean zero
         floor = 1e-9 * np.abs(whole).max(axis=(1, 2), keepdims=True)
@@ -283,9 +248,8 @@ class Content:
         turned = span @ (turn / np.abs(turn).max(axis=1, keepdims=True))[:, None]
         turned = turned / np.linalg.norm(turned, axis=(1, 2), keepdims=True)
         # a defective eigenvalue has one shape only
-        return np.where(
-            (lengths[:, -1] < 1e-3 * lengths[:, 0])[:, None, None, None], vectors, turned
-        )
+        defective = lengths[:, -1] < 1e-3 * lengths[:, 0]
+        return np.where(defective[:, None, None, None], vectors, turned)
 
 
 class _Seen(NamedTuple):
@@ -396,19 +360,7 @@ def rounded(values: np.ndarray, nan: float = 2.0) -> np.ndarray:
 def track(named: Named, M: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return which column continues each mode of the first speed, and whether it is the same mode.
 
-    Speeds without values are passed over.
-
-    Parameters
-    ----------
-    named : Named
-        At s speeds.
-    M : ndarray, shape (k, k)
-        Mass matrix.
-
-    Returns
-    -------
-    columns : ndarray of int, shape (s, k)
-    continued : ndarray of bool, shape (s, k)
+    Both (s, k), by the mass matrix (k, k). Speeds without values are passed over.
     """
     known, (s, k) = named.motions.known, named.inertial.shape
     columns, continued = np.tile(np.arange(k), (s, 1)), np.ones((s, k), dtype=bool)

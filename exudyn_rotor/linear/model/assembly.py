@@ -8,18 +8,14 @@ coordinates of the bodies, ``u = U(θ) y``, is all that depends on the axes of t
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 
 import numpy as np
 import scipy.linalg as la
 
-from exudyn_rotor.bearings.controlled_support import (
-    Controlled,
-    ControlledSupport,
-    PadSupport,
-)
-from exudyn_rotor.bearings.given import linear_supports
+from exudyn_rotor.bearings.controlled_support import ControlledSupport
+from exudyn_rotor.bearings.given import Controlled, linear_supports
 from exudyn_rotor.bearings.series import SeriesSupport
 from exudyn_rotor.bearings.support import NoCoefficientsError, Support, acts
 from exudyn_rotor.calls import kept
@@ -42,15 +38,12 @@ from exudyn_rotor.linear.model.turning import ACROSS
 from exudyn_rotor.theory.rotating_axes import axial_skew
 
 NO_EQUATIONS = NoCoefficientsError, UnconvergedError
-_CHANGE = 1e-14  # share of a stiffness that is the rounding of its change by the speed
+_SMALL = 1e-13  # share of a matrix that is rounding
 _ROUNDING = 1e-12  # share of a matrix by which it may differ after a turn and be isotropic
 End = tuple[str, str]  # names of a body and of its interface
 Seen = Callable[[End], Terms]  # what a support acts on, seen from outside
-WORDS = {
-    ControlledSupport: "controller",
-    PadSupport: "pads",
-    SeriesSupport: "ring",
-}
+# coefficients 'M', 'D' and 'K' by multiples of θ and powers of Ω: Σ X[name, n, p] Ωᵖ exp(inθ)
+Powers = dict[tuple[str, int, int], np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,18 +63,10 @@ class Element:
         Speed of its axes over Ω.
     varies, stiffness_varies : bool
         Whether anything, or a stiffness, depends on the speed.
-    table_speeds : ndarray
-        Ω at the points of its tables [rad/s], where coefficients have kinks.
-    holding : callable, optional
-        Gives a stiffness that tells which motions it holds, where it may have none at rest.
-    law : ControlledSupport or another with coordinates of its own, optional
+    law : Support, ControlledSupport or None
         What it was made from.
-    mass : callable, optional
-        As `matrices`, gives a mass (p, p) [kg] that goes with u, in axes that stand.
-    table_frequencies : ndarray
-        Frequencies of its tables [rad/s]; none where it does not depend on the frequency.
-    held_beyond : bool
-        Whether it may keep the ends of its tables beyond them.
+    rate : float
+        Speed of the tables of a Support over Ω.
     """
 
     ends: tuple[End, ...]
@@ -90,60 +75,82 @@ class Element:
     turns: float = 0.0
     varies: bool = False
     stiffness_varies: bool = False
-    table_speeds: np.ndarray = field(default_factory=lambda: np.zeros(0))
-    holding: Callable[[], np.ndarray] | None = None
-    law: Controlled | None = None
-    mass: Callable[..., np.ndarray] | None = None
-    table_frequencies: np.ndarray = field(default_factory=lambda: np.zeros(0))
-    held_beyond: bool = False
+    law: Support | ControlledSupport | None = None
+    rate: float = 0.0
 
     @property
     def what(self) -> str:
         """The element, for messages."""
         return " – ".join(filter(None, (":".join(filter(None, end)) for end in self.ends)))
 
+    @property
+    def has_tables(self) -> bool:
+        """Whether it is a support whose coefficients depend on the speed or the frequency."""
+        return self.varies and isinstance(self.law, Support)
+
+    @property
+    def table_speeds(self) -> np.ndarray:
+        """Ω at the points of its tables [rad/s], where coefficients have kinks."""
+        return self.law.table_speeds / self.rate if self.rate and self.has_tables else np.zeros(0)
+
+    @property
+    def table_frequencies(self) -> np.ndarray:
+        """Frequencies of its tables [rad/s]; none where it does not depend on the frequency."""
+        return self.law.table_frequencies if self.has_tables else np.zeros(0)
+
+    @property
+    def has_mass(self) -> bool:
+        """Whether a mass goes with u, in axes that stand."""
+        return isinstance(self.law, Support) and acts(self.law.mass)
+
+    def mass(self, speed: float, frequency: float | None = None) -> np.ndarray:
+        """Return the mass (p, p) that goes with u [kg]."""
+        rate = self.rate * speed
+        return self.law.mass_matrix(rate, abs(speed) if frequency is None else frequency)
+
     def coefficients(self, speed: float, frequency: float | None = None) -> tuple[np.ndarray, ...]:
         """Return stiffness, damping and, where there is one, the mass."""
         found = self.matrices(speed, frequency)
-        return found if self.mass is None else (*found, self.mass(speed, frequency))
+        return (*found, self.mass(speed, frequency)) if self.has_mass else found
 
     def at_rest(self) -> np.ndarray:
         """Return a stiffness that tells which motions it holds, (p, p).
 
         Of a film it is the stiffness at a speed at which it carries.
         """
-        return self.holding() if self.holding is not None else self.matrices(0.0)[0]
+        return self.law.matrices(0.0)[0] if isinstance(self.law, Support) else self.matrices(0.0)[0]
 
     def is_isotropic(self, speed: float) -> bool:
         """Return whether the coefficients at a speed are the same in all directions."""
         return all(is_isotropic_matrix(X) for X in self.matrices(speed))
 
-    def terms(
-        self,
-        coefficients: tuple[np.ndarray, np.ndarray],
-        speed: float | np.ndarray,
-        U: Terms,
-        turns: int,
-    ) -> tuple[dict, dict]:
-        """Return the Fourier terms of damping and stiffness, each (k, k), or (s, k, k) of a stack.
+    def powers(self, coefficients: Sequence[np.ndarray], U: Terms, turns: int) -> Powers:
+        """Return what it adds to the equations in axes that turn with `turns` times Ω.
 
-        `coefficients` are what :attr:`matrices` gives at the speed Ω [rad/s], or stacks of them at
-        speeds of the shape (s, 1, 1); `U` is :attr:`motion` in axes that turn with `turns` times Ω.
+        `coefficients` are those of :meth:`coefficients`, (p, p), or stacks of them, (s, p, p); `U`
+        is :attr:`motion` in these axes.
         """
-        K, D = coefficients
-        if self.turns:
-            if self.turns == turns:  # seen from axes that turn with it, it stands still
-                U = turned(U, -turns)
-            else:
-                K = K - self.turns * speed * D @ axial_skew(D.shape[-1])
-        damping, stiffness = congruent(U, D), congruent(U, K)
-        if len(U) > 1:
-            add(stiffness, congruent(U, D, rate_of(U)), speed)
-        return damping, stiffness
+        K, D, *masses = coefficients
+        found: Powers = {}
+        if self.turns and self.turns == turns:  # seen from axes that turn with it, it stands still
+            U = turned(U, -turns)
+        elif self.turns:
+            put(found, "K", 1, congruent(U, -self.turns * D @ axial_skew(D.shape[-1])))
+        put(found, "D", 0, congruent(U, D))
+        put(found, "K", 0, congruent(U, K))
+        first = rate_of(U)
+        if first and np.any(D):
+            put(found, "K", 1, congruent(U, D, first))
+        for mass in masses:  # ü = d²(U y)/dt²; in axes that turn it is alike in all directions
+            put(found, "M", 0, {0: congruent(U, mass)[0]})
+            if first:
+                put(found, "D", 1, congruent(U, 2.0 * mass, first))
+                put(found, "K", 2, congruent(U, mass, rate_of(first)))
+        return found
 
     def check_axes(self, turns: int) -> None:
         """Refuse an anisotropic element that turns otherwise than the axes do, and such a mass."""
-        uneven = self.mass is not None and not is_isotropic_matrix(self.mass(0.0))
+        uneven = self.has_mass and not is_isotropic_matrix(self.mass(0.0))
         for fault, is_there in (
             ("has coefficients over the frequency", turns and self.table_frequencies.size),
             ("has a mass that is not the same in all directions", turns and uneven),
@@ -161,6 +168,13 @@ class Element:
             )
 
 
+def put(powers: Powers, name: str, power: int, terms: Terms) -> None:
+    """Add the Fourier terms of a matrix, times a power of Ω."""
+    for n, X in terms.items():
+        key, part = (name, n, power), X.real if n == 0 else X
+        powers[key] = powers[key] + part if key in powers else part
+
+
 def is_isotropic_matrix(X: np.ndarray) -> bool:
     quarter = axial_skew(len(X))
     return bool(np.abs(X @ quarter - quarter @ X).max() <= _ROUNDING * np.abs(X).max())
@@ -169,7 +183,7 @@ def is_isotropic_matrix(X: np.ndarray) -> bool:
 class OwnBody(Body):
     """Coordinates that a support brings with it, as a body: of a controller, of pads."""
 
-    def rows(self) -> dict[int, np.ndarray]:
+    def supported(self, _: str) -> dict[int, np.ndarray]:
         """Return the displacements of its pairs of coordinates, seen from outside, (3p, k)."""
         return turned({0: np.kron(np.eye(self.size // 2), ACROSS)}, self.turns)
 
@@ -177,17 +191,17 @@ class OwnBody(Body):
 class PadBody(OwnBody):
     """The tilts of pads, which stand still."""
 
-    def rows(self) -> dict[int, np.ndarray]:
+    def supported(self, _: str) -> dict[int, np.ndarray]:
         """Return the coordinates, (k, k)."""
         return {0: np.eye(self.size)}
 
 
 def own_body(one: Controlled, number: int, turns: int) -> OwnBody:
     """Return the coordinates of a support; pairs in axes that turn with `turns` times Ω."""
-    word, name = f"{WORDS[type(one)]} {number} at {one.interface}", f" {number}"
+    word, name = f"{one.word} {number} at {one.interface}", f" {number}"
     labels = tuple(f"{word}, {n}" for n in range(1, one.size + 1))
     M, none = np.diag(one.masses), np.zeros((one.size, one.size))
-    if isinstance(one, PadSupport):
+    if one.word == "pads":
         return PadBody(name, 0, M, (none,), (none,), labels)
     quarter = np.kron(np.eye(one.size // 2), axial_skew(3)[:2, :2])
     powers_D, powers_K = (none, 2.0 * turns * M @ quarter), (none, none, -float(turns) * M)
@@ -212,17 +226,10 @@ def support_element(
     Its tables are over `rate` times Ω; one in the rotor's frame turns with `ratio` times Ω.
     """
 
-    def pair(speed: float, frequency: float | None) -> tuple[float, float]:
-        return rate * speed, abs(speed) if frequency is None else frequency
-
     def matrices(speed: float, frequency: float | None = None) -> tuple[np.ndarray, np.ndarray]:
         support.check_range(rate * speed)
-        return support.matrices(*pair(speed, frequency))
+        return support.matrices(rate * speed, abs(speed) if frequency is None else frequency)
 
-    def mass(speed: float, frequency: float | None = None) -> np.ndarray:
-        return support.mass_matrix(*pair(speed, frequency))
-
-    speeds = support.table_speeds / rate if rate and support.varies else np.zeros(0)
     return Element(
         (end,) if base is None else (end, base),
         matrices,
@@ -230,37 +237,32 @@ def support_element(
         ratio if support.frame == "rotor" else 0.0,
         support.varies,
         support.stiffness_varies,
-        speeds,
-        lambda: support.matrices(0.0)[0],
-        mass=mass if acts(support.mass) else None,
-        table_frequencies=support.table_frequencies if support.varies else np.zeros(0),
-        held_beyond=support.extrapolate,
+        support,
+        rate,
     )
 
 
 def own_elements(
-    one: Controlled, end: End, bases: Mapping[str, End], rate: float, own: OwnBody
+    one: Controlled, end: End, base: Callable[[str], End | None], rate: float, own: OwnBody
 ) -> list[Element]:
-    """Return the elements of a support with coordinates of its own."""
-    base = bases.get(one.interface)
+    """Return the elements of a support with coordinates of its own, on the `base` of a place."""
     if isinstance(one, SeriesSupport):
-        return _series_elements(one, end, base, rate, own)
-    ends, ports = (end,), [_relative(end, base, 3)]
-    if isinstance(one, ControlledSupport):
+        return _series_elements(one, end, base(one.interface), rate, own)
+    ends, ports = (end,), [_relative(end, base(one.interface), 3)]
+    if one.sensor is not None:
         ends = end, (end[0], one.sensor)
-        ports.append(_relative(ends[1], bases.get(one.sensor), 3))
-    lifted = np.kron(np.eye(len(ports) + own.size // 2), ACROSS)
+        ports.append(_relative(ends[1], base(one.sensor), 3))
+    inner = np.eye(own.size) if one.sensor is None else np.kron(np.eye(own.size // 2), ACROSS)
+    lifted = la.block_diag(np.kron(np.eye(len(ports)), ACROSS), inner)
 
     def matrices(speed: float, *_: float) -> tuple[np.ndarray, np.ndarray]:
-        if isinstance(one, PadSupport):
-            return one.matrices(rate * speed)
-        K, D = one.stiffness, one.damping
+        K, D = one.matrices(rate * speed)
         return lifted @ K @ lifted.T, lifted @ D @ lifted.T
 
     def motion(seen: Seen) -> Terms:
         return stacked([*(port(seen) for port in ports), seen((own.name, ""))])
 
-    if isinstance(one, ControlledSupport):
+    if one.sensor is not None:
         return [Element(ends, matrices, motion, law=one)]
     return [Element(ends, matrices, motion, varies=True, stiffness_varies=True)]
 
@@ -289,17 +291,16 @@ def elements_of(
     supports: Mapping[str, Sequence],
     ratios: Mapping[str, float],
     links: Sequence[Link],
-    bases: Mapping[str, End],
+    base: Callable[[int, str], End | None],
     turns: int,
     kind: str = "full",
-    begun: int = 0,
 ) -> tuple[list[Element], list[OwnBody]]:
     """Return the elements of a model, and the coordinates that some of them bring.
 
-    What carries a support is in `bases` by its interface, the ground where there is nothing. Pairs
-    of own coordinates turn with `turns` times Ω; `begun` bodies of them there are already. Of the
-    kind 'static' elements have their static stiffness in the place of own coordinates; 'undamped'
-    ones are also without damping and the skew part of their stiffness, and keep rings.
+    What carries a support tells `base` by the support's number and an interface. Pairs of own
+    coordinates turn with `turns` times Ω. Of the kind 'static' elements have their static stiffness
+    in the place of own coordinates; 'undamped' ones are also without damping and the skew part of
+    their stiffness, and keep rings.
 
     Raises
     ------
@@ -308,21 +309,21 @@ def elements_of(
     """
     elements, own = [], []
     for name, given in supports.items():
-        plain, controlled = linear_supports(given)
-        if kind != "full":
-            rings = [c for c in controlled if isinstance(c, SeriesSupport) and kind == "undamped"]
-            others = (c for c in controlled if c not in rings)
-            plain = [*plain, *(Support(c.interface, c.static_stiffness) for c in others)]
-            controlled = [ring.undamped() for ring in rings]
-        if kind == "undamped":
-            plain = [one.undamped() for one in plain]
         ratio = ratios[name]
-        for one in plain:
-            base = bases.get(one.interface)
-            elements.append(support_element(one, (name, one.interface), base, ratio, ratio))
-        for one in sorted(controlled, key=lambda each: list(WORDS).index(type(each))):
-            own.append(own_body(one, begun + len(own) + 1, turns))
-            elements += own_elements(one, (name, one.interface), bases, ratio, own[-1])
+        for number, each in enumerate(given):
+            [one] = [law for laws in linear_supports([each]) for law in laws]
+            end = name, one.interface
+            is_ring = isinstance(one, SeriesSupport) and kind == "undamped"
+            if kind != "full" and not isinstance(one, Support) and not is_ring:
+                one = Support(one.interface, one.static_stiffness)
+            if kind == "undamped":
+                one = one.undamped()
+            if isinstance(one, Support):
+                below = base(number, one.interface)
+                elements.append(support_element(one, end, below, ratio, ratio))
+            else:
+                own.append(own_body(one, len(own) + 1, turns))
+                elements += own_elements(one, end, partial(base, number), ratio, own[-1])
     for link in links:
         first, second = link.ends
         if isinstance(link.connection, GearMesh):
@@ -362,10 +363,21 @@ class Assembly:
         """Number of coordinates k."""
         return sum(body.size for body in self.bodies)
 
-    @cached_property
+    @property
     def M(self) -> np.ndarray:
-        """Mass matrix, shape (k, k)."""
-        return la.block_diag(*(body.M for body in self.bodies))
+        """Mass matrix of what does not vary, shape (k, k)."""
+        return self._steady["M", 0, 0]
+
+    @property
+    def K(self) -> np.ndarray:
+        """Stiffness at rest of what does not vary, shape (k, k)."""
+        return self._steady["K", 0, 0]
+
+    def square(self, X: np.ndarray, place: slice) -> np.ndarray:
+        """Return a matrix of one body as a matrix of all coordinates."""
+        wide = np.zeros((self.size, self.size), dtype=X.dtype)
+        wide[place, place] = X
+        return wide
 
     def wide(self, terms: Terms, place: slice) -> dict[int, np.ndarray]:
         """Return rows of one body as rows of all coordinates."""
@@ -379,13 +391,7 @@ class Assembly:
         """Return the motion that an element acts on, seen from outside."""
         name, interface = end
         place, body = next((i, body) for i, body in enumerate(self.bodies) if body.name == name)
-        if isinstance(body, OwnBody):
-            rows = body.rows()
-        elif isinstance(body, RotorBody):
-            rows = body.supported(interface)
-        else:
-            rows = body.seen(interface)
-        return self.wide(rows, self.slices[place])
+        return self.wide(body.supported(interface), self.slices[place])
 
     @cached_property
     def motions(self) -> list[Terms]:
@@ -393,59 +399,35 @@ class Assembly:
         return [without_rounding(one.motion(self._acted_on)) for one in self.elements]
 
     @cached_property
-    def _steady(self) -> tuple[dict[int, list], dict[int, list]]:
-        """Coefficients of powers of Ω, by multiples of θ, of all that does not vary otherwise."""
-        powers_D = [{} for _ in range(5)]
-        powers_K = [{} for _ in range(5)]
+    def _steady(self) -> Powers:
+        """What does not vary otherwise than by powers of Ω; without rounding."""
+        found: Powers = {}
         for body, place in zip(self.bodies, self.slices, strict=True):
-            for powers, given in ((powers_D, body.D), (powers_K, body.K)):
+            for name, given in (("M", [body.M]), ("D", body.D), ("K", body.K)):
                 for power, X in enumerate(given):
-                    wide = np.zeros((self.size, self.size))
-                    wide[place, place] = X
-                    add(powers[power], {0: wide})
+                    if power == 0 or np.any(X):
+                        put(found, name, power, {0: self.square(X, place)})
         for element, U in zip(self.elements, self.motions, strict=True):
             if not element.varies:
-                given = element.matrices(0.0)
-                D, K = element.terms(given, 0.0, U, self.turns)
-                _, faster = element.terms(given, 1.0, U, self.turns)
-                add(powers_D[0], D)
-                add(powers_K[0], K)
-                add(powers_K[1], faster)
-                add(powers_K[1], K, -1.0)
-        return _without_rounding(powers_D), _without_rounding(powers_K)
+                given = element.powers(element.coefficients(0.0), U, self.turns)
+                for (name, n, power), X in given.items():
+                    put(found, name, power, {n: X})
+        largest = {name: np.abs(found[name, 0, 0]).max(initial=0.0) for name in "MDK"}
+        return {
+            key: X
+            for key, X in found.items()
+            if key[1] == 0 or np.abs(X).max() > _SMALL * largest[key[0]]
+        }
 
-    @cached_property
-    def _powers(self) -> tuple[dict[int, tuple[list[int], np.ndarray]], ...]:
-        """Coefficients of :attr:`_steady` by multiples of θ: powers (p,) of Ω, and (p, k, k)."""
-        found = []
-        for given in self._steady:
-            orders = {n for terms in given for n in terms}
-            which = {n: [p for p, X in enumerate(given) if n in X and np.any(X[n])] for n in orders}
-            which[0] = which.get(0) or [0]
-            found.append(
-                {n: (p, np.stack([given[i][n] for i in p])) for n, p in which.items() if p}
-            )
-        return tuple(found)
+    def system(
+        self, speed: float, frequency: float | None = None, more: Powers | None = None
+    ) -> PeriodicSystem:
+        """Return the equations at a spin speed, and a frequency of motions [rad/s].
 
-    def projected(self, basis: np.ndarray) -> Assembly:
-        """Return what gives the equations of motions in a real basis (k, r)."""
-
-        def within(terms: Terms) -> dict[int, np.ndarray]:
-            return {n: basis.T @ X @ basis for n, X in terms.items()}
-
-        other = Assembly(self.bodies, self.elements, self.turns)
-        vars(other).update(
-            M=basis.T @ self.M @ basis,
-            motions=[{n: U @ basis for n, U in terms.items()} for terms in self.motions],
-            _steady=tuple([within(terms) for terms in given] for given in self._steady),
-            _H=[(n, basis.T @ X @ basis) for n, X in self._H],
-        )
-        return other
-
-    def system(self, speed: float, frequency: float | None = None) -> PeriodicSystem:
-        """Return the equations at a spin speed, and a frequency of motions [rad/s]."""
+        With `more` forces that hold at this speed.
+        """
         given = [one.coefficients(speed, frequency) for one in self._varying]
-        return self._system(float(speed), given)
+        return self._system(float(speed), given, more)
 
     def systems(
         self, speeds: np.ndarray, frequencies: np.ndarray | None = None
@@ -478,44 +460,32 @@ class Assembly:
     def _varying(self) -> list[Element]:
         return [element for element in self.elements if element.varies]
 
-    def _system(self, speed: float | np.ndarray, coefficients: Sequence) -> PeriodicSystem:
+    def _system(
+        self, speed: float | np.ndarray, coefficients: Sequence, more: Powers | None = None
+    ) -> PeriodicSystem:
         """Return the equations at a speed, or a stack, by the `coefficients` of what varies."""
-        factor = np.asarray(speed)[..., None, None] if np.ndim(speed) else speed
-        D, K = (
-            {n: np.tensordot(np.power.outer(speed, powers), X, 1) for n, (powers, X) in each}
-            for each in map(dict.items, self._powers)
-        )
-        M, rest = self.M, iter(coefficients)
+        rest, factor, k = iter(coefficients), speed, self._steady["M", 0, 0].shape[0]
+        if np.ndim(speed):
+            factor = speed[:, None, None]
+        found = {"M": {}, "D": {}, "K": {}}
+        parts = [self._steady, more or {}]
         for element, U in zip(self.elements, self.motions, strict=True):
-            given = next(rest) if element.varies else (None, None)
             if element.varies:
-                damping, stiffness = element.terms(given[:2], factor, U, self.turns)
-                add(D, damping)
-                add(K, stiffness)
-            if element.mass is not None:
-                mass = given[2] if element.varies else element.mass(0.0)
-                M = M + self._inertia(mass, U, factor, D, K)
-        return PeriodicSystem(speed, M, without_rounding(D), without_rounding(K), self._H)
-
-    @staticmethod
-    def _inertia(
-        mass: np.ndarray, U: Terms, factor: float | np.ndarray, D: dict, K: dict
-    ) -> np.ndarray:
-        """Return the mass matrix of a mass; add what follows as axes turn: ü = d²(U y)/dt².
-
-        Of the mass matrix the mean: in axes that turn, a mass is alike in all directions.
-        """
-        first = rate_of(U)
-        if first:
-            add(D, congruent(U, mass, first), 2.0 * factor)
-            add(K, congruent(U, mass, rate_of(first)), factor**2)
-        return congruent(U, mass)[0].real
+                parts.append(element.powers(next(rest), U, self.turns))
+        for (name, n, power), X in (item for part in parts for item in part.items()):
+            add(found[name], {n: X}, factor**power if power else None)
+        if np.ndim(speed):
+            for name in "DK":
+                shape = len(speed), k, k
+                found[name] = {n: np.broadcast_to(X, shape) for n, X in found[name].items()}
+        D, K = without_rounding(found["D"]), without_rounding(found["K"])
+        return PeriodicSystem(speed, found["M"][0], D, K, self._H)
 
     @cached_property
     def _H(self) -> list[tuple[float, np.ndarray]]:
         """Structural damping of all bodies, see :class:`PeriodicSystem`."""
         return [
-            (n, self.wide({0: self.wide({0: X}, place)[0].T}, place)[0].T)
+            (n, self.square(X, place))
             for body, place in zip(self.bodies, self.slices, strict=True)
             for n, X in body.H
         ]
@@ -533,17 +503,6 @@ class Assembly:
             for body in self.bodies
             for label in body.labels
         )
-
-
-def _without_rounding(powers: list[dict[int, np.ndarray]]) -> list[dict[int, np.ndarray]]:
-    """Return coefficients of powers of Ω without the terms of θ that are rounding of the first."""
-    largest = max((np.abs(X).max(initial=0.0) for X in powers[0].values()), default=0.0)
-    first = without_rounding(powers[0]) if powers[0] else powers[0]
-    kept = [
-        {n: X for n, X in each.items() if n == 0 or np.abs(X).max() > _CHANGE * largest}
-        for each in powers[1:]
-    ]
-    return [first, *kept]
 
 
 def stacked_coefficients(found: Sequence[Sequence]) -> list[tuple[np.ndarray, np.ndarray]]:

@@ -13,7 +13,6 @@ w = 0. A point mass, with N = [[0, −1], [1, 0]], G = mN and C = m, has ``M ÿ 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -26,7 +25,6 @@ from exudyn_rotor.linear.model.spin import Spin, spin_of
 from exudyn_rotor.linear.model.turning import (
     Turning,
     interface_motion,
-    radius_of_gyration,
     turning_of,
 )
 from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
@@ -54,18 +52,10 @@ class RotorAlone:
     Q : ndarray, shape (n, k)
         Columns of the reduced rotor by these coordinates.
     turning : Turning
-    uneven : float
-        Largest share of stiffness and centrifugal matrix that differs around the circumference,
-        in slow motions.
-    left_out : mapping of str to float
-        Of each interface the share of its lateral flexibility by motions that are half of a pair;
-        of '' their share in all slow lateral motions.
-    complete_up_to : float
-        Frequency of the lowest of these halves [rad/s].
+    whole : Turning
+        Of all columns of the reduced rotor, halves of pairs among them.
     spin : Spin or None
         The spin as a coordinate.
-    places : mapping of str to ndarray, shape (6, n), optional
-        Motions of further places along (n1, n2, e), by the columns of the reduced rotor.
     """
 
     rotor: ReducedRotor
@@ -74,26 +64,36 @@ class RotorAlone:
     level: str
     Q: np.ndarray
     turning: Turning
-    uneven: float
-    left_out: dict[str, float]
-    complete_up_to: float
+    whole: Turning
     spin: Spin | None
-    places: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     @property
     def has_halves(self) -> bool:
         """Whether the number of modes has cut pairs in halves."""
-        return bool(np.isfinite(self.complete_up_to))
+        return bool(self.whole.halves.shape[1])
+
+    @cached_property
+    def complete_up_to(self) -> float:
+        """Frequency of the lowest half of a pair [rad/s]; infinity where there is none."""
+        halves = self.whole.halves
+        squares = np.linalg.eigvalsh(halves.T @ self.rotor.invariants.K @ halves)
+        return float(np.sqrt(max(squares.min(), 0.0))) if squares.size else np.inf
+
+    @cached_property
+    def _uneven(self) -> float:
+        """Largest share of stiffness and centrifugal matrix that is not round, in slow motions."""
+        matrices = self.invariants.K, self.terms.C_hat
+        return max(self.turning.matrix_share(X) for X in matrices)
 
     def unevenness(self, places: tuple[str, ...]) -> float:
         """Return the unevenness of the rotor and of the places that something acts on."""
         shares = [self._place_share(name) for name in places]
-        lost = [self.left_out.get(name, 0.0) for name in places or ("",)]
-        return max([self.uneven, *shares, *lost])
+        return max(self._uneven, *shares) if places else max(self._uneven, self.whole.halves_share)
 
     @kept
     def _place_share(self, name: str) -> float:
-        return self.turning.place_share(self.motion(name))
+        whole = self.whole.halves_share_at(interface_motion(self.rotor, name))
+        return max(self.turning.place_share(self.motion(name)), whole)
 
     @cached_property
     def bodies(self) -> dict[tuple, RotorBody]:
@@ -103,8 +103,7 @@ class RotorAlone:
     @kept
     def motion(self, name: str) -> np.ndarray:
         """Return the motion (6, k) of an interface along (n1, n2, e) in the rotor frame."""
-        known = name in self.places
-        return (self.places[name] if known else interface_motion(self.rotor, name)) @ self.Q
+        return interface_motion(self.rotor, name) @ self.Q
 
     def within(self, V: np.ndarray) -> RotorAlone:
         """Return the rotor with the motions of an orthonormal basis V (k, r) alone.
@@ -112,8 +111,7 @@ class RotorAlone:
         The basis holds every wave or nothing of it.
         """
         turning, invariants = self.turning.within(V), self.invariants.in_basis(V)
-        given = self.left_out, self.complete_up_to
-        return _alone(self.rotor, invariants, self.level, self.Q @ V, turning, *given)
+        return _alone(self.rotor, invariants, self.level, self.Q @ V, turning, self.whole)
 
 
 @kept
@@ -129,22 +127,12 @@ def rotor_alone(
     level = chosen_level(stiffening, invariants.K2 is not None)
     if level != "none":
         invariants = invariants.loaded
-    turning, Q = turning_of(rotor, inner), np.eye(rotor.size)
-    left_out, lowest = {}, np.inf
-    if turning.halves.shape[1]:
-        squares = np.linalg.eigvalsh(turning.halves.T @ invariants.K @ turning.halves)
-        lowest = float(np.sqrt(max(squares[0], 0.0)))
-        halves = np.linalg.norm(turning.halves.T @ turning.T, axis=0) > 0.5
-        slow = np.where(halves | (turning.waves != 0), turning.weights**2, 0.0)
-        left_out[""] = float(slow[halves].sum() / slow.sum())
-        for name in rotor.interfaces:
-            left_out[name] = turning.halves_share(interface_motion(rotor, name))
-        if not whole:
-            Q = others(turning.halves)
-            Q = Q[:, np.argsort(np.abs(Q).argmax(axis=0), kind="stable")]
-            turning = turning.within(Q)
-            invariants = invariants.in_basis(Q)
-    return _alone(rotor, invariants, level, Q, turning, left_out, lowest)
+    turning = turning_of(rotor, inner)
+    alone = _alone(rotor, invariants, level, np.eye(rotor.size), turning, turning)
+    if whole or not alone.has_halves:
+        return alone
+    Q = others(turning.halves)
+    return alone.within(Q[:, np.argsort(np.abs(Q).argmax(axis=0), kind="stable")])
 
 
 def _alone(
@@ -153,17 +141,14 @@ def _alone(
     level: str,
     Q: np.ndarray,
     turning: Turning,
-    left_out: dict[str, float],
-    complete_up_to: float,
+    whole: Turning,
 ) -> RotorAlone:
     """Return a rotor with the invariants in the basis Q."""
     terms = SpinTerms.of(invariants, second_order(invariants, level))
     spin = spin_of(rotor, invariants, Q)
     K4 = None if terms.K4 is None else _unresisted(terms.K4, rotor, spin, Q)
     terms = replace(terms, C_hat=_unresisted(terms.C_hat, rotor, spin, Q), K4=K4)
-    uneven = max(turning.matrix_share(X) for X in (invariants.K, terms.C_hat))
-    given = terms, level, Q, turning, uneven, left_out, complete_up_to, spin
-    return RotorAlone(rotor, invariants, *given)
+    return RotorAlone(rotor, invariants, terms, level, Q, turning, whole, spin)
 
 
 def _unresisted(X: np.ndarray, rotor: ReducedRotor, spin: Spin | None, Q: np.ndarray) -> np.ndarray:
@@ -364,6 +349,8 @@ class StandingBody(Body):
         """Return the motion of a point, (6, k)."""
         return {0: self.points[name]}
 
+    supported = seen  # what supports act on
+
 
 def foundation_body(foundation: Foundation, rotor: ReducedRotor) -> StandingBody:
     """Return a foundation in the axes of a rotor's mesh as a body, in modal coordinates."""
@@ -374,12 +361,6 @@ def foundation_body(foundation: Foundation, rotor: ReducedRotor) -> StandingBody
     return StandingBody(
         "foundation", 0, *matrices, labels, base_loads=loads, points=dict(given.points)
     )
-
-
-def largest_radius(bodies: tuple[Body, ...]) -> float:
-    """Return the largest radius of gyration of the rotors [m]."""
-    radii = [radius_of_gyration(b.alone.invariants) for b in bodies if isinstance(b, RotorBody)]
-    return max(radii)
 
 
 def rigid_columns_of(alone: RotorAlone) -> tuple[list[str], np.ndarray]:

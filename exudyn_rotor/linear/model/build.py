@@ -16,7 +16,7 @@ from exudyn_rotor.linear.model.body import EVEN
 from exudyn_rotor.linear.model.linear_model import AXES, ON_FOUNDATION, LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
-from exudyn_rotor.linear.model.scene.scene_model import ABOUT, SceneModel
+from exudyn_rotor.linear.model.scene.scene_model import SceneModel
 from exudyn_rotor.linear.model.scene.scene_train import scene_train
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
@@ -41,10 +41,12 @@ def linear_model(
     foundation: Foundation | None = None,
     body: RotorBody | Sequence[RotorBody] | None = None,
     stiffening: str = "auto",
-    about: str = "equilibrium",
     axes: str = "auto",
 ) -> LinearModel:
     """Return the linear equations of a rotor on supports, or of a scene with a rotor in it.
+
+    A scene is linearised about its equilibrium under the loads that it has at each speed, with
+    bearings under their forces there.
 
     Every linear analysis takes the model instead of the rotor and its supports, and makes it by
     this function where it is given those.
@@ -66,10 +68,6 @@ def linear_model(
         Centrifugal stiffening of a rotor; a scene has that of its body. 'full' needs a rotor with
         prestress (:meth:`SolidRotor.prestress`); 'auto' is 'full' with one, which it computes for
         a SolidRotor with elements, and 'tilt' without.
-    about : {'equilibrium', 'given'}
-        State about which a scene is linearised: the equilibrium under the loads that it has at
-        each speed, bearings under their forces there; or its current state with the rotor
-        undeformed and bearings under the weight by the lever rule, or their own load.
     axes : {'auto', 'inertial', 'rotor'}
         Axes of the equations: by default axes that stand still for a round rotor, and the axes of
         the rotor for an uneven one; :attr:`LinearModel.axes` says which were taken.
@@ -107,9 +105,8 @@ def linear_model(
         checks.instance(foundation, "foundation", Foundation)
     if given or foundation is not None:
         _check_takes_supports(target)
-    checks.choice(about, "about", ABOUT)
     if isinstance(target, exudyn.MainSystem):
-        return _of_scene(target, body, about, axes)
+        return _of_scene(target, body, axes)
     if body is not None:
         raise TypeError(
             "body: is only for an exudyn.MainSystem, not for the rotor itself; got "
@@ -186,13 +183,12 @@ def _of_train(train: RotorTrain, stiffening: str, axes: str) -> LinearModel:
 def _of_scene(
     mbs: exudyn.MainSystem,
     body: RotorBody | Sequence[RotorBody] | None,
-    about: str,
     axes: str,
 ) -> LinearModel:
     if isinstance(body, list | tuple):
         return _of_train(*scene_train(mbs, body), axes)
     how = "the rotor in the scene, which add_rotor returned; a list of several"
-    return SceneModel.of(LinearScene.of(mbs, reduced_body(body, how=how)), about, axes)
+    return SceneModel.of(LinearScene.of(mbs, reduced_body(body, how=how)), axes)
 
 
 def warn_of_structural_damping(model: LinearModel, what: str) -> None:

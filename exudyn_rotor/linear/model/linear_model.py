@@ -29,6 +29,7 @@ from exudyn_rotor.linear.equations import PeriodicSystem, add, others, spread
 from exudyn_rotor.linear.model.assembly import (
     Assembly,
     Element,
+    End,
     elements_of,
     rotors_of,
     stacked_coefficients,
@@ -39,13 +40,13 @@ from exudyn_rotor.linear.model.body import (
     RotorBody,
     StandingBody,
     foundation_body,
-    largest_radius,
     rigid_columns_of,
     rotor_alone,
     rotor_body,
 )
 from exudyn_rotor.linear.model.rotor_train import Link
 from exudyn_rotor.linear.model.spin import ARM
+from exudyn_rotor.linear.model.turning import radius_of_gyration
 from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
 from exudyn_rotor.theory.stiffening import LEVELS
 
@@ -147,11 +148,18 @@ class LinearModel:
         """Elements and own coordinates, as for axes that stand still."""
         return self._elements_for(0)
 
-    def _elements_for(self, turns: int, kind: str = "") -> tuple[list[Element], list]:
-        carried = self.foundation is not None
-        bases = {name: ("foundation", name) for name in self.foundation.points} if carried else {}
+    def _elements_for(
+        self, turns: int, kind: str = "", supports: Sequence | None = None
+    ) -> tuple[list[Element], list]:
+        """Return elements and own coordinates; `supports` of the only rotor in place of others."""
+        given = self.supports if supports is None else {"": supports}
         kind = kind or ("undamped" if self.is_undamped else "full")
-        return elements_of(self.supports, self.ratios, self.links, bases, turns, kind)
+        return elements_of(given, self.ratios, self.links, self._base, turns, kind)
+
+    def _base(self, number: int, name: str) -> End | None:
+        """Return what carries the support of a number at an interface; None for the ground."""
+        carried = self.foundation is not None and name in self.foundation.points
+        return ("foundation", name) if carried else None
 
     def places(self, name: str) -> tuple[str, ...]:
         """Return the interfaces of a rotor that elements act on."""
@@ -276,16 +284,12 @@ class LinearModel:
         return self.assembly(speed).system(speed, frequency)
 
     def at_all(
-        self,
-        speeds: Sequence[float],
-        within: str = "",
-        frequencies: Sequence[float] | None = None,
+        self, speeds: Sequence[float], frequencies: Sequence[float] | None = None
     ) -> PeriodicSystem:
         """Return the equations at spin speeds (s,) [rad/s] as one stack.
 
-        NaN at speeds where there are none, of which one warning tells. Of motions `within`
-        :attr:`held_basis`, 'held', or :attr:`moving_basis`, 'moving'; of all by default. With
-        motions of the frequencies (s,) [rad/s]; those of the speeds by default.
+        NaN at speeds where there are none, of which one warning tells. With motions of the
+        frequencies (s,) [rad/s]; those of the speeds by default.
 
         Raises
         ------
@@ -297,7 +301,7 @@ class LinearModel:
         for places in (np.flatnonzero(speeds), np.flatnonzero(speeds == 0.0)):
             if places.size:
                 rates = None if frequencies is None else np.asarray(frequencies)[places]
-                part, errors = self._systems(speeds[places], within, rates)
+                part, errors = self.systems(speeds[places], rates)
                 refused |= {int(places[i]): error for i, error in errors.items()}
                 if part is not None:
                     parts.append((np.delete(places, list(errors)), part))
@@ -305,22 +309,11 @@ class LinearModel:
         warn_of_refused(lost, len(speeds), " rad/s")
         return spread(speeds, parts)
 
-    def _systems(
-        self, speeds: np.ndarray, within: str = "", frequencies: np.ndarray | None = None
+    def systems(
+        self, speeds: np.ndarray, frequencies: np.ndarray | None
     ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         """Return the stack at speeds (s,), all zero or none, and why there are none at some."""
-        basis = getattr(self, f"{within}_basis") if within else None
-        if basis is None:
-            return self.assembly(speeds[0]).systems(speeds, frequencies)
-        key = within, bool(speeds[0])
-        if key not in self._projected:
-            self._projected[key] = self.assembly(speeds[0]).projected(basis)
-        return self._projected[key].systems(speeds, frequencies)
-
-    @cached_property
-    def _projected(self) -> dict[tuple[str, bool], Assembly]:
-        """What gives the equations of motions in a basis, running or at rest, once made."""
-        return {}
+        return self.assembly(speeds[0]).systems(speeds, frequencies)
 
     @property
     def pattern(self) -> tuple:
@@ -507,7 +500,7 @@ class LinearModel:
         """Warn of motions [rad/s] beyond a table over the frequency, which keeps its end there."""
         for element in () if self.is_richer else self._elements[0]:
             table, used = element.table_frequencies, np.asarray(frequencies)
-            if table.size and not element.held_beyond:
+            if table.size and not element.law.extrapolate:
                 slack = _HELD * table.max()
                 used = used[(used < table.min() - slack) | (used > table.max() + slack)]
                 if used.size:
@@ -529,7 +522,7 @@ class LinearModel:
     @cached_property
     def radius(self) -> float:
         """By which a rotation counts as a displacement [m]."""
-        return largest_radius(self.bodies)
+        return max(radius_of_gyration(b.alone.invariants) for b in rotors_of(self.bodies))
 
     @cached_property
     def interfaces(self) -> tuple[str, ...]:

@@ -153,40 +153,22 @@ def _wave_fields(points: np.ndarray, highest: int) -> tuple[list[np.ndarray], li
         [along[:, :count] * scaled[:, None] ** (2 * p) for p, count in enumerate(_AXIAL_TERMS)]
     )
     turning = np.vander(scaled * np.exp(1j * np.arctan2(y, x)), highest + 1, increasing=True)
-    fields = turning[:, :, None] * steady[:, None, :]
-    parts = fields.reshape(len(points), -1).view(float)  # real beside imaginary ones
-    gram = parts.T @ parts
-    spaces, told, known = [], [], np.zeros((len(gram), 0))
-    width = len(gram) // (highest + 1)
+    spaces, told, known = [], [], np.zeros((len(points), 0))
     for count in range(highest + 1):
-        here = slice(count * width, (count + 1) * width)
-        products = np.ascontiguousarray(gram[:, here]).view(complex)
-        within = products[here][::2] - 1j * products[here][1::2]
-        forward = _new_fields(within, known.T @ products)
+        fields = turning[:, count, None] * steady
+        rest = fields - known @ (known.T @ fields)
+        lengths, directions = np.linalg.eigh(rest.conj().T @ rest)
+        least = max((_NEW_SHARE * np.linalg.norm(fields, 2)) ** 2, 1e-300)
+        fields = np.linalg.qr(fields @ directions[:, lengths > least])[0]
         # both senses at once, so that neither is preferred: one has the conjugate fields
-        both = np.sqrt(2.0) * np.vstack([forward, 1j * forward]) if count else forward
-        columns = np.zeros((len(gram), len(both)))
-        columns[here] = both.view(float).T
-        spaces.append(parts[:, here] @ columns[here])
-        columns = columns - known @ (known.T @ (gram @ columns))
-        lengths, turn = np.linalg.eigh(columns.T @ gram @ columns)
+        both = np.sqrt(2.0) * np.hstack([fields.real, fields.imag]) if count else fields.real
+        spaces.append(both)
+        rest = both - known @ (known.T @ both)
+        lengths, directions = np.linalg.eigh(rest.T @ rest)
         new = lengths > _DEPENDENT
-        told.append(turn[:, new])
-        known = np.hstack([known, columns @ turn[:, new] / np.sqrt(lengths[new])])
+        told.append(directions[:, new])
+        known = np.hstack([known, rest @ directions[:, new] / np.sqrt(lengths[new])])
     return spaces, told
-
-
-def _new_fields(within: np.ndarray, shared: np.ndarray) -> np.ndarray:
-    """Return ``Tᴴ`` of orthonormal fields ``F T`` that others do not hold yet.
-
-    From the Gram matrix of the fields F and their products with an orthonormal basis of the others.
-    """
-    lengths, turn = np.linalg.eigh(within - shared.conj().T @ shared)
-    least = max(_NEW_SHARE**2 * np.linalg.eigvalsh(within)[-1], 1e-300)
-    directions = turn[:, lengths > least].conj().T
-    return np.linalg.solve(
-        np.linalg.cholesky(directions @ within @ directions.conj().T), directions
-    )
 
 
 def compressed(rows: np.ndarray, least: float = 0.0) -> np.ndarray:
@@ -282,10 +264,20 @@ class Turning:
         V = U[:2] - self.motion(U[:3])[0][:2]
         return self._flexible(V) / (self._flexible(U[:2]) or 1.0)
 
-    def halves_share(self, U: np.ndarray) -> float:
+    @property
+    def _in_halves(self) -> np.ndarray:
+        """Which of the waves are halves of pairs, (k,)."""
+        return np.linalg.norm(self.halves.T @ self.T, axis=0) > 0.5
+
+    @property
+    def halves_share(self) -> float:
+        """Share of halves of pairs in all slow lateral motions."""
+        slow = np.where(self._in_halves | (self.waves != 0), self.weights**2, 0.0)
+        return float(slow[self._in_halves].sum() / (slow.sum() or 1.0))
+
+    def halves_share_at(self, U: np.ndarray) -> float:
         """Return the share of the lateral flexibility of a place (6, k) by halves of pairs."""
-        halves = np.linalg.norm(self.halves.T @ self.T, axis=0) > 0.5
-        return self._flexible(U[:2], halves) / (self._flexible(U[:2]) or 1.0)
+        return self._flexible(U[:2], self._in_halves) / (self._flexible(U[:2]) or 1.0)
 
     def _flexible(self, U: np.ndarray, chosen: np.ndarray | slice = slice(None)) -> float:
         return float(np.linalg.norm((U @ self.T * np.sqrt(self.flexibility))[:, chosen]) ** 2)
@@ -326,7 +318,7 @@ def _beyond(known: Turning, columns: np.ndarray, rotor: ReducedRotor) -> Turning
     The others, and halves of pairs, are told by the motion of interfaces, and by the waves that
     they are coupled with.
     """
-    paired = np.linalg.norm(known.halves.T @ known.T, axis=0) < 0.5
+    paired = ~known._in_halves
     waves, weights, flexibility = (
         each[paired] for each in (known.waves, known.weights, known.flexibility)
     )

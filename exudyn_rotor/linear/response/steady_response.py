@@ -347,7 +347,7 @@ class _OverSpeed(_Sweep):
         moving = np.flatnonzero(values)  # at rest there is no load
         if not moving.size:
             return found
-        stack = model.at_all(values[moving], "moving")
+        stack = model.at_all(values[moving])
         model.warn_beyond(np.abs(values[moving]))
         lost, rows = moving[~stack.known], moving[stack.known]
         self.told.extend(values[lost].tolist())

@@ -10,8 +10,7 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.multibody.full.full_body import reduced_body
-from exudyn_rotor.multibody.rotor.record import StartState, spin_at_start
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState, spin_at_start
 
 _TOLD = 1e-5  # share of the motion in higher harmonics that a warning tells
 

@@ -14,7 +14,7 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor.linear.equations import PeriodicSystem, States
-from exudyn_rotor.linear.solve.hill import Exponents, one_of_each_family, shares
+from exudyn_rotor.linear.solve.hill import Exponents, lost_of, one_of_each_family, shares
 
 GAUSS_POINTS = 0.5 + np.array([-1.0, 1.0]) * np.sqrt(3.0) / 6.0
 _STEPS = (64, 128, 256, 512, 1024)  # of a period
@@ -65,8 +65,9 @@ def floquet_motions(system: PeriodicSystem, made: States) -> Exponents:
     found, lost = np.flatnonzero(still), np.flatnonzero(~still)
     chosen = found[one_of_each_family(values[found], states[:, :, found], orders, system, made)]
     chosen = np.r_[chosen, lost][: system.size]
+    lost = lost_of(values[lost[~np.isnan(values[lost])]], system)
     values = np.where(still, values, np.nan)
-    return Exponents(values[chosen], states[:, :, chosen], orders)
+    return Exponents(values[chosen], states[:, :, chosen], orders, lost)
 
 
 def _with_steps(

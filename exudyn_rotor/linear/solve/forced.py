@@ -51,7 +51,7 @@ def forced_motions(
     rates : ndarray, shape (s,)
         ω [rad/s].
     held : ndarray, shape (k, r), optional
-        Basis of motions of which the equations are; loads and motions are of all coordinates.
+        Basis of motions in which the equations are solved; all motions by default.
     driven : ndarray, shape (k, d), optional
         Momenta of motions whose constant part a drive keeps at zero: free spins.
     tolerance : float, optional
@@ -59,7 +59,7 @@ def forced_motions(
     """
     if held is not None:
         loads = {n: F @ held for n, F in loads.items()}
-        found = forced_motions(system, loads, rates, tolerance=tolerance)
+        found = forced_motions(system.projected(held), loads, rates, tolerance=tolerance)
         return {n: X @ held.T for n, X in found.items()}
     if driven is not None and not driven.shape[1]:
         driven = None
@@ -113,34 +113,27 @@ def _solved(Z: np.ndarray, nu: np.ndarray, F: np.ndarray, driven: np.ndarray | N
 
     Those of frequency zero are static: free motions that a load does not act on rest.
     """
-    still = nu == 0.0
-    if np.all(still):
-        return _static(Z, F, driven)
-    X = np.full(F.shape, np.nan, dtype=complex)
+    X, still = np.full(F.shape, np.nan, dtype=complex), nu == 0.0
     if np.any(still):
         X[still] = _static(Z[still], F[still], driven)
-        X[~still] = _solved(Z[~still], nu[~still], F[~still], None)
-        return X
-    X = _one_by_one(Z, F)
-    size = np.sqrt(np.maximum(np.abs(Z[len(Z) // 2]).max(axis=1), 1e-300))[:, None]
-    X[np.linalg.norm(size * X, axis=(1, 2)) > np.linalg.norm(F / size, axis=(1, 2)) / _SINGULAR] = (
-        np.nan
-    )
+    if not np.all(still):
+        Z, F = Z[~still], F[~still]
+        moved = _one_by_one(Z, F)
+        size = np.sqrt(np.maximum(np.abs(Z[len(Z) // 2]).max(axis=1), 1e-300))[:, None]
+        loads = np.linalg.norm(F / size, axis=(1, 2))
+        moved[np.linalg.norm(size * moved, axis=(1, 2)) > loads / _SINGULAR] = np.nan
+        X[~still] = moved
     return X
 
 
 def _one_by_one(A: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Return solutions (s, k, c), NaN of singular matrices."""
-    if np.isrealobj(A) and np.iscomplexobj(b):
-        both = _one_by_one(A, np.concatenate([b.real, b.imag], axis=2))
-        return both[..., : b.shape[2]] + 1j * both[..., b.shape[2] :]
     try:
         return np.linalg.solve(A, b)
     except np.linalg.LinAlgError:
         if len(A) == 1:
-            return np.full(b.shape, np.nan, dtype=complex)
-        half = len(A) // 2
-        return np.concatenate([_one_by_one(A[:half], b[:half]), _one_by_one(A[half:], b[half:])])
+            return np.full(b.shape, np.nan, dtype=np.result_type(A, b))
+        return np.concatenate([_one_by_one(A[i : i + 1], b[i : i + 1]) for i in range(len(A))])
 
 
 def _static(A: np.ndarray, F: np.ndarray, driven: np.ndarray | None) -> np.ndarray:
@@ -153,11 +146,8 @@ def _static(A: np.ndarray, F: np.ndarray, driven: np.ndarray | None) -> np.ndarr
     scale = 1.0 / np.sqrt(np.where(resisted, size, 1.0))[..., None]
     A = scale * A * scale[:, None, :, 0] * (resisted[:, :, None] & resisted[:, None])
     b = scale * F
-    if np.all(resisted):
-        X = _one_by_one(A, b)
-        held = np.linalg.norm(X, axis=1) <= _FAR * np.linalg.norm(b, axis=1)
-    else:
-        X, held = np.empty_like(b), np.zeros((len(b), 1), dtype=bool)
+    X = _one_by_one(A, b)
+    held = np.linalg.norm(X, axis=1) <= _FAR * np.linalg.norm(b, axis=1)
     for i in np.flatnonzero(~np.all(held, axis=1)):
         X[i] = _beside_free(A[i], b[i])
     return scale * X
@@ -285,37 +275,4 @@ def _chain(
     A = (seen[..., 1:] @ forces.reshape(s, h, r, h * r)).reshape(s, h * r, h * r) + np.eye(h * r)
     y = _one_by_one(A, seen[..., 0].reshape(s, h * r, 1))
     pushed = (forces.reshape(s, h * r, h * r) @ y).reshape(s, h, r, 1)
-    X = each[..., 0] - (each[..., 1:] @ pushed)[..., 0]
-    for i in np.flatnonzero(~np.all(np.isfinite(X), axis=(1, 2))):  # Z_m by itself is singular
-        one = system[i] if np.ndim(system.speed) else system
-        X[i] = _whole(one, {n: F[i] for n, F in loads.items()}, rates[i], driven, orders)
-    return X
-
-
-def _whole(
-    system: PeriodicSystem,
-    loads: Harmonics,
-    rate: float,
-    driven: np.ndarray | None,
-    orders: Sequence[int],
-) -> np.ndarray:
-    """Return the harmonics (h, k) of one motion from one matrix."""
-    h, k = len(orders), system.size
-    A, momenta = np.zeros((h, k, h, k), dtype=complex), None
-    nu = np.array([float(_rate(rate, n, system.speed)) for n in orders])
-    for a, m in enumerate(orders):
-        for b, n in enumerate(orders):
-            for terms, factor in ((system.K, 1.0), (system.D, 1j * nu[b])):
-                if m - n in terms:
-                    A[a, :, b] += factor * terms[m - n]
-        A[a, :, a] -= nu[a] ** 2 * system.M
-        for n, H in system.H:
-            A[a, :, a] += 1j * np.sign(_rate(nu[a], -n, system.speed)) * H
-    F = np.concatenate([loads.get(n, np.zeros(k)) for n in orders])
-    still = np.flatnonzero(nu == 0.0)
-    if still.size and driven is not None:
-        momenta = np.zeros((h, *driven.shape))
-        momenta[still[0]] = driven
-        momenta = momenta.reshape(h * k, -1)
-    kind = np.array([0.0 if still.size else 1.0])
-    return _solved(A.reshape(1, h * k, h * k), kind, F[None, :, None] + 0j, momenta).reshape(h, k)
+    return each[..., 0] - (each[..., 1:] @ pushed)[..., 0]

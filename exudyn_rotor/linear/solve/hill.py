@@ -15,14 +15,13 @@ import numpy as np
 from exudyn_rotor.linear.equations import PeriodicSystem, States
 
 _SIZES = (2, 3, 4, 6)  # harmonics on either side, in steps of the coefficients
-_LARGEST, _MOST = 250, 420  # unknowns beyond which harmonics are added for slow motions, for none
-_SLOW = 3.0  # |λ| over Ω up to which a motion is slow
-_UNSETTLED = 1e-4  # energy at the edge with which a slow motion is not waited for
+_LARGEST = 250  # unknowns beyond which no harmonics are added
 _FAST = 30.0  # decay over Ω above which a motion is over before the coefficients change
+_OVER = 3.0  # decay over Ω, and over the own frequency, beyond which nobody looks at a motion
 # energy at the edge of the sum that counts as none, over the tolerance, which is the error of λ
 # where no two motions meet; and energy that is too much
 _EDGE, _LOST = 1.0, 3e-3
-_COPY, _ALIKE = 2e-3, 0.7  # of pΩ, and of a shape: how near a copy of a motion is
+_COPY, _ALIKE = 1e-6, 0.7  # of pΩ, and of a shape: how near a copy of a motion is
 
 
 class Exponents(NamedTuple):
@@ -35,11 +34,14 @@ class Exponents(NamedTuple):
     states : ndarray, shape (h, 2k, k)
         Harmonics of the state.
     orders : ndarray of int, shape (h,)
+    lost : ndarray, shape (l,)
+        Growth [1/s] of motions that did not converge, about; of decays that are over at once none.
     """
 
     values: np.ndarray
     states: np.ndarray
     orders: np.ndarray
+    lost: np.ndarray
 
 
 def hill_motions(
@@ -48,62 +50,46 @@ def hill_motions(
     tolerance: float,
     begin: int = 0,
     neutral: float | None = None,
-) -> tuple[Exponents, int, bool]:
+) -> tuple[Exponents, int]:
     """Return the motions of a system, and with how many harmonics to begin at the next speed.
-
-    And whether a slow motion is missed that may be the one that grows.
 
     Harmonics are added until those at the edge of the sum hold next to nothing of each motion. Fast
     decays are not waited for; where only the growth of the least stable motion is asked for, nor
     are motions that decay faster than it. Growth up to `neutral` [1/s] then counts as none.
     Exponents that do not get there are NaN.
     """
-    place = begin
-    while True:
+    for place in range(begin, len(_SIZES)):
         orders = system.step * np.arange(-_SIZES[place], _SIZES[place] + 1)
         values, states = _solved(made, orders, system.speed)
-        hidden, reach = _unsettled(values, states, orders, system)
         chosen = one_of_each_family(values, states, orders, system, made)
         values, states = values[chosen], states[:, :, chosen]
-        energy = shares(states)
-        edges = energy[0] + energy[-1]
-        growth, least = values.real, -np.inf
+        energy, growth = shares(states), values.real
         fast = -growth > _FAST * abs(system.speed)
+        waited = ~fast
         if neutral is not None:
             least = growth[np.abs(growth) > neutral].max(initial=-np.inf)
-            fast |= growth < least
-        lost = np.any(hidden >= least)  # what is not resolved may be the one that grows
-        done = np.all(fast | (edges <= _EDGE * tolerance)) and not lost
+            waited &= growth >= least
+        edges = energy[0] + energy[-1]
+        settled = np.all(edges[waited] <= _EDGE * tolerance)
         larger = 2 * system.size * (2 * _SIZES[min(place + 1, len(_SIZES) - 1)] + 1)
-        if done or place + 1 == len(_SIZES) or larger > (_MOST if lost else _LARGEST):
+        if settled or larger > _LARGEST:
             break
-        place += 1
-    fewer = np.all(fast | (energy[1] + energy[-2] <= _EDGE * tolerance))
-    found = (-growth > _FAST * abs(system.speed)) | (edges <= _LOST)
-    missed = hidden[reach > _LOST] > growth[found].max(initial=-np.inf)
-    kept = Exponents(np.where(found, values, np.nan), states, orders)
-    return kept, max(place - fewer, 0), bool(np.any(missed))
+    fewer = np.all((energy[1] + energy[-2])[waited] <= _EDGE * tolerance)
+    found = fast | (edges <= _LOST)
+    kept = np.where(found, values, np.nan)
+    return Exponents(kept, states, orders, lost_of(values[~found], system)), max(place - fewer, 0)
+
+
+def lost_of(values: np.ndarray, system: PeriodicSystem) -> np.ndarray:
+    """Return the growth of those exponents that an engineer looks at."""
+    looked_at = -values.real <= np.maximum(_OVER * abs(system.speed), np.abs(values.imag))
+    return values.real[looked_at]
 
 
 def shares(states: np.ndarray) -> np.ndarray:
     """Return the share of each harmonic in the energy of motions with states (h, 2k, n), (h, n)."""
     energy = np.sum(np.abs(states) ** 2, axis=1)
     return energy / energy.sum(axis=0)
-
-
-def _unsettled(
-    values: np.ndarray, states: np.ndarray, orders: np.ndarray, system: PeriodicSystem
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the growth of slow motions around zero whose harmonics reach the edge of the sum.
-
-    And the share of their energy there.
-    """
-    energy = shares(states)
-    mean = np.abs(orders @ energy) / system.step
-    slow = np.abs(values) <= _SLOW * abs(system.speed)
-    edges = energy[0] + energy[-1]
-    chosen = slow & (mean <= 0.5) & (edges > _UNSETTLED)
-    return values.real[chosen], edges[chosen]
 
 
 def one_of_each_family(
@@ -160,13 +146,13 @@ def _copies(
     apart = values - value
     steps = np.round(apart.imag / base).astype(int)
     near = np.abs(apart - 1j * steps * base) <= allowed
-    found, h = [], len(shape)
-    for j in np.flatnonzero(near & (np.abs(steps) < h)):
-        n = steps[j]
-        a, b = (shape[n:], shapes[: h - n, :, j]) if n >= 0 else (shape[:n], shapes[-n:, :, j])
-        if abs(np.vdot(a, b)) > _ALIKE:
-            found.append(j)
-    return np.array(found, dtype=int)
+    h = len(shape)
+    found = np.flatnonzero(near & (np.abs(steps) < h))
+    around = np.zeros((3 * h, shape.shape[1]), dtype=complex)
+    around[h : 2 * h] = shape
+    lowered = np.array([around[h + n : 2 * h + n] for n in steps[found]])
+    likeness = np.einsum("jhk,hkj->j", lowered.reshape(-1, *shape.shape).conj(), shapes[..., found])
+    return found[np.abs(likeness) > _ALIKE]
 
 
 def _solved(made: States, orders: np.ndarray, speed: float) -> tuple[np.ndarray, np.ndarray]:

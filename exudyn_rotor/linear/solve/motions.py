@@ -8,7 +8,7 @@ motions stand for all. A free motion, which nothing resists, has λ = 0.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -25,6 +25,7 @@ from exudyn_rotor.linear.solve.hill import Exponents, hill_motions
 
 METHODS = ("auto", "hill", "floquet")
 _ROUNDING = 100.0 * EPSILON  # of the size of a state matrix: what a real part may be off by
+_PERIODIC = 10.0  # times that of periodic equations, which have many harmonics
 REAL = 1e-9  # share of |λ|: a frequency that is rounding
 _AT_ONCE = 2_000_000  # entries of matrices that are solved at once
 
@@ -46,6 +47,8 @@ class Motions:
         The harmonics m; only 0 of constant equations.
     bounds : ndarray, shape (s,)
         By how much rounding can change a real part [1/s].
+    lost : sequence of float
+        Speeds [rad/s] at which a motion did not converge that is no decay over at once.
     """
 
     speeds: np.ndarray
@@ -53,6 +56,7 @@ class Motions:
     vectors: np.ndarray
     orders: np.ndarray
     bounds: np.ndarray
+    lost: Sequence[float] = ()
 
     @property
     def known(self) -> np.ndarray:
@@ -62,13 +66,13 @@ class Motions:
     def __getitem__(self, rows: np.ndarray | slice) -> Motions:
         """Return the motions at some of the speeds."""
         kept = (each[rows] for each in (self.speeds, self.values, self.vectors))
-        return Motions(*kept, self.orders, self.bounds[rows])
+        return Motions(*kept, self.orders, self.bounds[rows], self.lost)
 
     def columns(self, chosen: np.ndarray) -> Motions:
         """Return at each speed some of the motions, `chosen` (s, j)."""
         values = np.take_along_axis(self.values, chosen, 1)
         vectors = np.take_along_axis(self.vectors, chosen[:, None, None, :], 3)
-        return Motions(self.speeds, values, vectors, self.orders, self.bounds)
+        return replace(self, values=values, vectors=vectors)
 
     @property
     def main(self) -> np.ndarray:
@@ -91,7 +95,7 @@ class Motions:
         zero = np.where(np.isnan(self.bounds)[:, None], np.nan, np.zeros(still.shape[2]))
         values = np.hstack([zero, self.values])
         joined = np.concatenate([free, vectors], axis=3)
-        return Motions(self.speeds, values, joined, self.orders, self.bounds)
+        return replace(self, values=values, vectors=joined)
 
 
 def motions_of(
@@ -176,16 +180,15 @@ def _periodic(
             parts += [(places, part) for _, part in _constant(joined_at_rest(system))]
             continue
         made = states_of(system)
-        bound = float(_bounds(made))
+        bound = _PERIODIC * float(_bounds(made))
         if method == "floquet":
             exponents = floquet_motions(system, made)
         else:
             neutral = bound if least_stable else None
-            exponents, size, missed = hill_motions(system, made, tolerance, size, neutral)
-            if missed and method == "auto":
-                other = floquet_motions(system, made)
-                if np.nanmax(other.values.real) > max(np.nanmax(exponents.values.real), bound):
-                    exponents = other
+            exponents, size = hill_motions(system, made, tolerance, size, neutral)
+            most = np.nanmax(exponents.values.real, initial=-np.inf)
+            if method == "auto" and np.any(exponents.lost > most):  # that may be the one that grows
+                exponents = floquet_motions(system, made)
         parts.append((places, _ascending(system.speed, exponents, made, bound)))
         if told is not None:
             told(1)
@@ -205,7 +208,8 @@ def _ascending(speed: float, found: Exponents, made: States, bound: float) -> Mo
     vectors = vectors / np.where(sizes > 0.0, sizes, 1.0)
     order = np.lexsort((found.values.real, np.abs(found.values.imag)))
     given = found.values[order][None], vectors[None, :, :, order], found.orders
-    return Motions(np.array([speed]), *given, np.array([bound]))
+    lost = (speed,) if found.lost.size else ()
+    return Motions(np.array([speed]), *given, np.array([bound]), lost)
 
 
 def joined_motions(speeds: np.ndarray, parts: Sequence[tuple[np.ndarray, Motions]]) -> Motions:
@@ -219,7 +223,7 @@ def joined_motions(speeds: np.ndarray, parts: Sequence[tuple[np.ndarray, Motions
     for places, part in parts:
         values[places], bounds[places], vectors[places] = part.values, part.bounds, 0.0
         vectors[np.ix_(places, np.searchsorted(orders, part.orders))] = part.vectors
-    return Motions(speeds, values, vectors, orders, bounds)
+    return Motions(speeds, values, vectors, orders, bounds, [v for _, p in parts for v in p.lost])
 
 
 def _bounds(made: States) -> np.ndarray:

@@ -27,12 +27,11 @@ from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import Terms
-from exudyn_rotor.linear.modal.whirl import Content, Named
+from exudyn_rotor.linear.modal.whirl import Content
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
 from exudyn_rotor.linear.over import forced_over, motions_over
-from exudyn_rotor.linear.stability.stability import least_stable_of
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, storable, text_table, words
 from exudyn_rotor.solid_rotor import SolidRotor
@@ -42,7 +41,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 ZONES = {"A": 3.0, "B": 4.0, "C": 5.0, "D": np.inf}  # largest |S|, ISO 14839-3:2006
-_SENSOR, _OWN = slice(3, 6), slice(6, None)  # ports of a controller; the bearing's come first
+_SENSOR = slice(3, 6)  # ports of a controller; the bearing's come first
 
 
 @storable
@@ -87,23 +86,18 @@ class Sensitivity(Result):
         return np.nanmax(np.abs(self.values), axis=1)
 
     @property
-    def peak_frequencies(self) -> np.ndarray:
-        """Where that is [rad/s], shape (axes,)."""
-        return self.frequencies[np.nanargmax(np.abs(self.values), axis=1)]
-
-    @property
     def zones(self) -> tuple[str, ...]:
         """Zone of each axis by ISO 14839-3: 'A', 'B', 'C' or 'D'."""
         return tuple(next(z for z, most in ZONES.items() if peak <= most) for peak in self.peaks)
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns, one row for each axis; see :meth:`Result.columns`."""
-        shown = Units.of(units)
+        shown, at = Units.of(units), np.nanargmax(np.abs(self.values), axis=1)
         return {
             "axis": np.array(self.axes),
             "peak |S|": self.peaks,
             "peak [dB]": 20.0 * np.log10(self.peaks),
-            f"at [{shown.frequency}]": shown.frequencies(self.peak_frequencies),
+            f"at [{shown.frequency}]": shown.frequencies(self.frequencies[at]),
             "zone": np.array(self.zones),
         }
 
@@ -205,11 +199,15 @@ def sensitivity(
         if isinstance(element.law, ControlledSupport)
     ]
     motions = motions_over(model, [speed], held=True)
-    named = Content.of(model).named(motions)
-    growth = motions.values.real
-    if np.nanmax(growth) > motions.bounds[0]:
-        raise _unstable(named, [motion for _, motion in loops], [n for n, _ in bearings], speed)
-    own = named.inertial[np.abs(growth) > motions.bounds[0]]
+    heard, growth = Content.of(model).named(motions).inertial[0], motions.values.real[0]
+    worst = np.nanargmax(growth)
+    if growth[worst] > motions.bounds[0]:
+        raise ValueError(
+            f"supports: unstable at {speed:g} rad/s: a motion of {heard[worst]:.4g} rad/s grows by "
+            f"{growth[worst]:.4g} 1/s, and there is no sensitivity of an unstable loop; see "
+            "stability(…), change the controller"
+        )
+    own = heard[np.abs(growth) > motions.bounds[0]]
     values = np.union1d(values, own[(own > values[0]) & (own < values[-1])])
     rows = [
         _of_axis(model, *loop, axis, values, speed)
@@ -233,24 +231,6 @@ def _bearings(
         for one in each
         if isinstance(one, MagneticBearing)
     ]
-
-
-def _unstable(
-    named: Named, loops: Sequence[Terms], names: Sequence[str], speed: float
-) -> ValueError:
-    """Return the error of an unstable loop: frequency, growth, and the controller that moves most.
-
-    `loops` are the motions of the controllers of bearings of the `names`.
-    """
-    which = 0, int(least_stable_of(named.motions)[0])
-    shape = named.motions.main[0, :, which[1]]
-    moves = [np.linalg.norm([U[_OWN] @ shape for U in loop.values()]) for loop in loops]
-    return ValueError(
-        f"supports: unstable at {speed:g} rad/s: a motion of {named.inertial[which]:.4g} rad/s, in "
-        f"which most moves the controller of {names[np.argmax(moves)]!r}, grows by "
-        f"{named.motions.values.real[which]:.4g} 1/s, and there is no sensitivity of an unstable "
-        "loop; see stability(…), change the controller"
-    )
 
 
 def _of_axis(

@@ -17,7 +17,6 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.linear.modal import basis_error
-from exudyn_rotor.linear.modal.basis_error import relative_errors
 from exudyn_rotor.linear.modal.whirl import (
     FAMILIES,
     WHIRLS,
@@ -25,7 +24,6 @@ from exudyn_rotor.linear.modal.whirl import (
     damping_of,
     families,
     rounded,
-    track,
 )
 from exudyn_rotor.linear.model.build import (
     Target,
@@ -73,9 +71,9 @@ class Stability(ModelResult):
         Frequency of the motion's strongest wave seen from outside [rad/s].
     whirl_codes, nodal_diameters : ndarray of int, shape (s, k)
         As those of :class:`Campbell`; see :attr:`whirl` and :attr:`families`.
-    basis_shifts : ndarray, shape (s,), or None
-        Estimated ``λ − λ_reduced`` of the least stable motion with λ of the full model, as
-        :attr:`Campbell.basis_shifts`; NaN where the motion is not found again.
+    basis_errors : ndarray, shape (s,), or None
+        Estimated relative error of the least stable motion by the basis of a reduced rotor, as
+        :attr:`Campbell.basis_errors`; NaN where all motions are neutral.
     stiffening : str or None
         Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
     axes : {'inertial', 'rotor'}
@@ -103,38 +101,7 @@ class Stability(ModelResult):
     frequencies_inertial: np.ndarray = numbers("speeds", "modes", finite=False)
     whirl_codes: np.ndarray = numbers("speeds", "modes", dtype=int, least=0, most=len(WHIRLS) - 1)
     nodal_diameters: np.ndarray = numbers("speeds", "modes", dtype=int, least=-1)
-    basis_shifts: np.ndarray | None = numbers("speeds", dtype=complex, finite=False, optional=True)
-
-    def plot(self, ax: Axes | None = None, *, units: str = "rpm") -> Axes:
-        """Draw the growth over the spin speed, of each family and of the least stable motion.
-
-        Unstable speeds are shaded; the picture ends below the strongest decay of lateral motions,
-        which others would hide. `units` are 'rpm', 'Hz' or 'SI', rad/s.
-        """
-        shown = Units.of(units)
-        ax = plotting.axes_or_new(ax)
-        speeds = shown.speeds(self.speeds)
-        found = {family: self.growth_of(family) for family in FAMILIES}
-        moving = [growth for growth in found.values() if np.any(np.nan_to_num(growth))]
-        if moving:  # others are free or rest at all speeds
-            ax.plot(speeds, np.fmax.reduce(moving), color="0.8", lw=6.0, label="least stable")
-        for (family, growth), color in zip(found.items(), plotting.COLORS, strict=True):
-            if not np.all(np.isnan(growth)):
-                ax.plot(speeds, growth, ".-", color=color, lw=1.3, label=family)
-        low, high = ax.get_ylim()
-        lateral = np.fmin.reduce(found["lateral"], initial=0.0)
-        limits = (max(low, _SHOWN * lateral) if lateral < 0.0 else low), high
-        unstable = ~self.stable & self.known
-        ax.fill_between(
-            speeds, *limits, where=unstable, color=plotting.COLORS[1], alpha=0.2, lw=0.0
-        )
-        ax.set_ylim(limits)
-        ax.axhline(0.0, color="0.3", lw=0.8)
-        ax.set_xlabel(f"spin speed [{shown.speed}]")
-        ax.set_ylabel("largest growth [1/s]")
-        ax.grid(alpha=0.3)
-        plotting.legend_above(ax, 4)
-        return ax
+    basis_errors: np.ndarray | None = numbers("speeds", finite=False, optional=True)
 
     @property
     def whirl(self) -> np.ndarray:
@@ -145,7 +112,8 @@ class Stability(ModelResult):
     def families(self) -> np.ndarray:
         """Kind of every motion, shape as exponents.
 
-        'lateral', 'torsional', 'axial', 'disc' (two nodal diameters and more), or 'other'.
+        'lateral', 'torsional', 'axial', 'disc' (two nodal diameters and more), 'foundation', or
+        'other'.
         """
         return families(self.whirl_codes, self.nodal_diameters)
 
@@ -153,11 +121,6 @@ class Stability(ModelResult):
     def log_decrement(self) -> np.ndarray:
         """``−2π Re λ / ω`` at the inertial frequency ω; NaN for motions that do not oscillate."""
         return damping_of(self.exponents.real, self.frequencies_inertial)[1]
-
-    @property
-    def known(self) -> np.ndarray:
-        """Whether a speed has values, shape (s,)."""
-        return np.isfinite(self.growth)
 
     @property
     def _moving(self) -> np.ndarray:
@@ -168,24 +131,6 @@ class Stability(ModelResult):
     def least_stable(self) -> np.ndarray:
         """Column of the least stable motion at each speed, of those that are not neutral, (s,)."""
         return np.argmax(self._moving, axis=1)
-
-    @property
-    def neutral(self) -> np.ndarray:
-        """Whether no motion grows or decays by more than :attr:`bounds`, shape (s,)."""
-        return ~np.any(self._moving, axis=1)
-
-    @property
-    def basis_errors(self) -> np.ndarray | None:
-        """Estimated relative error of the least stable motion by the basis, shape (s,).
-
-        As :attr:`Campbell.basis_errors`; NaN where all are neutral, None where it is not known.
-        """
-        if self.basis_shifts is None:
-            return None
-        rows = np.arange(len(self.speeds)), self.least_stable
-        given = self.basis_shifts, self.exponents[rows].real, self.frequencies_inertial[rows]
-        errors = relative_errors(*(each[:, None] for each in given), self.speeds)[:, 0]
-        return np.where(self.neutral, np.nan, errors)
 
     def growth_of(self, family: str) -> np.ndarray:
         """Return the largest real part within a family [1/s], shape (s,).
@@ -214,28 +159,12 @@ class Stability(ModelResult):
         """
         checks.choice(family, "family", FAMILIES)
         told = (self.families == family) & self._moving
-        growth = np.where(told, self.exponents.real, -np.inf)
-        most = np.unravel_index(np.argmax(growth), growth.shape)
-        # the first of those that only rounding tells apart
-        largest = growth[most] - np.nan_to_num(self.bounds[most[0]])
-        row, column = np.unravel_index(np.argmax(growth >= largest), growth.shape)
-        return (int(row), int(column)) if told[row, column] else None
-
-    def _least_stable_line(self, family: str, shown: Units) -> str | None:
-        """Return what the table says of a family's least stable motion."""
-        found = self.least_stable_of(family)
-        if found is None:
+        if not np.any(told):
             return None
-        n, decrement = self.nodal_diameters[found], self.log_decrement[found]
-        parts = [
-            f"{self.exponents[found].real:.4g} 1/s at {shown.speeds(self.speeds[found[0]]):.6g} "
-            f"{shown.speed}",
-            f"{shown.frequencies(self.frequencies_inertial[found]):.5g} {shown.frequency}",
-            f"{self.whirl[found]}" + (f", n = {n}" if n >= 0 else ""),
-        ]
-        if np.isfinite(decrement):
-            parts.append(f"log decrement {decrement:.3g}")
-        return f"least stable {family} motion: " + ", ".join(parts)
+        growth = np.where(told, self.exponents.real, -np.inf)
+        largest = growth.max() - np.nanmax(self.bounds)
+        row, column = np.unravel_index(np.argmax(growth >= largest), growth.shape)
+        return int(row), int(column)
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns; `units` are those of :meth:`plot`.
@@ -243,13 +172,13 @@ class Stability(ModelResult):
         Where all motions are neutral none is the least stable: no growth, frequency NaN, '-'.
         """
         shown = Units.of(units)
-        rows, none = (np.arange(len(self.speeds)), self.least_stable), self.neutral
+        rows, none = (np.arange(len(self.speeds)), self.least_stable), ~self._moving.any(axis=1)
         heard = np.where(none, np.nan, shown.frequencies(self.frequencies_inertial[rows]))
-        growth = {f"{name} [1/s]": self.growth_of(name) for name in FAMILIES}
+        growth = np.where(none & np.isfinite(self.growth), 0.0, self.exponents[rows].real)
         return {
             f"speed [{shown.speed}]": shown.speeds(self.speeds),
-            "growth [1/s]": np.where(none & self.known, 0.0, self.exponents[rows].real),
-            **growth,
+            "growth [1/s]": growth,
+            **{f"{name} [1/s]": self.growth_of(name) for name in FAMILIES},
             f"inertial [{shown.frequency}]": heard,
             "nodal diameters": np.where(none, -1, self.nodal_diameters[rows]),
             "whirl": np.where(none, "-", self.whirl[rows]),
@@ -265,10 +194,58 @@ class Stability(ModelResult):
         all are neutral no motion is named. `units` are those of :meth:`plot`.
         """
         shown = Units.of(units)
-        verdict = np.where(self.stable, "stable", np.where(self.known, "unstable", "-"))
+        verdict = np.where(np.isfinite(self.growth), "unstable", "-")
+        verdict = np.where(self.stable, "stable", verdict)
         lines = table_lines(self.columns(units) | {"stable": verdict}, "growth [1/s]")
-        lines += filter(None, (self._least_stable_line(family, shown) for family in FAMILIES))
+        for family in FAMILIES:
+            found = self.least_stable_of(family)
+            if found is not None:
+                lines.append(f"least stable {family} motion: {self._told(found, shown)}")
         return "\n".join([*lines, *self._closing(self.basis_errors)])
+
+    def _told(self, at: tuple[int, int], shown: Units) -> str:
+        """Return a motion in words: growth, speed, frequency, whirl, log decrement."""
+        speed, n = shown.speeds(self.speeds[at[0]]), self.nodal_diameters[at]
+        parts = [
+            f"{self.exponents[at].real:.4g} 1/s at {speed:.6g} {shown.speed}",
+            f"{shown.frequencies(self.frequencies_inertial[at]):.5g} {shown.frequency}",
+            f"{self.whirl[at]}" + (f", n = {n}" if n >= 0 else ""),
+        ]
+        if np.isfinite(self.log_decrement[at]):
+            parts.append(f"log decrement {self.log_decrement[at]:.3g}")
+        return ", ".join(parts)
+
+    def plot(self, ax: Axes | None = None, *, units: str = "rpm") -> Axes:
+        """Draw the growth over the spin speed, of each family and of the least stable motion.
+
+        Unstable speeds are shaded; the picture ends below the strongest decay of lateral motions,
+        which others would hide. `units` are 'rpm', 'Hz' or 'SI', rad/s.
+        """
+        shown = Units.of(units)
+        ax = plotting.axes_or_new(ax)
+        speeds = shown.speeds(self.speeds)
+        found = {family: self.growth_of(family) for family in FAMILIES}
+        moving = [growth for growth in found.values() if np.any(np.nan_to_num(growth))]
+        if moving:  # others are free or rest at all speeds
+            ax.plot(speeds, np.fmax.reduce(moving), color="0.8", lw=6.0, label="least stable")
+        for (family, growth), color in zip(found.items(), plotting.COLORS, strict=True):
+            if not np.all(np.isnan(growth)):
+                ax.plot(speeds, growth, ".-", color=color, lw=1.3, label=family)
+        drawn = [growth for growth in found.values() if not np.all(np.isnan(growth))] or [0.0]
+        low, high = np.nanmin(drawn), np.nanmax(drawn)
+        lateral = np.fmin.reduce(found["lateral"], initial=0.0)
+        low = max(low, _SHOWN * lateral) if lateral < 0.0 else low
+        room = 0.05 * (high - low) or 1.0
+        limits = low - room, high + room
+        shade = {"where": self.growth > self.bounds, "color": plotting.COLORS[1], "alpha": 0.2}
+        ax.fill_between(speeds, *limits, lw=0.0, **shade)
+        ax.set_ylim(limits)
+        ax.axhline(0.0, color="0.3", lw=0.8)
+        ax.set_xlabel(f"spin speed [{shown.speed}]")
+        ax.set_ylabel("largest growth [1/s]")
+        ax.grid(alpha=0.3)
+        plotting.legend_above(ax, 4)
+        return ax
 
 
 def stability(
@@ -349,7 +326,8 @@ def stability(
         label="stability",
     )  # fmt: skip
     result = of_motions(model, Content.of(model), motions, accuracy)
-    _warn_of_basis(result, model, accuracy)
+    if result.basis_errors is not None:
+        _warn_of_basis(result, model, accuracy)
     return result
 
 
@@ -358,16 +336,17 @@ def of_motions(
 ) -> Stability:
     """Return the result of motions of a model, in each row the least stable motion first."""
     named = content.named(motions)
-    shifts = None
-    if basis_error.is_known(model, accuracy):
-        tracked = named.columns(track(named, model.mass_matrix)[0])
-        shifts = basis_error.shifts_over(model, tracked, held=True)
-        which = least_stable_of(tracked.motions)[:, None]
-        shifts = np.take_along_axis(shifts, which, 1)[:, 0]
+    errors = None if accuracy is None else basis_error.motion_errors(model, named, held=True)
     keys = rounded(named.inertial), -rounded(named.motions.values.real, nan=-2.0)
-    found = named.columns(np.lexsort(keys))
+    order = np.lexsort(keys)
+    found = named.columns(order)
     values, bounds = found.motions.values, found.motions.bounds
     growth = np.fmax.reduce(values.real, axis=1, initial=np.nan)
+    moving = np.abs(values.real) > bounds[:, None]
+    if errors is not None:
+        first = np.argmax(moving, axis=1)[:, None]  # the least stable one
+        errors = np.take_along_axis(np.take_along_axis(errors, order, 1), first, 1)[:, 0]
+        errors = np.where(moving.any(axis=1), errors, np.nan)
     return Stability(
         speeds=found.motions.speeds,
         exponents=values.real + 1j * np.where(np.isnan(values), np.nan, found.rotor),
@@ -377,7 +356,7 @@ def of_motions(
         frequencies_inertial=np.where(np.isnan(values), np.nan, found.inertial),
         whirl_codes=found.codes,
         nodal_diameters=found.diameters,
-        basis_shifts=shifts,
+        basis_errors=errors,
         stiffening=model.stiffening,
         axes=model.axes,
         unevenness=model.unevenness,
@@ -398,13 +377,11 @@ def least_stable_of(motions: Motions) -> np.ndarray:
     return np.argmax(rounded(np.where(moves, growth, np.nan), nan=-2.0), axis=1)
 
 
-def _warn_of_basis(result: Stability, model: LinearModel, accuracy: float | None) -> None:
+def _warn_of_basis(result: Stability, model: LinearModel, accuracy: float) -> None:
     """Warn where the basis leaves out too much for the growth of a least stable motion."""
-    errors = result.basis_errors
-    if errors is None or np.all(np.isnan(errors)):
-        return
-    row, shown = int(np.nanargmax(errors)), Units.of("rpm")
+    row, shown = int(np.argmax(np.nan_to_num(result.basis_errors))), Units.of("rpm")
     at = row, result.least_stable[row]
     heard, speed = shown.frequencies(result.frequencies_inertial[at]), result.speeds[row]
     motion = f"the least stable motion ({result.whirl[at]}, {heard:.4g} Hz)"
-    basis_error.warn(errors, f"{motion} at {shown.speeds(speed):.5g} rpm", model, accuracy)
+    what = f"{motion} at {shown.speeds(speed):.5g} rpm"
+    basis_error.warn(result.basis_errors, what, model, accuracy)

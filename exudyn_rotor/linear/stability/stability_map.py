@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from operator import itemgetter
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -120,7 +119,7 @@ class StabilityMap(Result):
         lines += self._worst_line()
         if self.basis_errors is None:
             lines.append(NOT_KNOWN)
-        elif np.nanmax(self.basis_errors, initial=0.0) > 0.0:
+        elif np.any(self.basis_errors > 0.0):
             lines.append(f"basis error up to {np.nanmax(self.basis_errors):.1e}")
         return "\n".join(lines)
 
@@ -136,32 +135,20 @@ class StabilityMap(Result):
             parts.append(f"log decrement {self.log_decrement[at]:.3g}")
         return [f"least stable: {self.families[at]} motion, " + ", ".join(parts)]
 
-    def plot(
-        self, ax: Axes | None = None, *, log_x: bool | None = None, log_y: bool | None = None
-    ) -> Axes:
+    def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the growth as a contour plot, with the limit of stability as a line.
 
-        Where one parameter has one value, as coloured points.
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-        log_x, log_y : bool, optional
-            Whether an axis is logarithmic; by default where its values are spaced so.
+        An axis is logarithmic where its values are spaced so. Where one parameter has one value,
+        the picture has coloured points.
         """
         ax = plotting.axes_or_new(ax)
-        logarithmic = [
-            _is_geometric(values) if given is None else checks.flag(given, name)
-            for values, given, name in ((self.x, log_x, "log_x"), (self.y, log_y, "log_y"))
-        ]
-        ax.set_xscale("log" if logarithmic[0] else "linear")
-        ax.set_yscale("log" if logarithmic[1] else "linear")
-        ax.set_xlabel(self.labels[0])
-        ax.set_ylabel(self.labels[1])
+        ax.set(xlabel=self.labels[0], ylabel=self.labels[1])
+        ax.set_xscale("log" if _is_geometric(self.x) else "linear")
+        ax.set_yscale("log" if _is_geometric(self.y) else "linear")
         neutral = np.where(self.stable, np.minimum(self.growth, 0.0), self.growth)
         growth = np.ma.masked_invalid(neutral).T
         largest = np.abs(growth).max() or 1.0
-        if min(self.growth.shape) == 1:  # as points, for contours need two values of each
+        if min(self.growth.shape) == 1:  # contours need two values of each
             places = np.meshgrid(self.x, self.y)
             filled = ax.scatter(*places, c=growth, cmap="RdBu_r", vmin=-largest, vmax=largest)
             ax.figure.colorbar(filled, ax=ax, label="growth [1/s]")
@@ -250,22 +237,19 @@ def stability_map(
     refused, alike = [], {}
     for at in tqdm(list(np.ndindex(*shape)), desc="stability map", disable=not progress):
         point = float(grid[0][at[0]]), float(grid[1][at[1]])
-        shown = f"({point[0]:.5g}, {point[1]:.5g})"
         try:
             model, speed = _built(build, point)
-            one = _Point(at, shown, model, speed, model.coefficients(speed))
+            one = _Point(at, model, speed, model.coefficients(speed))
         except ValueError as error:
-            refused.append((shown, error))
+            refused.append((f"({point[0]:.5g}, {point[1]:.5g})", error))
         else:
             alike.setdefault((*model.pattern, speed == 0.0), []).append(one)
     warn_of_refused(refused, shape[0] * shape[1])
     models = [points[0].model for points in alike.values()]
-    lossy = next((model for model in models if model.has_structural_damping), None)
-    if lossy is not None:
-        warn_of_structural_damping(lossy, WHAT)
+    warn_of_structural_damping(max(models, key=lambda one: one.has_structural_damping), WHAT)
     growth, inertial, decrement, errors = np.full((4, *shape), np.nan)
     stable, codes = np.zeros(shape, dtype=bool), np.full(shape, UNKNOWN, dtype=np.int64)
-    diameters, worst = np.full(shape, -1, dtype=np.int64), (0.0, "", None)
+    diameters = np.full(shape, -1, dtype=np.int64)
     for points in alike.values():
         model, content = points[0].model, Content.of(points[0].model)
         speeds = np.array([one.speed for one in points])
@@ -282,11 +266,7 @@ def stability_map(
             if one.at in judged and basis_error.is_known(one.model, accuracy):
                 alone = of_motions(one.model, content, motions[[row]], accuracy)
                 errors[one.at] = alone.basis_errors[0]
-                worst = max(worst, (np.nan_to_num(errors[one.at]), one.shown, one.model),
-                            key=itemgetter(0))  # fmt: skip
-    if worst[2] is not None:
-        basis_error.warn(worst[0], f"the least stable motion at {worst[1]}", worst[2], accuracy)
-    return StabilityMap(
+    result = StabilityMap(
         *grid,
         growth,
         stable,
@@ -297,13 +277,17 @@ def stability_map(
         names,
         basis_errors=None if np.all(np.isnan(errors)) else errors,
     )
+    if result.basis_errors is not None:
+        a, b = np.unravel_index(np.nanargmax(errors), shape)
+        worst = f"the least stable motion at ({result.x[a]:.5g}, {result.y[b]:.5g})"
+        basis_error.warn(errors, worst, models[0], accuracy)
+    return result
 
 
 class _Point(NamedTuple):
-    """A point of a map: its place, its name, its model, speed, and coefficients of supports."""
+    """A point of a map: its place, its model, speed, and coefficients of supports."""
 
     at: tuple[int, int]
-    shown: str
     model: LinearModel
     speed: float
     coefficients: Sequence

@@ -53,7 +53,7 @@ if TYPE_CHECKING:
 _SMALL = 0.1  # share of the range that a limit counts as at least
 _SPEED = "speed [rad/s]"  # how the names of parameters end that are shown in other units
 Supports = Sequence[Given] | Given
-_ROOT = 1e-8  # of the largest parameter: error of a limit
+_ROOT = 1e-7  # of the largest parameter: error of a limit
 _INNER, _TURNING = 3, 2  # parts of the interval between two samples; in axes of the rotor
 _PEAKS, _STEPS = 6, 6  # peaks that are looked at, each with so many values
 _ASIDE = 1e-4  # of the range, or half of an unstable one: where the growing motion is named
@@ -80,10 +80,10 @@ class StabilityThresholds(Result):
     unstable_at_low : bool
     label : str
         Name of the parameter with its unit.
-    basis_shifts : ndarray, shape (t,), or None
-        Estimated ``p − p_reduced`` with the limit p of the full model, to first order: the growth
-        at the limit with the shapes that the basis leaves out, over its slope. None where nothing
-        is known.
+    basis_errors : ndarray, shape (t,), or None
+        Estimated relative errors of the thresholds by the basis, of a threshold or, where that is
+        more, of a tenth of the range: the growth at the limit with the shapes that the basis leaves
+        out, over its slope. None where nothing is known.
 
     Examples
     --------
@@ -104,7 +104,7 @@ class StabilityThresholds(Result):
     high: float
     unstable_at_low: bool
     label: str = _SPEED
-    basis_shifts: np.ndarray | None = numbers("thresholds", finite=False, optional=True)
+    basis_errors: np.ndarray | None = numbers("thresholds", finite=False, optional=True)
 
     @property
     def ranges(self) -> np.ndarray:
@@ -113,17 +113,6 @@ class StabilityThresholds(Result):
         edges += self.values.tolist()
         edges += [self.high] if len(edges) % 2 else []
         return np.array(edges).reshape(-1, 2)
-
-    @property
-    def basis_errors(self) -> np.ndarray | None:
-        """Estimated relative errors of the thresholds by the basis, shape (t,).
-
-        Of a threshold or, where that is more, of a tenth of the range; None where not known.
-        """
-        if self.basis_shifts is None:
-            return None
-        least = np.maximum(np.abs(self.values), _SMALL * (self.high - self.low))
-        return np.abs(self.basis_shifts) / least
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns; `units` are those of :meth:`table`."""
@@ -183,33 +172,49 @@ class StabilityThresholds(Result):
 class _Margin:
     """By how much the least stable motion grows beyond rounding [1/s], over a parameter.
 
-    Of motions that are not neutral; less the bound where all are. Values are computed once, NaN
-    where there are no coefficients.
+    As many motions as rest at every sample, like a free spin, do not count. Values are computed
+    once, NaN where there are no coefficients.
     """
 
     def __init__(
-        self, model_at: Callable[[float], tuple[LinearModel, float]], tolerance: float
+        self,
+        model_at: Callable[[float], tuple[LinearModel, float]],
+        tolerance: float,
+        is_speed: bool,
     ) -> None:
-        self.model_at, self.tolerance = model_at, tolerance
+        self.model_at, self.tolerance, self.is_speed = model_at, tolerance, is_speed
         self.known: dict[float, float] = {}
+        self.resting: int | None = None
 
     def at(self, points: Sequence[float]) -> None:
         """Compute the margin at points, with one warning where there are no coefficients."""
+        found: dict[float, tuple[np.ndarray, float]] = {}
         refused = []
-        for point in points:
+        if self.is_speed:
+            motions = self.motions(self.model_at(points[0])[0], *points)
+            rows = zip(motions.values.real, motions.bounds, strict=True)
+            found.update(zip(points, rows, strict=True))
+        for point in () if self.is_speed else points:
             try:
-                self.known[point] = self.of(*self.model_at(point))[0]
+                motions = self.motions(*self.model_at(point))
+                found[point] = motions.values.real[0], motions.bounds[0]
             except _NONE as error:
-                self.known[point] = np.nan
+                found[point] = np.zeros(0), np.nan
                 refused.append((f"{point:.5g}", error))
         warn_of_refused(refused, len(points))
+        if self.resting is None:
+            rest = [np.sum(np.abs(growth) <= b) for growth, b in found.values() if np.isfinite(b)]
+            self.resting = int(min(rest))
+        for point, (growth, bound) in found.items():
+            self.known[point] = self.of(growth, bound)
 
-    def of(self, model: LinearModel, *speeds: float) -> list[float]:
-        """Return the margin of a model at speeds."""
-        found = self.motions(model, *speeds)
-        moves = np.abs(found.values.real) > found.bounds[:, None]
-        growth = np.where(moves, found.values.real, -np.inf).max(axis=1, initial=-np.inf)
-        return (np.where(np.any(moves, axis=1), growth, 0.0) - found.bounds).tolist()
+    def of(self, growth: np.ndarray, bound: float) -> float:
+        """Return the margin of the growth of all motions, (k,)."""
+        if np.isnan(bound):
+            return np.nan
+        counted = growth[np.argsort(np.abs(growth))[self.resting :]]
+        counted = np.where(np.abs(counted) <= bound, 0.0, counted)[~np.isnan(counted)]
+        return float(counted.max() if counted.size else 0.0) - bound
 
     def motions(self, model: LinearModel, *speeds: float) -> Motions:
         """Return the motions of a model at speeds, of which the least stable one is right."""
@@ -259,17 +264,8 @@ class _Margin:
         return found
 
 
-class _MarginOverSpeed(_Margin):
-    """The margin of one model over the spin speed."""
-
-    def at(self, points: Sequence[float]) -> None:
-        """Compute the margin at points, with one warning where there are no coefficients."""
-        model = self.model_at(points[0])[0]
-        self.known.update(zip(map(float, points), self.of(model, *points), strict=True))
-
-
 def stability_threshold(
-    target: Target | Callable[[float], Target],
+    target: Target,
     low: float,
     high: float,
     *,
@@ -285,7 +281,7 @@ def stability_threshold(
 ) -> StabilityThresholds:
     """Find the limits of stability over the spin speed or another parameter.
 
-    Each is found to 1e-8 of the largest parameter, with the motion that grows there. The range is
+    Each is found to 1e-7 of the largest parameter, with the motion that grows there. The range is
     looked at in `samples` intervals with three steps each (two of an uneven rotor, whose equations
     may be periodic, which takes a hundred times longer), and closer where the growth has a peak
     near zero. A range that is narrower than a step can be missed, as one of a parametric resonance
@@ -293,10 +289,9 @@ def stability_threshold(
 
     Parameters
     ----------
-    target : as in :func:`stability`, or callable
-        A callable takes the parameter and returns such a target.
+    target : as in :func:`stability`
     low, high : float
-        Range of the parameter; spin speeds [rad/s] unless `target` or `supports` are callable.
+        Range of the parameter; spin speeds [rad/s] unless `supports` is callable.
     supports : sequence of Support or bearings, or callable, optional
         Of a rotor; a callable takes the parameter and returns them.
     speed : float, optional
@@ -341,7 +336,7 @@ def stability_threshold(
     high = checks.number(high, "high", above=low)
     samples = checks.count(samples, "samples", least=2)
     check_options(tolerance, accuracy)
-    is_speed = not callable(target) and not callable(supports)
+    is_speed = not callable(supports)
     if label is None:
         label = "speed [rad/s]" if is_speed else "parameter"
     checks.label(label, "label")
@@ -351,24 +346,19 @@ def stability_threshold(
         if speed is not None:
             raise ValueError("speed: is the parameter, from low to high; leave it out")
         model = _checked_model(target, high, supports=supports, **made)
-        margin, kinks = (
-            _MarginOverSpeed(lambda point: (model, point), tolerance),
-            model.table_speeds,
-        )
+        margin, kinks = _Margin(lambda point: (model, point), tolerance, True), model.table_speeds
     else:
         if speed is None:
             raise ValueError(
-                "speed: needs the spin speed [rad/s], since target or supports, a function, says "
-                "that it is not the parameter"
+                "speed: needs the spin speed [rad/s], since supports, a function, says that it is "
+                "not the parameter"
             )
         speed = checks.number(speed, "speed", "rad/s", least=0.0)
 
         def model_at(point: float) -> tuple[LinearModel, float]:
-            chosen = target(point) if callable(target) else target
-            held = supports(point) if callable(supports) else supports
-            return linear_model(chosen, supports=held, **made), speed
+            return linear_model(target, supports=supports(point), **made), speed
 
-        margin, kinks = _Margin(model_at, tolerance), np.zeros(0)
+        margin, kinks = _Margin(model_at, tolerance, False), np.zeros(0)
         model = model_at(0.5 * (low + high))[0]
     parts = _INNER if model.axes == "inertial" else _TURNING
     points = np.linspace(low, high, parts * samples + 1)
@@ -388,8 +378,15 @@ def _found(
     found = margin.changes(_ROOT * max(abs(low), abs(high)))
     limits = [_limit(margin, found, place, high - low, accuracy) for place in range(len(found))]
     heard, codes, diameters, shifts = zip(*limits, strict=True) if limits else ((),) * 4
-    result = StabilityThresholds(
-        values=[value for value, _ in found],
+    values, errors = np.array([value for value, _ in found]), None
+    if accuracy is not None and None not in shifts:
+        errors = np.array(shifts) / np.maximum(np.abs(values), _SMALL * (high - low))
+    if found and errors is not None:
+        worst = float(values[np.argmax(errors)])
+        what = f"the limit of stability at {worst:.5g}, {label},"
+        basis_error.warn(errors, what, margin.model_at(worst)[0], accuracy)
+    return StabilityThresholds(
+        values=values,
         onset=np.array([onset for _, onset in found], dtype=bool),
         frequencies_inertial=np.array(heard),
         whirl_codes=np.array(codes, dtype=np.int64),
@@ -398,13 +395,8 @@ def _found(
         high=high,
         unstable_at_low=bool(margins[0] > 0.0),
         label=label,
-        basis_shifts=None if accuracy is None or None in shifts else np.array(shifts),
+        basis_errors=errors,
     )
-    if found and result.basis_shifts is not None:
-        worst = float(result.values[np.argmax(result.basis_errors)])
-        what = f"the limit of stability at {worst:.5g}, {label},"
-        basis_error.warn(result.basis_errors, what, margin.model_at(worst)[0], accuracy)
-    return result
 
 
 def _limit(
@@ -416,7 +408,7 @@ def _limit(
 ) -> tuple[float, int, int, float | None]:
     """Return frequency, whirl and n of what grows within the unstable range beside a limit.
 
-    And how far the limit moves by what the basis lacks; None where that is not known.
+    And by how much the limit moves by what the basis lacks; None where that is not known.
     """
     ends, (value, onset) = [-np.inf, *(value for value, _ in found), np.inf], found[place]
     width = ends[place + 2 if onset else place] - value
@@ -424,10 +416,12 @@ def _limit(
     model, speed = margin.model_at(value + aside)
     named = Content.of(model).named(margin.motions(model, speed))
     which = 0, int(least_stable_of(named.motions)[0])
-    slope, shift = named.motions.values[which].real / aside, None
-    if basis_error.is_known(model, accuracy):
+    shift = 0.0 if basis_error.is_known(model, accuracy) else None
+    if shift is not None and not model.is_full:
         there, speed = margin.model_at(value)
-        shift = 0.0 if model.is_full else float(-margin.of(there.richer, speed)[0] / slope)
+        richer = margin.motions(there.richer, speed)
+        slope = named.motions.values[which].real / aside
+        shift = abs(margin.of(richer.values.real[0], richer.bounds[0]) / slope)
     return named.inertial[which], named.codes[which], named.diameters[which], shift
 
 
@@ -445,7 +439,7 @@ def unstable_ranges(
     """Return the unstable speed ranges, shape (r, 2) [rad/s].
 
     The search is that of :func:`stability_threshold` with `speeds` as samples; limits have an error
-    of 1e-8 of the highest speed, and a range narrower than the spacing can be missed. A range that
+    of 1e-7 of the highest speed, and a range narrower than the spacing can be missed. A range that
     is open at the first or last speed ends there. For the other arguments see
     :func:`stability_threshold`.
 
@@ -467,7 +461,7 @@ def unstable_ranges(
     model = _checked_model(
         target, values[-1], supports=supports, body=body, stiffening=stiffening, axes=axes
     )
-    margin = _MarginOverSpeed(lambda speed: (model, speed), tolerance)
+    margin = _Margin(lambda speed: (model, speed), tolerance, True)
     return _found(margin, values.tolist(), "speed [rad/s]", accuracy).ranges
 
 

@@ -1,61 +1,180 @@
-"""Adding a full body to an Exudyn ``mbs``: nodes, equations, ties, and a body for markers.
+"""Adding a full body to an Exudyn ``mbs``: laid out and checked, then nodes, equations and ties.
 
 The matrices are sparse, with user functions for what varies. Of a mass matrix that varies, one row
 and column do, that of the spin; they stand in an object of their own, so that the rotor's matrices
 are handed over once.
+
+Exudyn factorises the Jacobian of an implicit step by Eigen's ``SparseLU``, ordered by columns
+(COLAMD), which fills it several times as much as nested dissection and takes no notice of symmetry.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
 
 import exudyn
 import numpy as np
 import scipy.sparse as sp
 from exudyn.graphics import FromPointsAndTrigs
 from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
+from numpy.typing import ArrayLike
 
+from exudyn_rotor import checks
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.full.ties import Ties, add_ties, container, no_jacobian
-from exudyn_rotor.multibody.rotor.frame import Layout, LockedForce, add_constraints, driving_force
-from exudyn_rotor.multibody.rotor.plan import Plan
-from exudyn_rotor.multibody.rotor.rotor_items import (
-    add_interface_markers,
-    add_weight,
-    flexible_body,
-)
+from exudyn_rotor.multibody.rotor.frame import Layout, LockedForce
+from exudyn_rotor.multibody.rotor.plan import Plan, Setup, add_nodes, laid_out
+from exudyn_rotor.multibody.rotor.rotor_items import finished, flexible_body
+from exudyn_rotor.prestress.static_solution import relief_rotation
+from exudyn_rotor.reduction.selection import NEGLIGIBLE
+from exudyn_rotor.solid.model import clamped_coordinates
 from exudyn_rotor.solid.surface import flat_triangles
-from exudyn_rotor.theory.full_motion import FullMotion, principal
+from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.solvers.factor import TooLittleMemoryError, available_memory, factor_entries
+from exudyn_rotor.theory.formulation import Formulation
+from exudyn_rotor.theory.full_motion import (
+    Conditions,
+    FullMotion,
+    conditions,
+    full_stiffening,
+    principal,
+)
+from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.stiffening import NO_PRESTRESS
+
+# bytes for every entry of the stiffness matrix, which Exudyn holds many times, and for every
+# estimated entry of a factor; peaks of runs of a disc on a shaft with 10,000 to 70,000 coordinates
+_PER_ENTRY, _PER_FACTOR_ENTRY = 300.0, 22.0
+
+
+def check_memory(rotor: SolidRotor) -> None:
+    """Raise TooLittleMemoryError where an implicit run with a full body would not fit."""
+    size, available = 3 * rotor.node_count, available_memory()
+    needed = _PER_ENTRY * rotor.stiffness.nnz + _PER_FACTOR_ENTRY * factor_entries(size)
+    if needed > available:
+        raise TooLittleMemoryError(
+            f"rotor: a full body with {size} displacements needs about {needed / 1e9:.2g} GB in a "
+            f"step of Exudyn's sparse solver, and {available / 1e9:.2g} GB of memory are "
+            "available; add the reduced rotor, rotor.reduce(…), or use a coarser mesh"
+        )
+
+
+_ROUNDING = 1e-12  # of the accelerations that balance a load, for one of 1 rad/s²
+_BROKEN = 1e-9  # share of a displacement that a condition may find in it
+
+
+@dataclass(frozen=True, eq=False)
+class NodalFields:
+    """What stands for the modes in a full body: the displacements of all nodes."""
+
+    origin: np.ndarray  # (3,) Of the frame, mesh coordinates [m]
+    invariants: Invariants  # sparse, about the origin, without what the conditions take up
+    source: SolidRotor
+    conditions: Conditions
+
+
+def make_full_plan(rotor: SolidRotor, setup: Setup) -> Plan:
+    """Check what needs the model, and lay out the equations.
+
+    `rotor` carries its prestress where ``setup.stiffening`` is 'full'.
+    """
+    if setup.mass_damping or setup.stiffness_damping:
+        rotor = rotor.with_damping(mass=setup.mass_damping, stiffness=setup.stiffness_damping)
+    _check_possible(rotor, setup.formulation)
+    origin = rotor.center_of_mass
+    if not setup.formulation.translation_count:
+        origin = rotor.axis.project(origin)
+    carried, turn = rotor.carried_prestress, None
+    whole = _invariants(rotor, origin)
+    if setup.stiffening != "none" and getattr(carried, "by_loads", None) is not None:
+        whole = replace(whole, K0=carried.by_loads).loaded
+    if setup.stiffening == "full":
+        if carried is None:
+            raise ValueError(NO_PRESTRESS)
+        turn = relief_rotation(rotor)
+        turn = np.where(np.abs(turn) > _ROUNDING, turn, 0.0)
+        whole = replace(whole, K2=carried.per_square, K4=carried.per_fourth_power)
+    second = full_stiffening(whole, setup.stiffening, turn)
+    held = conditions(whole, setup.formulation, rotor.grounded, NEGLIGIBLE)
+    inv = replace(held.invariants, K2=None, K4=None)
+    fields = NodalFields(checks.read_only(origin), inv, rotor, held)
+    start = partial(_start, held=held)
+    return laid_out(setup, fields, partial(FullMotion, inv), second, start)
+
+
+def _invariants(rotor: SolidRotor, origin: np.ndarray) -> Invariants:
+    """Return the invariants of nodal displacements, of which clamped ones take no part.
+
+    They keep their springs and masses, without load or coupling: else sudden loads would throw the
+    springs, and Newton's tolerance be a share of their forces.
+    """
+    clamped = clamped_coordinates(rotor.stiffness).astype(float)
+    basis = sp.csr_array(sp.diags_array(1.0 - clamped))
+    matrices = (rotor.mass, rotor.stiffness, rotor.damping)
+    moving = Invariants.of(rotor.nodes - origin, *matrices, basis, rotor.axis.direction)
+    M, K = (
+        sp.csr_array(one + sp.diags_array(clamped * whole.diagonal()))
+        for one, whole in ((moving.M, rotor.mass), (moving.K, rotor.stiffness))
+    )
+    return replace(moving, M=M, K=K)
+
+
+def _check_possible(rotor: SolidRotor, formulation: Formulation) -> None:
+    if rotor.mass_damping:  # not sparse for a rotor that moves freely
+        raise ValueError(
+            "mass_damping: a full body that rigid motions are free in does not take damping in "
+            "proportion to its mass; reduce the rotor, rotor.reduce(…), or give stiffness damping"
+        )
+    if rotor.grounded and (formulation.translation_count or formulation.has_spin):
+        raise ValueError(
+            "the stiffness matrix holds this rotor in its own frame (grounded), and a frame "
+            "without mass cannot move freely: use translation='none' and a prescribed spin"
+        )
+    across = rotor.nodes - rotor.axis.project(rotor.nodes)
+    if formulation.has_spin and not np.any(rotor.mass[::3, ::3] @ across):
+        raise ValueError(
+            "the rotor has no moment of inertia about its axis, so its spin cannot be free: "
+            "prescribe the spin, or give the rotor mass off the axis"
+        )
+
+
+def _start(values: ArrayLike | None, name: str, held: Conditions) -> np.ndarray:
+    """Return the nodal start values (3n,), which keep the conditions."""
+    size = held.invariants.size
+    if values is None:
+        return np.zeros(size)
+    described = f"{name} (of a full body: the displacements of all nodes, or their rates)"
+    shape = (size // 3, 3) if np.ndim(values) == 2 else (size,)
+    start = checks.array(values, described, shape=shape).ravel()
+    moved = np.abs(held.rows @ start)
+    allowed = _BROKEN * np.abs(held.rows) @ np.abs(start)
+    if np.any(moved > allowed):
+        raise ValueError(
+            f"{name}: the displacements hold a mean motion of {moved.max():.3g} that the frame "
+            "describes already (mean translation, or mean rotation about the axis); subtract it, "
+            "and give it by position, initial_velocity, initial_angle or initial_speed"
+        )
+    return start
 
 
 def add_full(mbs: exudyn.MainSystem, plan: Plan) -> FullRotorBody:
     """Add the frame's node, that of the displacements, the equations, ties and markers."""
-    rigid, fields = plan.add_nodes(mbs)
+    rigid, fields = add_nodes(mbs, plan)
     motion = plan.motion
     ties, weight = _frame_ties(plan)
-    tied, ties_object = add_ties(mbs, fields, ties, motion.invariants, plan.start)
-    item = flexible_body(plan, [rigid, tied], weight, name=plan.setup.name or "")
-    marker_body = mbs.AddObject(item)
-    by_mass = plan.setup.locking == "mass"
-    guide = driving_force(plan.locks, plan.layout.lock_mass) if by_mass else None
-    item = sparse_object(
-        motion, plan.layout, [rigid, fields], guide, surface_drawing(plan, rigid, fields)
-    )
-    objects = {"physics": mbs.AddObject(item), "marker_body": marker_body}
+    tied, ties_object = add_ties(mbs, fields, ties, plan)
+    marker_body = mbs.AddObject(flexible_body(plan, [rigid, tied], weight, name=plan.name or ""))
+    objects = {
+        "physics": mbs.AddObject(_equations(plan, [rigid, fields])),
+        "marker_body": marker_body,
+    }
     if motion.has_varying_inertia:
         coupling = spin_coupling_object(motion, plan.layout, [rigid, fields])
         objects["spin coupling"] = mbs.AddObject(coupling)
-    body = FullRotorBody(
-        mbs,
-        plan,
-        nodes={"rigid": rigid, "fields": fields},
-        objects=objects,
-        constraints={} if by_mass else add_constraints(mbs, plan.locks, rigid),
-        gravity_load=add_weight(mbs, marker_body, plan.marker_body_gravity),
-        ties=ties_object,
-    )
-    add_interface_markers(body)
-    return body
+    nodes = {"rigid": rigid, "fields": fields}
+    return finished(FullRotorBody, mbs, plan, nodes=nodes, objects=objects, ties=ties_object)
 
 
 def _frame_ties(plan: Plan) -> tuple[Ties, np.ndarray]:
@@ -66,7 +185,7 @@ def _frame_ties(plan: Plan) -> tuple[Ties, np.ndarray]:
     motion, held = plan.motion, plan.selection.conditions
     inv = motion.invariants
     free = np.zeros((3, 0))
-    if np.any(plan.marker_body_gravity):
+    if np.any(plan.gravity - motion.gravity):
         count = 3 - held.held.shape[1]
         free = np.linalg.svd(np.eye(3) - held.held @ held.held.T)[0][:, :count]
     rows, stiffness = free.T @ inv.S / inv.mass, np.zeros(free.shape[1])
@@ -76,7 +195,7 @@ def _frame_ties(plan: Plan) -> tuple[Ties, np.ndarray]:
         stiffness = np.append(stiffness, motion.formulation.spin.speed**2 * values)
     local = sp.csr_array((0 if len(rows) else 1, inv.size))  # the flexible body needs a coordinate
     ties = Ties(local, rows, held.rows, np.diag(stiffness) if len(rows) else None)
-    weight = np.zeros((3, ties.count))
+    weight = np.zeros((3, ties.rows.shape[0]))
     weight[:, : free.shape[1]] = inv.mass * free
     return ties, weight
 
@@ -92,7 +211,7 @@ def surface_drawing(
 
     Displacements are drawn with the factor ``visualizationSettings.bodies.deformationScaleFactor``.
     """
-    rotor, color = plan.selection.source, list(plan.setup.color)
+    rotor, color = plan.selection.source, list(plan.color)
     if not len(rotor.triangles):
         return None
     triangles = flat_triangles(rotor.triangles)
@@ -108,17 +227,9 @@ def surface_drawing(
     return drawn
 
 
-def sparse_object(
-    motion: FullMotion,
-    layout: Layout,
-    nodes: list,
-    guide: LockedForce | None,
-    graphics: Callable | None,
-) -> ObjectGenericODE2:
-    """Return the object with the constant matrices, and the forces that vary.
-
-    `guide` drives locked coordinates; `graphics` draws the rotor.
-    """
+def _equations(plan: Plan, nodes: list) -> ObjectGenericODE2:
+    """Return the object with the constant matrices, the forces that vary, and the drawing."""
+    motion, layout = plan.motion, plan.layout
     none = np.zeros(layout.size)
     locks = (layout.lock_mass, none, none)
     mass, damping, stiffness = (
@@ -128,13 +239,12 @@ def sparse_object(
     force = np.zeros(layout.size)
     force[layout.unknowns] = motion.constant_force()
     functions = {"jacobianUserFunction": no_jacobian(layout.size)}
-    if motion.has_varying_forces or guide is not None:
-        functions["forceUserFunction"] = _forces(motion, layout, guide)
+    if motion.has_varying_forces or plan.guide is not None:
+        functions["forceUserFunction"] = _forces(motion, layout, plan.guide)
     if motion.has_varying_forces and not motion.formulation.is_constant_speed:
         functions["jacobianUserFunction"] = _jacobian(motion, layout)
-    drawing = {"show": graphics is not None}
-    if graphics is not None:
-        drawing["graphicsDataUserFunction"] = graphics
+    graphics = surface_drawing(plan, *nodes)
+    drawing = {} if graphics is None else {"graphicsDataUserFunction": graphics}
     return ObjectGenericODE2(
         nodeNumbers=nodes,
         massMatrix=mass,
@@ -142,7 +252,7 @@ def sparse_object(
         stiffnessMatrix=stiffness,
         forceVector=force,
         **functions,
-        visualization=VObjectGenericODE2(**drawing),
+        visualization=VObjectGenericODE2(show=graphics is not None, **drawing),
     )
 
 

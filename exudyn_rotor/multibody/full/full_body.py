@@ -12,9 +12,7 @@ from exudyn.itemInterface import SensorSuperElement
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.full.ties import Ties, add_ties
-from exudyn_rotor.multibody.rotor import sensors
-from exudyn_rotor.multibody.rotor.record import Record
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, SceneBody
+from exudyn_rotor.multibody.rotor.rotor_body import Record, RotorBody, SceneBody, native_settings
 from exudyn_rotor.multibody.rotor.rotor_items import (
     Carrier,
     append_nodes,
@@ -24,7 +22,7 @@ from exudyn_rotor.multibody.rotor.rotor_items import (
 from exudyn_rotor.solid.rotor import Interface
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class FullRotorBody(SceneBody):
     """A full fixed-axis rotor inside an ``mbs``; :func:`exudyn_rotor.add_rotor` makes it.
 
@@ -58,7 +56,7 @@ class FullRotorBody(SceneBody):
     True
     """
 
-    ties: exudyn.ObjectIndex | None = None
+    ties: exudyn.ObjectIndex
     carriers: dict = field(default_factory=dict, init=False, repr=False)
 
     @property
@@ -66,13 +64,9 @@ class FullRotorBody(SceneBody):
         """Number of nodes of the mesh."""
         return self.selection.source.node_count
 
-    @property
-    def _size_in_words(self) -> str:
-        return f"{self.node_count} nodes"
-
-    def _report_of_coordinates(self) -> list[str]:
+    def _coordinates_in_words(self) -> tuple[str, list[str]]:
         held = len(self.selection.conditions.rows)
-        return [
+        return f"{self.node_count} nodes", [
             f"  nodes          {self.node_count}, {3 * self.node_count} displacements",
             f"  conditions     {held} of the frame, in mass matrix and stiffness",
         ]
@@ -87,6 +81,7 @@ class FullRotorBody(SceneBody):
         of : exudyn.ConfigurationType or Record
             Shape (n, 3) of a configuration, (s, n, 3) of what :meth:`recorded` returns.
         """
+        checks.instance(of, "of", (exudyn.ConfigurationType, Record))
         if isinstance(of, Record):
             fields = self.layout.unknowns[self.motion.modes]
             return of.q[:, fields].reshape(len(of.q), -1, 3)
@@ -109,15 +104,15 @@ class FullRotorBody(SceneBody):
         ValueError
             For a rotor without elements.
         """
-        recover = self.selection.source.stress_recovery
-        if recover is None:
+        elements = self.selection.source.elements
+        if elements is None:
             raise ValueError(
                 f"stress: rotor {self.name!r} has no elements that it could be computed with; make "
                 "it with SolidRotor.from_ngsolve"
             )
         moved = self.displacement(of)
         columns = moved.reshape(-1, 3 * self.node_count).T
-        return np.moveaxis(recover(columns), -1, 0).reshape(*moved.shape[:-1], 6)
+        return np.moveaxis(elements.nodal_stress(columns), -1, 0).reshape(*moved.shape[:-1], 6)
 
     def interface_carrier(self, interface: str) -> Carrier:
         """Return what moves with the mean motion of an interface; there is one for each."""
@@ -134,13 +129,13 @@ class FullRotorBody(SceneBody):
 
     def _tied(self, interface: Interface) -> Carrier:
         """Add a flexible body whose six coordinates are tied to the nodes of an interface."""
-        inv, size = self.motion.invariants, self.motion.invariants.size
+        size = self.motion.invariants.size
         rows, none = sp.csr_array(interface.mean_motion(size // 3)), np.zeros((0, size))
         ties = Ties(rows, none, none)
-        tied, _ = add_ties(self.mbs, self.nodes["fields"], ties, inv, self.plan.start)
+        tied, _ = add_ties(self.mbs, self.nodes["fields"], ties, self)
         nodes = self.nodes["rigid"], tied
         return Carrier(
-            self.mbs.AddObject(flexible_body(self.plan, nodes, np.zeros((3, 6)))),
+            self.mbs.AddObject(flexible_body(self, nodes, np.zeros((3, 6)))),
             self.frame.points(interface.reference),
             np.kron(np.eye(2), self.frame.B),
             interface.radius,
@@ -148,17 +143,17 @@ class FullRotorBody(SceneBody):
         )
 
     def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
-        """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``."""
+        """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``.
+
+        It shows no stress, which :meth:`stress` gives.
+        """
         self.check_present()
         checks.count(node, "node", most=self.node_count - 1)
-        settings = sensors.settings_at_mesh_node(self, output, options)
+        settings = native_settings(self, output, options)
         point = self._nodes_carrier([node], "position")
         (number,) = append_nodes(self.mbs, point.body, *point.virtual_nodes("position"))
-        return self.mbs.AddSensor(
-            SensorSuperElement(
-                bodyNumber=point.body, meshNodeNumber=number, outputVariableType=output, **settings
-            )
-        )
+        item = SensorSuperElement(bodyNumber=point.body, meshNodeNumber=number, **settings)
+        return self.mbs.AddSensor(item)
 
 
 def reduced_body(body: object, how: str = "add_rotor returned it") -> RotorBody:

@@ -23,14 +23,15 @@ more than 130 s without the one, and of more than 60 s without the other).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 
 import exudyn
 import numpy as np
 import scipy.sparse as sp
 from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 
-from exudyn_rotor.multibody.rotor.plan import generic_node
+from exudyn_rotor.multibody.rotor.plan import Plan, generic_node
 from exudyn_rotor.theory.invariants import Invariants
 
 _SCALE = 1e-3  # of rows over mass matrix
@@ -39,58 +40,27 @@ RATE = 100.0  # γ [rad/s]: how fast z comes back to R c after rounding
 
 @dataclass(frozen=True, eq=False)
 class Ties:
-    """Rows of mean motions over the nodal displacements of a rotor.
+    """Rows of mean motions over the nodal displacements of a rotor."""
 
-    Attributes
-    ----------
-    local : scipy.sparse.csr_array, shape (a, 3n)
-        Over few nodes; the first coordinates z.
-    whole : ndarray, shape (b, 3n)
-        Over all nodes; the other coordinates z.
-    held : ndarray, shape (c, 3n)
-        Over all nodes, of motions that are zero.
-    stiffness : ndarray, shape (a + b, a + b), optional
-        Acts on z; none by default.
-    """
+    local: sp.csr_array  # (a, 3n) Over few nodes; the first coordinates z
+    whole: np.ndarray  # (b, 3n) Over all nodes; the other coordinates z
+    held: np.ndarray  # (c, 3n) Over all nodes, of motions that are zero
+    stiffness: np.ndarray | None = None  # (a + b, a + b) Acts on z
 
-    local: sp.csr_array
-    whole: np.ndarray
-    held: np.ndarray
-    stiffness: np.ndarray | None = None
-    rows: sp.csr_array = field(init=False)
-
-    def __post_init__(self) -> None:
-        rows = sp.vstack([self.local, sp.csr_array(self.whole)], format="csr")
-        object.__setattr__(self, "rows", rows)
-
-    @property
-    def count(self) -> int:
-        """Number of coordinates z."""
-        return self.rows.shape[0]
+    @cached_property
+    def rows(self) -> sp.csr_array:
+        """Rows R (z, 3n) of the coordinates z."""
+        return sp.vstack([self.local, sp.csr_array(self.whole)], format="csr")
 
     def matrix(self, invariants: Invariants) -> sp.csr_array:
         """Return T on (c, z, μ), symmetric, in the size of the mass matrix."""
-        width, z = self.rows.shape[1], self.count
-        held = sp.csr_array(self.held)
-        select = sp.eye_array(z, format="csr")
-        block = sp.vstack(
-            [
-                sp.hstack([-self.rows, select]),
-                sp.hstack([-held, sp.csr_array((len(self.held), z))]),
-            ],
-            format="csr",
-        )
-        block = self._mix() @ sp.diags_array(self._scale(invariants)) @ block
-        square = (width + z, width + z)
-        rest = (block.shape[0], block.shape[0])
-        return sp.csr_array(
-            sp.block_array([[sp.csr_array(square), block.T], [block, sp.csr_array(rest)]])
-        )
-
-    def _scale(self, invariants: Invariants) -> np.ndarray:
-        """Return the factor of each row that makes it small beside the mass matrix [kg]."""
-        sums = np.r_[np.asarray(abs(self.rows).sum(axis=1)).ravel(), np.abs(self.held).sum(axis=1)]
-        return _SCALE * invariants.mass / np.where(sums > 0.0, sums, 1.0)
+        held, z = sp.csr_array(self.held), self.rows.shape[0]
+        rows = sp.vstack([self.rows, held], format="csr")
+        select = sp.eye_array(rows.shape[0], z)
+        sums = np.ravel(abs(rows).sum(axis=1))
+        small = _SCALE * invariants.mass / np.where(sums > 0.0, sums, 1.0)
+        block = self._mix() @ sp.diags_array(small) @ sp.hstack([-rows, select])
+        return sp.csr_array(sp.block_array([[None, block.T], [block, None]]))
 
     def _mix(self) -> sp.csr_array:
         """Return the orthogonal matrix that mixes the rows over all nodes."""
@@ -104,17 +74,14 @@ def add_ties(
     mbs: exudyn.MainSystem,
     fields: exudyn.NodeIndex,
     ties: Ties,
-    invariants: Invariants,
-    start: tuple[np.ndarray, np.ndarray],
+    plan: Plan,
 ) -> tuple[exudyn.NodeIndex, exudyn.ObjectIndex]:
-    """Add the coordinates z and the ties to the node of the displacements; return their node.
-
-    `start` holds displacements and velocities (3n,) at the start.
-    """
-    tied = mbs.AddNode(generic_node(*(ties.rows @ values for values in start)))
-    T = ties.matrix(invariants)
-    width, size = invariants.size, T.shape[0]
-    multipliers = generic_node(*np.zeros((2, size - width - ties.count)))
+    """Add the coordinates z and the ties to the node of the displacements; return their node."""
+    start = (ties.rows @ plan.modal_coordinates, ties.rows @ plan.modal_velocities)
+    tied = mbs.AddNode(generic_node(*start))
+    T = ties.matrix(plan.motion.invariants)
+    width, size = plan.motion.invariants.size, T.shape[0]
+    multipliers = generic_node(*np.zeros((2, size - width - ties.rows.shape[0])))
     stiffness = RATE**2 * T
     if ties.stiffness is not None:
         entries = sp.coo_array(ties.stiffness)

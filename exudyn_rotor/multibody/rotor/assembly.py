@@ -14,8 +14,7 @@ Before a scene is assembled:
   Exudyn's body, which are modes here, so the three nodes take the offset.
 - Where the axes of the flexible body are not those of the mesh, rigid markers get the latter.
 - What a script attaches to rigid and position markers at the node of the frame is pointed at
-  markers that move as the node of Exudyn's body ; see
-  :func:`mean_motion`.
+  markers that move as the node of Exudyn's body; see :func:`mean_motion`.
 
 Afterwards one warning names what a rotor cannot carry.
 """
@@ -23,13 +22,16 @@ Afterwards one warning names what a rotor cannot carry.
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 
 import exudyn
 import numpy as np
+from exudyn.itemInterface import SensorUserFunction
 
 from exudyn_rotor.multibody.rotor.connections import (
     NODE_MARKERS,
     ConnectionWarning,
+    attached,
     lost_connections,
 )
 from exudyn_rotor.multibody.rotor.rotor_items import (
@@ -37,25 +39,68 @@ from exudyn_rotor.multibody.rotor.rotor_items import (
     RotorItems,
     append_nodes,
     known_rotors,
-    virtual_nodes,
+    marker_carrier,
+    marker_interface,
+    shows_rotation,
 )
-from exudyn_rotor.solid.rotor import rotation_moments
 from exudyn_rotor.theory.axis import skew
 
 _NEEDED = {"SuperElementPosition": 1, "SuperElementRigid": 3}  # nodes of a condensed marker
+_DENSE = (exudyn.LinearSolverType.EXUdense, exudyn.LinearSolverType.EigenDense)
+_DENSE_MOST = 400  # coordinates whose dense factor costs less than a tenth of a second
 _UNIT_SUM = 1e-12  # error of a sum of weights that is one
-_SINGULAR = 1e-10  # ratio of eigenvalues of W: nodes on a line, which Exudyn refuses itself
 
 
 def prepare(mbs: exudyn.MainSystem) -> None:
     """Condense a script's markers on rotors, and let those at their nodes carry tilts."""
     for body in known_rotors(mbs):
+        _watch_solvers(body)
         if body.motion.invariants.is_sparse:  # a full body has no mesh here, and no modes
             continue
         _refuse_foreign_stress(body)
-        _give_mesh_axes(body)
-        _condense(body)
+        for number in range(mbs.systemData.NumberOfMarkers()):
+            marker = mbs.GetMarker(number)
+            at_body = int(marker.get("bodyNumber", -1)) == int(body.objects["marker_body"])
+            if at_body and marker["markerType"] in _NEEDED:
+                _give_mesh_axes(body, number, marker)
+                _condense(body, number, mbs.GetMarker(number))
         _carry(body)
+
+
+def _watch_solvers(body: RotorItems) -> None:
+    """Let a run begin with what its solver lacks: explicit solvers take no constraints of motions.
+
+    By a sensor, the last of them: solvers evaluate sensors before anything else.
+    """
+    name, locks, size, told = body.name, body.locks, body.layout.size, body.script.told
+    held = bool(body.constraints) and not locks.stand_still
+    is_large = body.motion.invariants.is_sparse and size > _DENSE_MOST
+    if body.script.is_watched or not (held or is_large):
+        return
+    body.script.is_watched = True
+    slow = (
+        f"rotor {name!r}: the linear solver of this run is a dense one, slow for the {size} "
+        "coordinates of a full body; use recommended_settings(…, body=body), which takes "
+        "LinearSolverType.EigenSparse"
+    )
+    instead = "translation='free'" if locks.normal is not None else "locking='mass'"
+
+    def watch(mbs, t, sensors, factors, configuration):
+        solver, settings = (mbs.sys.get(key) for key in ("dynamicSolver", "simulationSettings"))
+        if held and isinstance(solver, exudyn.MainSolverExplicit):
+            del mbs.sys["dynamicSolver"]  # or the next static solution would be refused
+            raise ValueError(
+                f"locking: rotor {name!r} is held by constraints, which explicit solvers do not "
+                f"take; use add_rotor(…, {instead}) or an implicit solver"
+            )
+        dense = settings is not None and settings.linearSolver.solverType in _DENSE
+        if is_large and dense and slow not in told:
+            told.add(slow)
+            warnings.warn(slow, UserWarning, stacklevel=4)
+        return [0.0]
+
+    item = SensorUserFunction(sensorUserFunction=watch, storeInternal=False, writeToFile=False)
+    body.mbs.AddSensor(item)
 
 
 def warn_of_lost_connections(mbs: exudyn.MainSystem, stacklevel: int) -> None:
@@ -66,17 +111,6 @@ def warn_of_lost_connections(mbs: exudyn.MainSystem, stacklevel: int) -> None:
         if new:
             message = f"rotor {body.name!r}: {'; '.join(new)}"
             warnings.warn(message, ConnectionWarning, stacklevel=stacklevel)
-
-
-def _markers(body: RotorItems) -> dict[int, dict]:
-    """Return the super-element markers on a rotor."""
-    every = {n: body.mbs.GetMarker(n) for n in range(body.mbs.systemData.NumberOfMarkers())}
-    return {
-        number: marker
-        for number, marker in every.items()
-        if marker["markerType"] in _NEEDED
-        and int(marker["bodyNumber"]) == int(body.objects["marker_body"])
-    }
 
 
 def _refuse_foreign_stress(body: RotorItems) -> None:
@@ -91,88 +125,48 @@ def _refuse_foreign_stress(body: RotorItems) -> None:
         )
 
 
-def _give_mesh_axes(body: RotorItems) -> None:
-    """Turn rigid markers of a script, and their offsets, to the axes of the mesh."""
-    B, mbs = body.frame.B, body.mbs
-    if body.frame.has_mesh_axes:
+def _give_mesh_axes(body: RotorItems, number: int, marker: dict) -> None:
+    """Turn a rigid marker of a script, and its offset, to the axes of the mesh; once."""
+    own = max(marker["meshNodeNumbers"], default=-1) >= body.mesh_node_count
+    if own or "localHT" not in marker or number in body.script.turned:
         return
-    for number, marker in _markers(body).items():
-        if marker["markerType"] != "SuperElementRigid" or number in body.script.turned:
-            continue
-        if max(marker["meshNodeNumbers"], default=-1) >= body.mesh_node_count:
-            continue  # the package's own
-        body.script.turned.add(number)
-        local = np.array(marker["localHT"], dtype=float)
-        local[:3, :3] = B @ local[:3, :3]
-        mbs.SetMarkerParameter(number, "localHT", local)
-        mbs.SetMarkerParameter(number, "offset", B @ marker["offset"])
+    body.script.turned.add(number)
+    local = np.array(marker["localHT"], dtype=float)
+    local[:3, :3] = body.frame.B @ local[:3, :3]
+    body.mbs.SetMarkerParameter(number, "localHT", local)
+    body.mbs.SetMarkerParameter(number, "offset", body.frame.B @ marker["offset"])
 
 
-def _condense(body: RotorItems) -> None:
-    """Move markers on many mesh nodes to nodes that are added to the flexible body.
+def _condense(body: RotorItems, number: int, marker: dict) -> None:
+    """Move a marker on many mesh nodes to nodes that are added to the flexible body.
 
-    Markers stay as they are where their weights do not add up to one, where a rigid marker takes
-    the rotation by the other formula (``useAlternativeApproach=False``) or has its nodes on a line.
+    It stays as it is where its weights are negative or do not add up to one, where a rigid marker
+    takes the rotation by the other formula (``useAlternativeApproach=False``) or has its nodes on a
+    line.
     """
-    chosen = {n: m for n, m in _markers(body).items() if _can_be_condensed(m)}
-    if not chosen:
+    nodes, weights = (np.asarray(marker[key]) for key in ("meshNodeNumbers", "weightingFactors"))
+    rigid = marker["markerType"] == "SuperElementRigid"
+    offset = np.asarray(marker["offset"] if rigid else np.zeros(3), dtype=float)
+    if len(nodes) <= _NEEDED[marker["markerType"]] and not np.any(offset):
         return
-    mbs, marker_body = body.mbs, body.objects["marker_body"]
-    # the rigid rotation that the modal coordinates hold, axes of the body
-    tilts = body.frame.B @ body.motion.invariants.mean_rotation
-    item = mbs.GetObject(marker_body)
-    points = np.asarray(item["referencePositions"]).reshape(-1, 3)
-    shapes = np.asarray(item["modeBasis"]).reshape(len(points), 3, -1)
-    places, columns, numbers = [], [], {}
-    count = len(points)
-    for number, marker in chosen.items():
-        nodes, weights = (np.asarray(marker[k]) for k in ("meshNodeNumbers", "weightingFactors"))
-        moved = _condensed(marker["markerType"], points[nodes], shapes[nodes], weights)
-        if moved is None:
-            continue
-        offset = _offset(marker)
-        places.append(moved[0] + offset)
-        columns.append(moved[1] - np.tile(skew(offset) @ tilts, (len(moved[0]), 1)))
-        numbers[number] = list(range(count, count + len(moved[0])))
-        count += len(moved[0])
-    if numbers:
-        append_nodes(mbs, marker_body, np.vstack(places), np.vstack(columns))
-    for number, nodes in numbers.items():
-        mbs.SetMarkerParameter(number, "meshNodeNumbers", nodes)
-        mbs.SetMarkerParameter(number, "weightingFactors", [1.0 / len(nodes)] * len(nodes))
-        if len(nodes) == 3:
-            mbs.SetMarkerParameter(number, "offset", np.zeros(3))
-
-
-def _can_be_condensed(marker: dict) -> bool:
-    few = len(marker["meshNodeNumbers"]) <= _NEEDED[marker["markerType"]]
-    if few and not np.any(_offset(marker)):
-        return False
-    if len(marker["meshNodeNumbers"]) != len(marker["weightingFactors"]):
-        return False  # Exudyn says so in Assemble()
-    unit = abs(np.sum(marker["weightingFactors"]) - 1.0) <= _UNIT_SUM
-    return bool(unit and marker.get("useAlternativeApproach", True))
-
-
-def _offset(marker: dict) -> np.ndarray:
-    """Return the offset of a marker, axes of the body."""
-    return np.asarray(marker.get("offset", np.zeros(3)), dtype=float)
-
-
-def _condensed(
-    kind: str, points: np.ndarray, shapes: np.ndarray, weights: np.ndarray
-) -> tuple[np.ndarray, np.ndarray] | None:
-    """Return nodes (1 or 3, 3) and columns (3 or 9, m) with the same mean motion, if there are."""
-    center, mean = weights @ points, np.einsum("n,nak->ak", weights, shapes)
-    if kind == "SuperElementPosition":
-        return center[None, :], mean
-    W, levers = rotation_moments(points - center, weights)
-    sizes = np.linalg.eigvalsh(0.5 * (W + W.T))
-    if sizes[0] <= _SINGULAR * sizes[-1]:
-        return None
-    turn = np.linalg.solve(W, np.einsum("nab,nbk->ak", levers, shapes - mean))
-    motion = np.vstack([mean, turn])
-    return virtual_nodes(center, float(np.sqrt(sizes[-1])), motion)
+    # Exudyn refuses other numbers of weights in Assemble()
+    plain = len(nodes) == len(weights) == len(set(nodes.tolist())) and np.all(weights >= 0.0)
+    if not plain or abs(np.sum(weights) - 1.0) > _UNIT_SUM:
+        return
+    if rigid and not (
+        marker["useAlternativeApproach"] and shows_rotation(marker_interface(body.mbs, marker))
+    ):
+        return
+    point, mbs = marker_carrier(body.mbs, marker), body.mbs
+    # an offset turns with the rigid rotation that the modal coordinates hold
+    motion = point.motion.copy()
+    motion[:3] -= skew(offset) @ body.frame.B @ body.motion.invariants.mean_rotation
+    point = replace(point, point=point.point + offset, motion=motion)
+    virtual = append_nodes(mbs, point.body, *point.virtual_nodes("rigid" if rigid else "position"))
+    mbs.SetMarkerParameter(number, "meshNodeNumbers", virtual)
+    mbs.SetMarkerParameter(number, "weightingFactors", [1.0 / len(virtual)] * len(virtual))
+    if rigid:
+        mbs.SetMarkerParameter(number, "offset", np.zeros(3))
 
 
 def _carry(body: RotorItems) -> None:
@@ -184,27 +178,23 @@ def _carry(body: RotorItems) -> None:
         if (marker := mbs.GetMarker(number))["markerType"] in NODE_MARKERS
         and int(marker["nodeNumber"]) == int(body.nodes["rigid"])
     }
-    if not own:
-        return
 
-    def carrier(number: object) -> int:
-        number = int(number)
+    def carrier(number: int) -> int:
         if number in own and number not in carriers:
             carriers[number] = int(_add_node_marker(body, own[number]))
         return carriers.get(number, number)
 
-    for number in range(mbs.systemData.NumberOfObjects()):
-        given = list(map(int, mbs.GetObject(number).get("markerNumbers", [])))
-        if any(each in own for each in given):
-            mbs.SetObjectParameter(number, "markerNumbers", [carrier(each) for each in given])
-    for number in range(mbs.systemData.NumberOfLoads()):
-        given = int(mbs.GetLoad(number)["markerNumber"])
-        if given in own:
-            mbs.SetLoadParameter(number, "markerNumber", carrier(given))
+    for is_load, number, _, markers in list(attached(mbs)) if own else ():
+        if not own.keys().isdisjoint(markers):
+            carried = list(map(carrier, markers))
+            if is_load:
+                mbs.SetLoadParameter(number, "markerNumber", carried[0])
+            else:
+                mbs.SetObjectParameter(number, "markerNumbers", carried)
     for number in range(mbs.systemData.NumberOfSensors()):
         sensor = mbs.GetSensor(number)
         if sensor["sensorType"] == "Marker" and int(sensor["markerNumber"]) in own:
-            mbs.SetSensorParameter(number, "markerNumber", carrier(sensor["markerNumber"]))
+            mbs.SetSensorParameter(number, "markerNumber", carrier(int(sensor["markerNumber"])))
 
 
 def _add_node_marker(body: RotorItems, given: dict) -> exudyn.MarkerIndex:
@@ -234,10 +224,6 @@ def mean_motion(body: RotorItems) -> np.ndarray:
 
     in which rigid modes have a share alone, and Craig–Bampton modes, which hold Exudyn's frame at a
     boundary (:mod:`exudyn_rotor.reduction.mean_axis`).
-
-    Tilts about the node's place in the basis, ``S ≠ 0``, would move the node itself, but not tilt
-    it; they couple translations and tilts by ``A S``, so that no matrix is constant, and a step
-    takes five times as long with a free spin and twelve times at constant speed.
     """
     selection, B = body.selection, body.frame.B
     reduced = selection.source

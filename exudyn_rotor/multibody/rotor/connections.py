@@ -1,4 +1,4 @@
-"""What a scene attaches to a rotor and the rotor cannot carry, found by a walk through the ``mbs``.
+"""What a scene attaches to a rotor, by a walk through the ``mbs``: what is lost, where loads act.
 
 Rigid and position markers at the node of the frame are pointed at others that move with the rotor
 (:mod:`exudyn_rotor.multibody.rotor.assembly`). Markers of its coordinates see the frame alone:
@@ -9,17 +9,18 @@ the centre of mass. Tilts are modal coordinates.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import exudyn
 import numpy as np
 
 from exudyn_rotor.multibody.rotor.frame import MODES
-from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
+from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, marker_carrier
+from exudyn_rotor.theory.axis import skew
 
 _ALONG = 1e-6  # sine of the angle up to which a direction counts as that of the spin axis
 NODE_MARKERS = ("NodeRigid", "NodePosition")
-_COORDINATES = ("NodeCoordinate", "NodeCoordinates", "NodeRotationCoordinate")
 _KINDS = exudyn.OutputVariableType
 # what a sensor of the node shows without the rotor's tilts
 _WITHOUT_TILTS = (
@@ -28,7 +29,6 @@ _WITHOUT_TILTS = (
 )
 _APART = 1e-3  # of the radius of gyration, by which the node is off the centre of mass
 _INSTEAD = "; use body.marker(interface) or body.add_marker(nodes)"
-_OFFSET = f"a force at a marker's own offset has no lever for tilts, which are modes{_INSTEAD}"
 
 
 class ConnectionWarning(UserWarning):
@@ -63,88 +63,90 @@ def lost_items(body: RotorItems) -> list[tuple[bool, int]]:
     return [(is_load, number) for is_load, number, _ in _lost(body)]
 
 
+def attached(mbs: exudyn.MainSystem) -> Iterator[tuple[bool, int, dict[str, Any], list[int]]]:
+    """Yield loads, connectors and joints: whether a load, number, the item and its markers."""
+    data = mbs.systemData
+    for number in range(data.NumberOfLoads()):
+        load = mbs.GetLoad(number)
+        yield True, number, load, [int(load["markerNumber"])]
+    for number in range(data.NumberOfObjects()):
+        item = mbs.GetObject(number)
+        if "markerNumbers" in item:
+            yield False, number, item, list(map(int, item["markerNumbers"]))
+
+
 def _lost(body: RotorItems) -> Iterator[tuple[bool, int, str]]:
     """Yield whether an item is a load, its number, and why the rotor cannot carry it."""
-    mbs, markers = body.mbs, _Markers(body)
-    for number in range(mbs.systemData.NumberOfLoads()):
-        load = mbs.GetLoad(number)
-        reason = markers.why_lost(int(load["markerNumber"]), "a load")
-        if reason and not (reason is _OFFSET and load["loadType"] != "ForceVector"):
-            yield True, number, reason
     own = set(map(int, body.constraints.values()))
     own |= {int(number) for drive in body.drives for number in drive.objects}
-    for number in range(mbs.systemData.NumberOfObjects()):
-        item = mbs.GetObject(number)
-        if number in own or "markerNumbers" not in item or not item.get("activeConnector", 1):
+    for is_load, number, item, markers in attached(body.mbs):
+        if not is_load and (number in own or not item.get("activeConnector", True)):
             continue
-        for place, marker in enumerate(map(int, item["markerNumbers"])):
-            used = np.atleast_2d(item.get(f"scalingMarker{place}", np.zeros((0, 0))))
-            columns = np.flatnonzero(np.any(used != 0.0, axis=0)) if used.size else ()
-            reason = markers.why_lost(marker, "a connector", columns)
+        for place, marker in enumerate(markers):
             if marker in body.script.carriers.values():
                 reason = _false_damping(body, item)
+            else:
+                reason = _why_lost(body, body.mbs.GetMarker(marker), item, place)
             if reason:
-                yield False, number, reason
+                yield is_load, number, reason
 
 
-class _Markers:
-    """The markers of an ``mbs`` at which one rotor may not carry what acts."""
-
-    def __init__(self, body: RotorItems) -> None:
-        mbs, self.body = body.mbs, body
-        every = {n: mbs.GetMarker(n) for n in range(mbs.systemData.NumberOfMarkers())}
-        node = int(body.nodes["rigid"])
-        at_node = {n: m for n, m in every.items() if int(m.get("nodeNumber", -1)) == node}
-        self.coordinates = {n: m for n, m in at_node.items() if m["markerType"] in _COORDINATES}
-        self.rigid = {n for n, m in at_node.items() if m["markerType"] in NODE_MARKERS}
-        marker_body = int(body.objects["marker_body"])
-        self.offset = {
-            number
-            for number, marker in every.items()
-            if marker["markerType"] == "SuperElementRigid"
-            and int(marker["bodyNumber"]) == marker_body
-            and np.any(marker["offset"])
-        }
-
-    def why_lost(self, number: int, what: str, columns: Sequence[int] = ()) -> str | None:
-        """Return why what acts at a marker is lost; of several coordinates on `columns`."""
-        if number in self.offset:
-            return _OFFSET
-        if number in self.rigid:  # mbs.Assemble() has pointed the others elsewhere
-            return f"the node of a full body does not tilt: what acts there is lost{_INSTEAD}"
-        if number not in self.coordinates:
+def _why_lost(
+    body: RotorItems, marker: dict[str, Any], item: dict[str, Any], place: int
+) -> str | None:
+    """Return why what an item does at a marker, its number `place`, is lost; None if it is not."""
+    kind = marker["markerType"]
+    if kind == "SuperElementRigid":
+        if int(marker["bodyNumber"]) != int(body.objects["marker_body"]):
             return None
-        marker, frame, locks = self.coordinates[number], self.body.frame, self.body.locks
-        if marker["markerType"] == "NodeCoordinate":
-            columns = [int(marker["coordinate"])]
-        elif marker["markerType"] == "NodeRotationCoordinate":
-            axis = np.eye(3)[int(marker["rotationCoordinate"])]
-            along = abs(axis @ self.body.standing_axes[:, 2]) > 1.0 - _ALONG
-            columns = [locks.spin if along and frame.has_mesh_axes else locks.tilts[0]]
-        reasons = (self._of_coordinate(int(column), what) for column in columns)
-        return next(filter(None, reasons), None)
+        with_lever = item.get("loadType", "ForceVector") == "ForceVector"
+        if with_lever and np.any(marker["offset"]):
+            return f"a force at a marker's own offset has no lever for tilts (modes){_INSTEAD}"
+        return None
+    if int(marker.get("nodeNumber", -1)) != int(body.nodes["rigid"]):
+        return None
+    if kind in NODE_MARKERS:  # mbs.Assemble() has pointed the others elsewhere
+        return f"the node of a full body does not tilt: what acts there is lost{_INSTEAD}"
+    reasons = (_why_coordinate_lost(body, one) for one in _used(body, marker, item, place))
+    return next(filter(None, reasons), None)
 
-    def _of_coordinate(self, index: int, what: str) -> str | None:
-        body = self.body
-        if index in body.locks.unknown or index == body.locks.spin:
-            inv = body.motion.invariants
-            apart = float(np.linalg.norm(body.selection.origin + inv.center))
-            if index >= MODES // 2 or apart < _APART * np.sqrt(np.trace(inv.J) / inv.mass):
-                return None
-            return (
-                f"the coordinates of the frame's node move the centre of mass, {apart:.3g} m off "
-                f"the node's place: {what} on its coordinate {index} acts there; use a "
-                "MarkerNodeRigid or MarkerNodePosition"
-            )
+
+def _used(
+    body: RotorItems, marker: dict[str, Any], item: dict[str, Any], place: int
+) -> Sequence[int]:
+    """Return the coordinates of the frame's node on which an item acts."""
+    kind, locks = marker["markerType"], body.locks
+    if kind == "NodeCoordinate":
+        return [int(marker["coordinate"])]
+    if kind == "NodeRotationCoordinate":
+        axis = np.eye(3)[int(marker["rotationCoordinate"])]
+        along = abs(axis @ body.standing_axes[:, 2]) > 1.0 - _ALONG
+        with_mesh_axes = np.array_equal(body.frame.B, np.eye(3))
+        return [locks.spin if along and with_mesh_axes else locks.tilts[0]]
+    rows = np.atleast_2d(item.get(f"scalingMarker{place}", np.zeros((0, 0))))
+    return np.flatnonzero(np.any(rows != 0.0, axis=0)).tolist() if rows.size else []
+
+
+def _why_coordinate_lost(body: RotorItems, index: int) -> str | None:
+    if index not in body.locks.unknown and index != body.locks.spin:
         return (
-            f"the frame's node does not tilt (tilts are modes), nor move where the formulation has "
-            f"no translation: {what} on its coordinate {index} has no effect{_INSTEAD}"
+            "the frame's node does not tilt (tilts are modes), nor move where the formulation has "
+            f"no translation: what acts on its coordinate {index} has no effect{_INSTEAD}"
         )
+    inv = body.motion.invariants
+    apart = float(np.linalg.norm(body.selection.origin + inv.center))
+    if index >= MODES // 2 or apart < _APART * np.sqrt(np.trace(inv.J) / inv.mass):
+        return None
+    return (
+        f"the coordinates of the frame's node move the centre of mass, {apart:.3g} m off the "
+        f"node's place: what acts on its coordinate {index} acts there; use a MarkerNodeRigid or "
+        "MarkerNodePosition"
+    )
 
 
 def _false_damping(body: RotorItems, item: dict[str, Any]) -> str | None:
     """Return what is wrong with a damper of tilts: Exudyn takes their rate in other axes."""
-    if item["objectType"] != "ConnectorRigidBodySpringDamper":
+    if item.get("objectType") != "ConnectorRigidBodySpringDamper":
         return None
     damping, first = item["damping"][3:, 3:], int(item["markerNumbers"][0])
     axes = np.reshape(body.mbs.GetMarkerOutput(first, _KINDS.RotationMatrix), (3, 3))
@@ -173,3 +175,61 @@ def _sensors(body: RotorItems) -> Iterator[str]:
                 f"sensor {sensor['name']!r}: {kind.name} of the frame's node is that of spin and "
                 "centre of mass alone, without tilts; take a sensor of a MarkerNodeRigid there"
             )
+
+
+_MARKERS = ("SuperElementPosition", "SuperElementRigid")
+# loads and connectors that exert no moment
+_FORCES = ("ForceVector", "ConnectorCartesianSpringDamper", "ConnectorSpringDamper")
+_SAME = 1e-6  # of the motion of an interface, by which a marker there may differ
+
+
+@dataclass(frozen=True, eq=False)
+class LoadPlace:
+    """A place of a rotor where forces act, and perhaps moments."""
+
+    point: np.ndarray  # (3,) Mesh coordinates [m]
+    # (3, m) or (6, m) Displacement, and rotation where moments act, by modal coordinates, mesh axes
+    motion: np.ndarray
+    interface: str | None  # whose mean motion this is
+
+
+def load_places(body: RotorItems) -> tuple[LoadPlace, ...]:
+    """Return where loads and connectors act on a reduced rotor."""
+    moments: dict[int, bool] = {}  # of markers, whether moments may act there
+    for is_load, _, item, markers in attached(body.mbs):
+        kind = item["loadType" if is_load else "objectType"]
+        for marker in markers if item.get("activeConnector", True) else ():
+            moments[marker] = moments.get(marker, False) or kind not in _FORCES
+    found = []
+    for number, with_moments in moments.items():
+        marker = body.mbs.GetMarker(number)
+        own = int(marker.get("bodyNumber", -1)) == int(body.objects["marker_body"])
+        if own and marker["markerType"] in _MARKERS:
+            rigid = with_moments and marker["markerType"] == "SuperElementRigid"
+            found.append(_at_marker(body, marker, 6 if rigid else 3))
+    interfaces = body.selection.source.interfaces
+    # drives and connections of rotors act by coordinates
+    driven = {one.at if one.body.token is body.token else one.other_at for one in body.drives}
+    for name in sorted(driven - {None}):
+        motion = interfaces[name].motion @ body.selection.T
+        found.append(LoadPlace(interfaces[name].reference, motion, name))
+    return tuple(found)
+
+
+def _at_marker(body: RotorItems, marker: dict, count: int) -> LoadPlace:
+    carrier, turn = marker_carrier(body.mbs, marker), body.frame.B
+    parts = np.split(carrier.motion[:count], count // 3)
+    motion = np.vstack([turn.T @ part for part in parts])
+    on_mesh = carrier.point @ turn + body.frame.origin
+    return LoadPlace(on_mesh, motion, _interface_at(body, on_mesh, motion))
+
+
+def _interface_at(body: RotorItems, point: np.ndarray, motion: np.ndarray) -> str | None:
+    """Return the interface, the nearest, that moves a point (3,) of its own by `motion`."""
+    found = {}
+    for name, interface in body.selection.source.interfaces.items():
+        mean, arm = interface.motion @ body.selection.T, point - interface.reference
+        expected = mean[:3] - skew(arm) @ mean[3:]
+        if np.abs(motion[:3] - expected).max() <= _SAME * np.abs(expected).max():
+            found[name] = float(np.linalg.norm(arm))
+    return min(found, key=found.__getitem__, default=None)

@@ -39,30 +39,13 @@ _ALONG = 1e-8  # sine of the angle up to which an axis counts as a coordinate ax
 
 @dataclass(frozen=True, eq=False)
 class BodyFrame:
-    """Mesh and scene as the marker body sees them.
+    """Mesh and scene as the marker body sees them."""
 
-    Attributes
-    ----------
-    origin : ndarray, shape (3,)
-        Frame origin, mesh coordinates [m].
-    B : ndarray, shape (3, 3)
-        Mesh axes → axes of the marker body; the identity where the body can have the mesh axes.
-    orientation : ndarray, shape (3, 3)
-        Mesh axes → inertial axes at θ = 0.
-    position : ndarray, shape (3,)
-        Frame origin in inertial coordinates at rest [m].
-    angles : ndarray, shape (3,)
-        Reference Tait–Bryan angles (a, b, c) of the marker body's node [rad].
-    spin : {3, 4, 5}
-        The node's coordinate that is the spin angle.
-    """
-
-    origin: np.ndarray
-    B: np.ndarray
-    orientation: np.ndarray
-    position: np.ndarray
-    angles: np.ndarray
-    spin: int
+    origin: np.ndarray  # (3,) Of the frame, mesh coordinates [m]
+    B: np.ndarray  # (3, 3) Mesh axes → axes of the marker body, the identity where that can be
+    position: np.ndarray  # (3,) Of the frame origin at rest, inertial coordinates [m]
+    angles: np.ndarray  # (3,) Reference Tait–Bryan angles (a, b, c) of the node [rad]
+    spin: int  # 3, 4 or 5: the node's coordinate that is the spin angle
 
     @classmethod
     def of(
@@ -79,12 +62,7 @@ class BodyFrame:
         if angles_and_spin is None:
             B = _turn_to_z(direction)
             angles_and_spin = _tait_bryan(rotation @ B.T), THIRD
-        return cls(origin, B, rotation, position + rotation @ origin, *angles_and_spin)
-
-    @property
-    def has_mesh_axes(self) -> bool:
-        """True where the axes of the marker body are those of the mesh."""
-        return np.array_equal(self.B, np.eye(3))
+        return cls(origin, B, position + rotation @ origin, *angles_and_spin)
 
     def axes_of_angles(self) -> np.ndarray:
         """Return the inertial axes (3, 3), in rows, that the node's angles turn about at rest."""
@@ -139,15 +117,6 @@ LOCKINGS = ("auto", "mass", "constraints")
 MODES = 6  # the first coordinate after those of the rigid-body node
 LOCKS = "locks"  # name of the constraint of all that stand still or turn at constant speed
 
-# Exudyn's error of explicit solvers tells the number of the object, and mbs.GetObject its name
-CONSTRAINT = "constraint {} of a rotor's frame; explicit solvers need locking='mass'"
-
-LOCK_RATIO = 1e18  # of the rotor's own inertia
-# beside a constraint that explicit solvers eliminate: of what moves within one of their steps
-ELIMINATED_RATIO = 1e9
-# of coordinates that are driven: rounding of the driving force is seen in the external one
-DRIVEN_RATIO = 1e9
-
 LockedForce = Callable[[float], np.ndarray]
 
 
@@ -155,33 +124,30 @@ LockedForce = Callable[[float], np.ndarray]
 class Locks:
     """What happens to the six rigid coordinates of the marker body.
 
-    Attributes
-    ----------
-    unknown : tuple of int
-        Rigid coordinates that are unknowns of the formulation.
-    fixed : tuple of int
-    prescribed : dict of int to PrescribedMotion or ConstantSpeed
-        Scalar motion of every prescribed coordinate.
-    spin : {3, 4, 5}
-        The coordinate that is the spin angle; the other two rotations are tilts.
-    plane : ndarray or None
-        Inertial directions of in-plane unknowns, shape (3, 2).
-    normal : ndarray or None
-        Set when the plane of translation is skew in space: all three translations are unknowns,
-        and one row along this direction holds them in the plane.
+    Where the plane of translation is skew in space, all three translations are unknowns, and one
+    row along the `normal` holds them in the plane.
     """
 
-    unknown: tuple[int, ...]
-    fixed: tuple[int, ...]
-    prescribed: dict[int, PrescribedMotion | ConstantSpeed]
-    spin: int = THIRD
-    plane: np.ndarray | None = None
-    normal: np.ndarray | None = None
+    unknown: tuple[int, ...]  # coordinates that are unknowns of the formulation
+    fixed: tuple[int, ...]  # the tilts at last
+    prescribed: dict[int, PrescribedMotion | ConstantSpeed]  # by the coordinate, scalar
+    spin: int  # the spin angle
+    plane: np.ndarray | None  # (3, 2) Inertial directions of in-plane unknowns
+    normal: np.ndarray | None  # (3,)
 
     @classmethod
     def of(cls, formulation: Formulation, spin_direction: np.ndarray, spin: int) -> Locks:
         """Sort the coordinates for a spin axis along `spin_direction` in inertial axes."""
-        translations, plane, normal = _unknown_translations(formulation, spin_direction)
+        translations, plane, normal = list(range(3)), None, None
+        if formulation.translation_count == 0:
+            translations = []
+        elif formulation.translation_count == 2:
+            along = np.flatnonzero(np.abs(spin_direction) > 1.0 - 1e-14)
+            if along.size:
+                translations.remove(along[0])
+                plane = np.eye(3)[:, translations]
+            else:
+                normal = spin_direction
         rest = [i for i in range(3) if i not in translations]
         prescribed: dict[int, PrescribedMotion | ConstantSpeed] = {}
         if formulation.moves_origin:
@@ -192,19 +158,20 @@ class Locks:
             unknown = (*unknown, spin)
         else:
             prescribed[spin] = formulation.spin
-        return cls(unknown, (*rest, *_tilts(spin)), prescribed, spin, plane, normal)
+        tilts = [i for i in range(3, MODES) if i != spin]
+        return cls(unknown, (*rest, *tilts), prescribed, spin, plane, normal)
 
     @property
     def tilts(self) -> tuple[int, int]:
         """The two coordinates that tilt the frame, always locked."""
-        return _tilts(self.spin)
+        return self.fixed[-2:]
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def names(self) -> list[str]:
         """Names of the six coordinates."""
-        names = dict(enumerate(("x", "y", "z"))) | {self.spin: "spin"}
-        names |= dict(zip(self.tilts, ("tilt a", "tilt b"), strict=True))
-        return tuple(names[i] for i in range(MODES))
+        names = ["x", "y", "z", "tilt a", "tilt b"]
+        names.insert(self.spin, "spin")
+        return names
 
     @property
     def varying(self) -> dict[int, PrescribedMotion]:
@@ -213,15 +180,12 @@ class Locks:
 
     @property
     def locked_names(self) -> tuple[str, ...]:
-        """Names of the coordinates that exist only for the marker body."""
+        """Names of the coordinates that are no unknowns."""
         return tuple(self.names[i] for i in (*self.fixed, *self.prescribed))
 
     @property
     def stand_still(self) -> bool:
-        """True where the locked coordinates stand still, one by one, so that explicit solvers run.
-
-        Their constraints are eliminated there.
-        """
+        """True where explicit solvers run: locked coordinates stand still, and are eliminated."""
         return not self.prescribed and self.normal is None
 
     @property
@@ -239,24 +203,6 @@ class Locks:
         return rows, rates
 
 
-def _tilts(spin: int) -> tuple[int, int]:
-    return tuple(i for i in range(3, MODES) if i != spin)
-
-
-def _unknown_translations(
-    formulation: Formulation, direction: np.ndarray
-) -> tuple[list[int], np.ndarray | None, np.ndarray | None]:
-    if formulation.translation_count == 3:
-        return [0, 1, 2], None, None
-    if formulation.translation_count == 0:
-        return [], None, None
-    along = np.flatnonzero(np.abs(direction) > 1.0 - 1e-14)
-    if along.size == 0:
-        return [0, 1, 2], None, direction
-    across = [i for i in range(3) if i != along[0]]
-    return across, np.eye(3)[:, across], None
-
-
 def _component(motion: PrescribedMotion, index: int) -> PrescribedMotion:
     """Return one coordinate of a prescribed translation."""
     return PrescribedMotion(
@@ -268,57 +214,17 @@ def _component(motion: PrescribedMotion, index: int) -> PrescribedMotion:
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """Where the unknowns of a formulation stand among the coordinates of the nodes.
+    """Where the unknowns of a formulation stand among the coordinates of the nodes."""
 
-    Attributes
-    ----------
-    size : int
-        Number of node coordinates.
-    unknowns : ndarray of int
-        Coordinate of every unknown of the :class:`Motion`.
-    lock_mass : ndarray, shape (size,)
-        Masses of locked coordinates; zero for unknowns.
-    """
-
-    size: int
-    unknowns: np.ndarray
-    lock_mass: np.ndarray
+    size: int  # of the nodes' coordinates
+    unknowns: np.ndarray  # the coordinate of every unknown of the equations
+    lock_mass: np.ndarray  # (size,) Masses of locked coordinates, zero for unknowns
 
     def spread(self, matrix: np.ndarray, diagonal: np.ndarray | float = 0.0) -> np.ndarray:
         """Return a (size, size) matrix with `matrix` on the unknowns and `diagonal` added."""
         full = np.diag(np.broadcast_to(diagonal, self.size).astype(float))
         full[np.ix_(self.unknowns, self.unknowns)] += matrix
         return full
-
-
-def lock_masses(locks: Locks, size: int, inertia: np.ndarray, by_mass: bool) -> np.ndarray:
-    """Return the masses (size,) of locked coordinates, zero for unknowns.
-
-    `inertia` holds the rotor's mass (three times) and moment of inertia (three times).
-    """
-    mass = np.zeros(size)
-    for index in (*locks.fixed, *locks.prescribed):
-        if by_mass:
-            ratio = DRIVEN_RATIO if index in locks.varying else LOCK_RATIO
-        else:
-            ratio = ELIMINATED_RATIO if locks.stand_still else 1.0
-        mass[index] = inertia[index] * ratio
-    return mass
-
-
-def driving_force(locks: Locks, masses: np.ndarray) -> LockedForce | None:
-    """Return the forces (size,) over time by which huge masses are driven; None where none is."""
-    varying = locks.varying
-    if not varying:
-        return None
-
-    def force(t: float) -> np.ndarray:
-        total = np.zeros(len(masses))
-        for index, motion in varying.items():
-            total[index] = masses[index] * motion.acceleration(t)
-        return total
-
-    return force
 
 
 def add_constraints(
@@ -342,7 +248,6 @@ def add_constraints(
     rows, rates = locks.rows
     # at velocity level: drift is round-off, and a constant speed needs no function of time
     held = ObjectConnectorCoordinateVector(
-        name=CONSTRAINT.format(mbs.systemData.NumberOfObjects()),
         markerNumbers=ends,
         scalingMarker0=np.zeros((len(rates), 0)),
         scalingMarker1=rows,
@@ -352,13 +257,10 @@ def add_constraints(
     )
     constraints = {LOCKS: mbs.AddObject(held)}
     for index, motion in locks.varying.items():
-        constraints[locks.names[index]] = one(index, **_offset(motion))
+        # index-2 solvers need the velocity beside the position
+        constraints[locks.names[index]] = one(
+            index,
+            offsetUserFunction=lambda mbs, t, item, offset, motion=motion: motion.value(t),
+            offsetUserFunction_t=lambda mbs, t, item, offset, motion=motion: motion.rate(t),
+        )
     return constraints
-
-
-def _offset(motion: PrescribedMotion) -> dict:
-    """Return the constraint's functions; index-2 solvers need the velocity beside the position."""
-    return {
-        "offsetUserFunction": lambda mbs, t, item, offset: motion.value(t),
-        "offsetUserFunction_t": lambda mbs, t, item, offset: motion.rate(t),
-    }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import exudyn
 import numpy as np
@@ -11,11 +12,12 @@ from exudyn.itemInterface import NodeGenericODE2, NodeRigidBodyRxyz, VNodeRigidB
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor.frame import MODES, BodyFrame, Layout, Locks, lock_masses
+from exudyn_rotor.multibody.rotor.frame import MODES, BodyFrame, Layout, LockedForce, Locks
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import Selection, select_modes
 from exudyn_rotor.theory.formulation import Formulation, start_values
 from exudyn_rotor.theory.motion import Motion
+from exudyn_rotor.theory.stiffening import Stiffening
 from exudyn_rotor.theory.stiffening import stiffening as second_order
 
 MARKER_KINDS = ("rigid", "position")
@@ -23,36 +25,23 @@ MARKER_KINDS = ("rigid", "position")
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """Where the rotor stands and how it starts.
+    """Where the rotor stands and how it starts."""
 
-    Attributes
-    ----------
-    position : ndarray, shape (3,)
-        Place of the mesh origin, inertial axes [m].
-    rotation : ndarray, shape (3, 3)
-        Mesh axes → inertial axes at θ = 0.
-    translation : ndarray, shape (3,)
-        Initial translation of the frame origin, inertial axes [m]; a plan adds by how much
-        the initial angle moves it.
-    velocity : ndarray, shape (3,)
-        Initial velocity of the frame origin, inertial axes [m/s].
-    angle, speed : float
-        Initial spin angle [rad] and speed [rad/s].
-    """
-
-    position: np.ndarray
-    rotation: np.ndarray
+    position: np.ndarray  # (3,) Of the mesh origin, inertial axes [m]
+    rotation: np.ndarray  # (3, 3) Mesh axes → inertial axes at θ = 0
+    # (3,) Initial translation of the frame origin, inertial axes [m]; a plan adds by how much the
+    # initial angle moves it
     translation: np.ndarray
-    velocity: np.ndarray
-    angle: float
-    speed: float
+    velocity: np.ndarray  # (3,) Initial one of the frame origin, inertial axes [m/s]
+    angle: float  # of the spin at the start [rad]
+    speed: float  # of the spin at the start [rad/s]
 
 
 @dataclass(frozen=True, eq=False)
 class Setup:
     """A rotor body as it was asked for; the attributes are arguments of ``add_rotor``, checked.
 
-    ``modal_coordinates`` and ``modal_velocities`` are checked with the modes, by the plan.
+    The start values of modal coordinates are checked by the plan, which knows the modes.
     """
 
     name: str | None
@@ -64,7 +53,7 @@ class Setup:
     gravity: np.ndarray
     mass_damping: float
     stiffness_damping: float
-    markers: Mapping[str, str]
+    marker_kinds: Mapping[str, str]
     locking: str
     color: tuple[float, ...]
 
@@ -100,28 +89,24 @@ def placement(
         angle = checks.number(angle, "initial_angle", "rad")
         speed = checks.number(speed, "initial_speed", "rad/s")
         return Placement(place, turn, start, velocity, angle, speed)
-    for name, value in (("initial_angle", initial_angle), ("initial_speed", initial_speed)):
-        if value is not None:
-            raise ValueError(
-                f"spin given twice: {name}={checks.shown(value)} and a prescribed spin; leave "
-                f"{name} out"
-            )
+    if initial_angle is not None or initial_speed is not None:
+        raise ValueError(
+            "spin given twice: by a prescribed spin, and by initial_angle or initial_speed; leave "
+            "these out"
+        )
     angle, speed, _ = start_values(formulation.spin, "spin")
     return Placement(place, turn, start, velocity, angle, speed)
 
 
 def _check_direction(formulation: Formulation, velocity: np.ndarray, axis: np.ndarray) -> None:
     """Refuse a velocity that the formulation cannot have; `axis` in inertial axes."""
-    if np.any(velocity) and formulation.translation_count == 0:
+    lost = {3: 0.0 * velocity, 2: axis * (axis @ velocity), 0: velocity}
+    missing = np.linalg.norm(lost[formulation.translation_count])
+    if missing > 1e-9 * np.linalg.norm(velocity):
         raise ValueError(
-            f"initial_velocity {velocity.tolist()} m/s: translation='none' holds the rotor"
-        )
-    along = abs(axis @ velocity)
-    if formulation.translation_count == 2 and along > 1e-9 * np.linalg.norm(velocity):
-        raise ValueError(
-            f"initial_velocity {velocity.tolist()} m/s has {along:.3g} m/s along the spin axis: "
-            "translation='in-plane' has no such motion; give it as a modal velocity of "
-            "'translation along axis', or use translation='free'"
+            f"initial_velocity: translation={formulation.translation!r} has no such motion, "
+            f"{missing:.3g} m/s of {velocity.tolist()} m/s; use translation='free', or velocities "
+            "of translation modes in modal_velocities"
         )
 
 
@@ -149,12 +134,7 @@ def marker_kinds(
         markers = "rigid"
     if isinstance(markers, str):
         return dict.fromkeys(interfaces, checks.choice(markers, "markers", MARKER_KINDS))
-    if not isinstance(markers, Mapping):
-        raise TypeError(
-            "markers: needs 'rigid', 'position' or a mapping of interface to one of them, got "
-            f"{checks.shown(markers)}"
-        )
-    checks.mapping(markers, "markers", "kind", interfaces)
+    checks.mapping(markers, "markers", "'rigid' or 'position'", interfaces)
     return {
         name: checks.choice(kind, f"markers: kind of {name!r}", MARKER_KINDS)
         for name, kind in markers.items()
@@ -181,13 +161,9 @@ def marker_name(name: str | None, interface: str) -> str:
 def check_free_names(mbs: exudyn.MainSystem, setup: Setup) -> None:
     """Refuse a name that an item of `mbs` already has."""
     name = setup.name
-    taken = [(mbs.GetMarkerNumber, marker_name(name, interface)) for interface in setup.markers]
+    taken = [(mbs.GetMarkerNumber, marker_name(name, one)) for one in setup.marker_kinds]
     if name is not None:
-        taken += [
-            (mbs.GetObjectNumber, name),
-            (mbs.GetNodeNumber, item_name("NodeRigidBody:", name)),
-            (mbs.GetNodeNumber, item_name("NodeGeneric:", name)),
-        ]
+        taken.append((mbs.GetObjectNumber, name))
     for find, item in taken:
         if int(find(item)) != -1:
             raise ValueError(
@@ -197,53 +173,63 @@ def check_free_names(mbs: exudyn.MainSystem, setup: Setup) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class Plan:
+class Plan(Setup):
     """A new rotor body, laid out: a reduced one, or a full one with nodal displacements for modes.
+
+    The attributes are those of :class:`Setup`, with the start values of all modal coordinates, and
+    these:
 
     Attributes
     ----------
-    setup : Setup
-        What was asked for.
     selection : Selection or NodalFields
+        The component modes in use; ``selection.labels`` names the modal coordinates.
     frame : BodyFrame
+        Where mesh, flexible body and scene stand to each other.
     locks : Locks
+        What happens to the six rigid coordinates of the flexible body.
     layout : Layout
         Where the unknowns stand among the coordinates of the nodes.
     motion : Motion or FullMotion
-    marker_body_gravity : ndarray, shape (3,)
-        Gravity that Exudyn applies to the marker body, not the equations [m/s²].
-    start : tuple of two ndarray, shape (m,)
-        Initial modal coordinates [√kg m] and velocities [√kg m/s], or displacements and rates.
+        Equations of motion, inertial and mesh axes. In a plane of rotation that is skew to the
+        inertial axes they have three translations, and a constraint holds the plane.
     """
 
-    setup: Setup
     selection: Selection
     frame: BodyFrame
     locks: Locks
     layout: Layout
     motion: Motion
-    marker_body_gravity: np.ndarray
-    start: tuple[np.ndarray, np.ndarray]
 
-    def add_nodes(self, mbs: exudyn.MainSystem) -> tuple[exudyn.NodeIndex, exudyn.NodeIndex]:
-        """Add the node of the frame, and that of modes or displacements, as they start."""
-        values, rates = np.zeros(MODES), np.zeros(MODES)
-        start, spin, name = self.setup.placement, self.locks.spin, self.setup.name
-        values[:3], rates[:3] = start.translation, start.velocity
-        values[spin], rates[spin] = start.angle, start.speed
-        rigid = NodeRigidBodyRxyz(
-            name=item_name("NodeRigidBody:", name),
-            referenceCoordinates=[*self.frame.position, *self.frame.angles],
-            initialCoordinates=values,
-            initialVelocities=rates,
-            visualization=VNodeRigidBodyRxyz(show=False),
-        )
-        modes = generic_node(*self.start, item_name("NodeGeneric:", name))
-        return mbs.AddNode(rigid), mbs.AddNode(modes)
+    @property
+    def guide(self) -> LockedForce | None:
+        """Forces (size,) over time that drive huge masses; None where none is driven."""
+        varying, masses = self.locks.varying, self.layout.lock_mass
+
+        def force(t: float) -> np.ndarray:
+            total = np.zeros(len(masses))
+            for index, motion in varying.items():
+                total[index] = masses[index] * motion.acceleration(t)
+            return total
+
+        return force if self.locking == "mass" and varying else None
 
 
-# of a formulation, the plane of its translations, and gravity in the equations
-Motions = Callable[[Formulation, np.ndarray | None, np.ndarray | None], Motion]
+def add_nodes(mbs: exudyn.MainSystem, plan: Plan) -> tuple[exudyn.NodeIndex, exudyn.NodeIndex]:
+    """Add the node of the frame, and that of modes or displacements, as they start."""
+    values, rates = np.zeros(MODES), np.zeros(MODES)
+    start, spin = plan.placement, plan.locks.spin
+    values[:3], rates[:3] = start.translation, start.velocity
+    values[spin], rates[spin] = start.angle, start.speed
+    rigid = NodeRigidBodyRxyz(
+        name=item_name("NodeRigidBody:", plan.name),
+        referenceCoordinates=[*plan.frame.position, *plan.frame.angles],
+        initialCoordinates=values,
+        initialVelocities=rates,
+        visualization=VNodeRigidBodyRxyz(show=False),
+    )
+    name = item_name("NodeGeneric:", plan.name)
+    modes = generic_node(plan.modal_coordinates, plan.modal_velocities, name)
+    return mbs.AddNode(rigid), mbs.AddNode(modes)
 
 
 def make_plan(reduced: ReducedRotor, setup: Setup) -> Plan:
@@ -254,79 +240,77 @@ def make_plan(reduced: ReducedRotor, setup: Setup) -> Plan:
     if setup.stiffening != "none":
         invariants = invariants.loaded
     second = second_order(invariants, setup.stiffening)
-    orientation = setup.placement.rotation
-
-    def motion(
-        formulation: Formulation, plane: np.ndarray | None, gravity: np.ndarray | None
-    ) -> Motion:
-        return Motion(invariants, formulation, second, orientation, plane, gravity)
-
-    start = (
-        _modal_values(setup.modal_coordinates, "modal_coordinates", selection.labels),
-        _modal_values(setup.modal_velocities, "modal_velocities", selection.labels),
-    )
-    return laid_out(setup, selection, motion, start)
+    start = partial(_modal_values, labels=selection.labels)
+    return laid_out(setup, selection, partial(Motion, invariants), second, start)
 
 
 def laid_out(
     setup: Setup,
     selection: Selection,
-    motions: Motions,
-    start: tuple[np.ndarray, np.ndarray],
+    motions: Callable[..., Motion],
+    second: Stiffening,
+    start: Callable[[ArrayLike | None, str], np.ndarray],
 ) -> Plan:
-    """Return a plan with frame, locks, layout and motion."""
+    """Return a plan with frame, locks, layout and motion.
+
+    `motions` knows the invariants, and `start` makes initial coordinates of what was given.
+    """
     formulation, place = setup.formulation, setup.placement
     turned = turned_origin(selection, place.rotation, place.angle)
-    setup = replace(setup, placement=replace(place, translation=place.translation + turned))
+    setup = replace(
+        setup,
+        placement=replace(place, translation=place.translation + turned),
+        modal_coordinates=start(setup.modal_coordinates, "modal_coordinates"),
+        modal_velocities=start(setup.modal_velocities, "modal_velocities"),
+    )
     direction = selection.invariants.direction
     frame = BodyFrame.of(direction, selection.origin, place.position, place.rotation)
     locks = Locks.of(formulation, place.rotation @ direction, frame.spin)
-    skew = locks.normal is not None
-    if skew and setup.locking == "mass":
-        raise ValueError(
-            "locking='mass' cannot hold the rotor in a plane that is skew to the inertial axes; "
-            "use locking='constraints' or translation='free'"
-        )
-    # gravity on the marker body exerts no moment about e by the deflection Sζ; a free spin needs it
+    if locks.normal is not None:
+        if setup.locking == "mass":
+            raise ValueError(
+                "locking='mass' cannot hold the rotor in a plane that is skew to the inertial "
+                "axes; use locking='constraints' or translation='free'"
+            )
+        # a skew plane of rotation keeps all three translations and adds a linear constraint
+        formulation = replace(formulation, translation="free")
+    # gravity as a load exerts no moment about e by the deflection Sζ; a free spin needs it
     in_equations = formulation.has_spin and formulation.translation_count == 0
-    # a skew plane of rotation keeps all three translations and adds a linear constraint
-    form = replace(formulation, translation="free") if skew else formulation
-    motion = motions(form, locks.plane, setup.gravity if in_equations else None)
+    gravity = setup.gravity if in_equations else None
+    motion = motions(formulation, second, place.rotation, locks.plane, gravity)
+    layout = _layout(setup, locks, motion)
     return Plan(
-        setup=setup,
-        selection=selection,
-        frame=frame,
-        locks=locks,
-        layout=_layout(setup, locks, motion),
-        motion=motion,
-        marker_body_gravity=np.zeros(3) if in_equations else setup.gravity,
-        start=start,
+        **vars(setup), selection=selection, frame=frame, locks=locks, layout=layout, motion=motion
     )
+
+
+_LOCK_RATIO = 1e18  # masses of locked coordinates over those of the rotor
+# beside a constraint that explicit solvers eliminate: of what moves within one of their steps
+_ELIMINATED_RATIO = 1e9
+# of coordinates that are driven: rounding of the driving force is seen in the external one
+_DRIVEN_RATIO = 1e9
 
 
 def _layout(setup: Setup, locks: Locks, motion: Motion) -> Layout:
     """Return where the unknowns stand among the coordinates of the nodes, and what is locked."""
     inv = motion.invariants
-    size = MODES + inv.size
     # a rotor all on its axis has no inertia about it, and its locked spin still needs one
     about_axis = inv.Theta or np.trace(inv.J) or inv.mass
-    inertia = np.repeat([inv.mass, about_axis], 3)
-    unknowns = np.array([*locks.unknown, *range(MODES, size)])
-    return Layout(size, unknowns, lock_masses(locks, size, inertia, setup.locking == "mass"))
+    inertia, size = np.repeat([inv.mass, about_axis], 3), MODES + inv.size
+    masses = np.zeros(size)
+    for index in (*locks.fixed, *locks.prescribed):
+        ratio = _ELIMINATED_RATIO if locks.stand_still else 1.0
+        if setup.locking == "mass":
+            ratio = _DRIVEN_RATIO if index in locks.varying else _LOCK_RATIO
+        masses[index] = inertia[index] * ratio
+    return Layout(size, np.array([*locks.unknown, *range(MODES, size)]), masses)
 
 
 def turned_origin(selection: Selection, rotation: np.ndarray, angle: float) -> np.ndarray:
     """Return by how much the frame origin moves where the rotor turns about its axis [m].
 
-    The origin is the centre of mass, which may be off the axis, where the translation is free.
-
-    Parameters
-    ----------
-    selection : Selection
-    rotation : ndarray, shape (3, 3)
-        Mesh axes → axes of the result, at θ = 0.
-    angle : float
-        θ [rad].
+    The origin is the centre of mass, which may be off the axis, where the translation is free. The
+    `rotation` takes mesh axes to axes of the result at θ = 0.
     """
     axis = selection.source.axis
     off = axis.radial(selection.origin)

@@ -1,32 +1,219 @@
-"""Rotor bodies in an Exudyn ``mbs``: report, markers, sensors, recording and start."""
+"""Rotor bodies in an Exudyn ``mbs``: report, markers, sensors, motion over a run, and start."""
 
 from __future__ import annotations
 
+import os
 import warnings
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import exudyn
 import numpy as np
-from exudyn.itemInterface import SensorMarker, SensorNode
+from exudyn.itemInterface import SensorMarker, SensorNode, SensorSuperElement, SensorUserFunction
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor import sensors
 from exudyn_rotor.multibody.rotor.connections import ConnectionWarning, lost_connections
+from exudyn_rotor.multibody.rotor.frame import LOCKS
 from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS
-from exudyn_rotor.multibody.rotor.record import (
+from exudyn_rotor.multibody.rotor.rotor_items import (
     RATES,
-    SAME,
-    Record,
-    StartState,
-    keep_in_node,
-    spin_at_start,
+    Carrier,
+    RotorItems,
+    carrier_of,
+    interface_of_nodes,
+    nodes_of,
 )
-from exudyn_rotor.multibody.rotor.rotor_items import Carrier, RotorItems, interface_of_nodes
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.formulation import ConstantSpeed, start_values
 
 _KINDS = exudyn.OutputVariableType
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """Motion of a rotor at the recorded instants.
+
+    Attributes
+    ----------
+    time : ndarray, shape (s,)
+        [s]
+    q, q_t, q_tt : ndarray, shape (s, n)
+        Coordinates of the body's nodes, those that are locked included.
+    speed : ndarray, shape (s,)
+        Spin speed [rad/s].
+    complete : bool
+        False if only the end state is known, because nothing was recorded.
+    """
+
+    time: np.ndarray
+    q: np.ndarray
+    q_t: np.ndarray
+    q_tt: np.ndarray
+    speed: np.ndarray
+    complete: bool
+
+
+def implicit_step(body: RotorItems) -> float | None:
+    """Return the step [s] of the last dynamic solution; None before one, or of an explicit one."""
+    settings = body.mbs.sys.get("simulationSettings")
+    solver = body.mbs.sys.get("dynamicSolver")
+    if settings is None or solver is None or "Explicit" in type(solver).__name__:
+        return None
+    integration = settings.timeIntegration
+    return (integration.endTime - integration.startTime) / integration.numberOfSteps
+
+
+_VELOCITIES = ("initialVelocities", "initialCoordinates_t")  # by the kind of the node
+SAME = 1e-9  # share of the speed, and rad, by which start and prescribed spin may differ
+
+
+@dataclass(frozen=True, eq=False)
+class StartState:
+    """Coordinates and velocities of a scene at one angle of a rotor.
+
+    Attributes
+    ----------
+    q, q_t : ndarray, shape (n,)
+        All coordinates of second order of the ``mbs``, and their velocities.
+    angle : float
+        Spin angle of the rotor [rad].
+    speed : float
+        Its spin speed [rad/s].
+
+    Examples
+    --------
+    :func:`exudyn_rotor.steady_state` makes one, and so do the responses of linear analyses
+    (:meth:`UnbalanceResponse.state`); :meth:`RotorBody.start_from` takes it.
+
+    >>> from exudyn_rotor import StartState
+    >>> StartState([0.0, 1e-3], [0.0, 0.1], angle=0.0, speed=100.0).q_t
+    array([0. , 0.1])
+    """
+
+    q: np.ndarray
+    q_t: np.ndarray
+    angle: float
+    speed: float
+
+    def __post_init__(self) -> None:
+        q = checks.array(self.q, "q", "m, rad")
+        q_t = checks.array(self.q_t, "q_t", "m/s, rad/s")
+        if q.ndim != 1 or q.shape != q_t.shape:
+            raise ValueError(
+                f"q, q_t: need one velocity for each coordinate, got the shapes {q.shape} and "
+                f"{q_t.shape}"
+            )
+        checks.keep(self, q=q, q_t=q_t)
+        checks.keep_numbers(self, {"angle": "rad", "speed": "rad/s"})
+
+
+def spin_at_start(body: RotorItems) -> tuple[float, float]:
+    """Return angle [rad] and speed [rad/s] with which the rotor starts."""
+    if body.formulation.has_spin:
+        return body.placement.angle, body.placement.speed
+    angle, speed, _ = start_values(body.formulation.spin, "spin")
+    return angle, speed
+
+
+def keep_in_node(mbs: exudyn.MainSystem, number: int, state: StartState) -> None:
+    """Write the state into a node, so that it outlives ``mbs.Assemble()``."""
+    node = mbs.GetNode(number)
+    velocities = next((name for name in _VELOCITIES if name in node), None)
+    if velocities is None:  # a node of the ground, or of data
+        return
+    first = mbs.GetNodeODE2Index(number)
+    place = slice(first, first + len(node[velocities]))
+    mbs.SetNodeParameter(number, "initialCoordinates", state.q[place].tolist())
+    mbs.SetNodeParameter(number, velocities, state.q_t[place].tolist())
+
+
+def _warn_of_static_stress(body: RotorItems, output: exudyn.OutputVariableType) -> None:
+    """Warn where a native stress sensor leaves out a static stress that the rotor was given."""
+    spin = body.formulation.spin
+    at_rest = isinstance(spin, ConstantSpeed) and spin.speed == 0.0
+    # K2 is what a body keeps of a prestress
+    if output != _KINDS.StressLocal or at_rest or body.selection.invariants.K2 is None:
+        return
+    warnings.warn(
+        f"rotor {body.name!r}: Exudyn's stress sensor shows the stress of the modes alone, without "
+        "the static centrifugal stress that they do not hold; record the modal coordinates and use "
+        "StressField.of(reduced, body) with stress_history",
+        UserWarning,
+        stacklevel=3,
+    )
+
+
+def _friction(body: RotorItems, configuration: exudyn.ConfigurationType) -> float:
+    """Return the torque of bearings and stops on a rotor that does not feel it [N m]."""
+    total = 0.0
+    for made in (one.connector for one in body.supports):
+        made.read(*made.state(body.mbs, configuration))
+        total += made.friction()
+    return total
+
+
+def _deflected_weight(body: RotorItems, t: float, zeta: np.ndarray) -> float:
+    """Return the moment about e of gravity by the deflection Sζ, which Exudyn's load leaves out."""
+    if body.gravity_load is None:
+        return 0.0
+    motion = body.motion
+    axis = SpinAxis(motion.invariants.direction)
+    gravity = np.asarray(body.mbs.GetLoadParameter(body.gravity_load, "loadVector"))
+    turn = motion.orientation @ axis.rotation(motion.formulation.spin.value(t))
+    return float(turn @ axis.skew @ (motion.invariants.S @ zeta) @ gravity)
+
+
+def _external_moment(body: RotorItems, t: float, configuration: exudyn.ConfigurationType) -> float:
+    """Return the external moment about e, which the locked spin collects [N m]."""
+    node, mbs, spin = body.nodes["rigid"], body.mbs, body.locks.spin
+    acceleration = mbs.GetNodeOutput(node, _KINDS.Coordinates_tt, configuration)[spin]
+    moment = body.layout.lock_mass[spin] * float(acceleration)
+    if body.guide is not None:
+        moment -= body.guide(t)[spin]
+    if "spin" in body.constraints:
+        moment += float(np.ravel(mbs.GetObjectOutput(body.constraints["spin"], _KINDS.Force))[0])
+    elif body.constraints:
+        share = body.locks.rows[0][:, spin]
+        moment += float(share @ mbs.GetObjectOutput(body.constraints[LOCKS], _KINDS.Force))
+    return moment
+
+
+def add_function_sensor(
+    body: RotorItems, function: Callable, options: Mapping[str, Any]
+) -> exudyn.SensorIndex:
+    """Add a sensor of what a user function returns."""
+    settings = _settings_of(body, options)
+    return body.mbs.AddSensor(SensorUserFunction(sensorUserFunction=function, **settings))
+
+
+def native_settings(
+    body: RotorItems, output: exudyn.OutputVariableType, options: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the settings of a native sensor; Exudyn refuses unsuited outputs in Assemble."""
+    checks.instance(output, "output", _KINDS)
+    return {"outputVariableType": output} | _settings_of(body, options)
+
+
+def _settings_of(body: RotorItems, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the settings of a sensor, stored internally by default."""
+    body.check_present()
+    known = ("name", "storeInternal", "writeToFile", "fileName")
+    for option in options:
+        if option not in known:
+            raise TypeError(f"{option}: is no option of this sensor; it takes {', '.join(known)}")
+    settings = {"storeInternal": True, "writeToFile": False} | dict(options)
+    for option in ("storeInternal", "writeToFile"):
+        checks.flag(settings[option], option)
+    if "fileName" in settings:
+        settings["fileName"] = os.fspath(checks.path(settings["fileName"], "fileName"))
+    if "name" in settings:
+        name = checks.label(settings["name"], "name")
+        if int(body.mbs.GetSensorNumber(name)) != -1:
+            raise ValueError(f"name: this system already has a sensor {name!r}; choose another")
+    return settings
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -40,18 +227,13 @@ class SceneBody(RotorItems, ABC):
         """Return one line; :meth:`report` says more."""
         return (
             f"{type(self).__name__}({self.name!r}, Sect. {self.formulation.section}, "
-            f"stiffening {self.stiffening!r}, {self._size_in_words}, "
+            f"stiffening {self.stiffening!r}, {self._coordinates_in_words()[0]}, "
             f"markers: {', '.join(self.markers) or 'none'})"
         )
 
-    @property
     @abstractmethod
-    def _size_in_words(self) -> str:
-        """Number of modes or nodes."""
-
-    @abstractmethod
-    def _report_of_coordinates(self) -> list[str]:
-        """Return lines of :meth:`report` about modes or displacements."""
+    def _coordinates_in_words(self) -> tuple[str, list[str]]:
+        """Return the number of modes or nodes, and lines of :meth:`report` about them."""
 
     @abstractmethod
     def _nodes_carrier(self, where: Sequence[int], kind: str) -> Carrier:
@@ -72,7 +254,7 @@ class SceneBody(RotorItems, ABC):
             f"stiffening {self.stiffening!r}",
             f"  translations   {names[self.formulation.translation_count]}",
             f"  spin           {'unknown' if self.formulation.has_spin else 'prescribed'}",
-            *self._report_of_coordinates(),
+            *self._coordinates_in_words()[1],
             f"  locked         {', '.join(self.locks.locked_names) or 'none'}",
             f"  constraints    {len(self.constraints)}",
             f"  supports       {'; '.join(map(str, self.supports)) or 'none added'}",
@@ -160,12 +342,8 @@ class SceneBody(RotorItems, ABC):
     def add_interface_sensor(self, interface: str, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at an interface's marker; `options` go to ``SensorMarker``."""
         marker = self.marker(interface)
-        kind = self.plan.setup.markers[interface]
-        sensors.check_output(output, sensors.AT_MARKER[kind], f"at a {kind} marker")
-        settings = sensors.settings_of(self, options)
-        return self.mbs.AddSensor(
-            SensorMarker(markerNumber=marker, outputVariableType=output, **settings)
-        )
+        settings = native_settings(self, output, options)
+        return self.mbs.AddSensor(SensorMarker(markerNumber=marker, **settings))
 
     def add_spin_sensor(self, **options):
         """Add a sensor of spin angle [rad] and spin speed [rad/s]."""
@@ -176,11 +354,32 @@ class SceneBody(RotorItems, ABC):
             speed = mbs.GetNodeOutput(node, _KINDS.Coordinates_t, configuration)[index]
             return [float(angle), float(speed)]
 
-        return sensors.add_function_sensor(self, spin, options)
+        return add_function_sensor(self, spin, options)
 
     def add_drive_torque_sensor(self, **options):
-        """Add a sensor of the torque about e that a prescribed spin needs [N m]."""
-        return sensors.add_drive_torque_sensor(self, **options)
+        """Add a sensor of the torque about e that a prescribed spin needs [N m].
+
+        The torque is the rotor's own share (the row of θ in (84–86)) minus the moment of all
+        external forces, which the locked coordinate of the flexible body collects, and minus the
+        friction of bearings and stops, which the motion of a prescribed spin does not feel. Not in
+        static solutions: Exudyn's static solver returns multipliers with the opposite sign.
+        Explicit solvers have no accelerations at the first instant, so the first value is wrong
+        with them.
+        """
+        if self.formulation.has_spin:
+            raise ValueError(
+                f"rotor {self.name!r} spins freely and has no drive; a prescribed spin has one"
+            )
+
+        def torque(mbs, t, given, factors, configuration):
+            q, q_t, q_tt = self.coordinates(configuration)
+            zeta, zeta_tt = q[self.motion.modes], q_tt[self.motion.modes]
+            needed = self.motion.drive_torque(t, q, q_t, zeta_tt)
+            needed -= _external_moment(self, t, configuration)
+            needed -= _deflected_weight(self, t, zeta)
+            return [needed - _friction(self, configuration)]
+
+        return add_function_sensor(self, torque, options)
 
     def add_energy_sensor(self, **options):
         """Add a sensor of kinetic energy, elastic energy and the potential of the weight [J].
@@ -193,13 +392,13 @@ class SceneBody(RotorItems, ABC):
 
         def energy(mbs, t, sensors, factors, configuration):
             q, q_t, _ = self.coordinates(configuration)
-            gravity = self.plan.setup.gravity
+            gravity = self.gravity
             if self.gravity_load is not None:  # a script may change it
                 gravity = mbs.GetLoadParameter(self.gravity_load, "loadVector")
             energy = self.motion.energy(t, q, q_t, gravity)
             return list(energy)
 
-        return sensors.add_function_sensor(self, energy, options)
+        return add_function_sensor(self, energy, options)
 
     def start_recording(self) -> None:
         """Record all coordinates of the coming run, for :func:`exudyn_rotor.check_run`.
@@ -270,37 +469,39 @@ class RotorBody(SceneBody):
     False
     """
 
-    @property
-    def _size_in_words(self) -> str:
-        return f"{len(self.selection.labels)} modes"
-
-    def _report_of_coordinates(self) -> list[str]:
+    def _coordinates_in_words(self) -> tuple[str, list[str]]:
         labels = self.selection.labels
-        return [f"  modes          {len(labels)}: {', '.join(labels)}"]
+        return f"{len(labels)} modes", [f"  modes          {len(labels)}: {', '.join(labels)}"]
 
     def _nodes_carrier(self, where: Sequence[int], kind: str) -> Carrier:
         """Return what moves with the mean rigid motion of mesh nodes."""
-        number, nodes = self.objects["marker_body"], tuple(self.nodes.values())
-        count = self.mesh_node_count
+        count, body = self.mesh_node_count, self.objects["marker_body"]
         if not count:
             raise ValueError(
                 f"where: rotor {self.name!r} has no shapes (without_shapes), "
                 f"so no mesh nodes; name an interface, got {checks.shown(where)}"
             )
-        points = np.reshape(self.mbs.GetObjectParameter(number, "referencePositions"), (-1, 3))
-        interface = interface_of_nodes(points[:count], where, kind)
-        columns = self.mbs.GetObjectParameter(number, "modeBasis")[: 3 * count]
-        motion = interface.mean_motion(count) @ columns
-        return Carrier(number, interface.reference, motion, interface.radius, nodes)
+        interface = interface_of_nodes(nodes_of(self.mbs, body)[:count], where, kind)
+        return carrier_of(self.mbs, body, interface, tuple(self.nodes.values()))
 
     def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``.
 
-        Stress in Exudyn, here and in contour plots, is that of the modal coordinates alone, without
-        the static centrifugal stress that the modes do not show; for a rotor with a prestress that
-        warns. :class:`exudyn_rotor.StressField` gives the whole.
+        ``StressLocal`` needs a rotor of ``reduce(…, stress=True)``. Stress in Exudyn, here and in
+        contour plots, is that of the modal coordinates alone, without the static centrifugal stress
+        that the modes do not show; for a rotor with a prestress that warns.
+        :class:`exudyn_rotor.StressField` gives the whole.
         """
-        return sensors.add_node_sensor(self, node, output, **options)
+        marker_body, count = self.objects["marker_body"], self.mesh_node_count
+        if checks.count(node, "node", least=-1) not in range(count):
+            raise ValueError(
+                f"node: rotor {self.name!r} has mesh nodes 0 … {count - 1}, not {node}"
+                + ("" if count else "; it has no shapes (without_shapes)")
+            )
+        settings = native_settings(self, output, options)
+        _warn_of_static_stress(self, output)
+        item = SensorSuperElement(bodyNumber=marker_body, meshNodeNumber=int(node), **settings)
+        return self.mbs.AddSensor(item)
 
     def start_from(self, state: StartState) -> None:
         """Make a state of the whole scene the initial state of the coming runs.

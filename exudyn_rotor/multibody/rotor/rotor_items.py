@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
+from typing import Any, TypeVar
 
 import exudyn
 import numpy as np
@@ -29,16 +30,15 @@ from exudyn.itemInterface import (
 from exudyn_rotor import checks
 from exudyn_rotor.multibody import ENTRY
 from exudyn_rotor.multibody.evaluation import STATES
-from exudyn_rotor.multibody.rotor.frame import BodyFrame, Layout, Locks
+from exudyn_rotor.multibody.rotor.frame import add_constraints
 from exudyn_rotor.multibody.rotor.plan import Plan, marker_name
 from exudyn_rotor.reduction.reduced_rotor import ModeShapes
-from exudyn_rotor.reduction.selection import Selection
 from exudyn_rotor.solid.rotor import Interface, rotation_moments
 from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.formulation import Formulation
-from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.rotating_axes import axes_of
 
+_KINDS = exudyn.OutputVariableType
+RATES = (_KINDS.Coordinates, _KINDS.Coordinates_t, _KINDS.Coordinates_tt)
 _FLAT = 1e-6  # smallest second moment of nodes over the largest for which they show a rotation
 
 
@@ -82,7 +82,7 @@ def flexible_body(
         mPhitTPsi=frame.B @ S,
         **stress,
         visualization=VObjectFFRFreducedOrder(
-            triangleMesh=triangles, color=plan.setup.color, showNodes=False
+            triangleMesh=triangles, color=plan.color, showNodes=False
         ),
     )
 
@@ -99,27 +99,13 @@ def add_weight(
 
 @dataclass(frozen=True, eq=False)
 class Carrier:
-    """A point of a flexible body with a mean rigid motion, to which markers can be added.
+    """A point of a flexible body with a mean rigid motion, to which markers can be added."""
 
-    Attributes
-    ----------
-    body : ObjectIndex
-        The flexible body.
-    point : ndarray, shape (3,)
-        Axes of the body [m].
-    motion : ndarray, shape (6, m)
-        Displacement and rotation of the point by its coordinates, axes of the body.
-    radius : float
-        Of the nodes that a rotation is read from [m].
-    nodes : tuple of NodeIndex
-        Of a rotor: that of the frame, and that of the body's coordinates.
-    """
-
-    body: exudyn.ObjectIndex
-    point: np.ndarray
-    motion: np.ndarray
-    radius: float
-    nodes: tuple[exudyn.NodeIndex, ...] = ()
+    body: exudyn.ObjectIndex  # the flexible body
+    point: np.ndarray  # (3,) Axes of the body [m]
+    motion: np.ndarray  # (6, m) Displacement and rotation by coordinates, axes of the body
+    radius: float  # of the nodes that a rotation is read from [m]
+    nodes: tuple[exudyn.NodeIndex, ...] = ()  # of the frame, and of the body's coordinates
 
     def shifted(self, arm: np.ndarray) -> Carrier:
         """Return the point at an arm (3,), axes of the body, that turns with the rotation."""
@@ -194,14 +180,48 @@ def interface_of_nodes(positions: np.ndarray, where: Sequence[int], kind: str) -
     if len(nodes) == 0 or len(set(nodes.tolist())) != len(nodes):
         raise ValueError(f"{described}: needs different nodes, got {checks.shown(where)}")
     interface = Interface("nodes", nodes, None, positions[nodes])
-    moments, _ = rotation_moments(interface.positions - interface.center, interface.weights)
-    sizes = np.linalg.eigvalsh(moments)
-    if kind == "rigid" and sizes[0] <= _FLAT * sizes[-1]:
+    if kind == "rigid" and not shows_rotation(interface):
         raise ValueError(
             f"where: the nodes {checks.shown(nodes.tolist())} lie on a line or in a point and show "
             "no rotation; give more nodes, an interface, or kind='position'"
         )
     return interface
+
+
+def shows_rotation(interface: Interface) -> bool:
+    """Return whether the nodes of an interface do not lie on a line or in a point."""
+    arms = interface.positions - interface.center
+    sizes = np.linalg.eigvalsh(rotation_moments(arms, interface.weights)[0])
+    return bool(sizes[0] > _FLAT * sizes[-1])
+
+
+def nodes_of(mbs: exudyn.MainSystem, body: exudyn.ObjectIndex) -> np.ndarray:
+    """Return the nodes (n, 3) of a flexible body, virtual ones too, in its axes [m]."""
+    return np.reshape(mbs.GetObjectParameter(body, "referencePositions"), (-1, 3))
+
+
+def carrier_of(
+    mbs: exudyn.MainSystem,
+    body: exudyn.ObjectIndex,
+    interface: Interface,
+    nodes: tuple[exudyn.NodeIndex, ...] = (),
+) -> Carrier:
+    """Return what moves with the mean motion of nodes of a flexible body."""
+    columns = np.asarray(mbs.GetObjectParameter(body, "modeBasis"))
+    motion = interface.mean_motion(len(columns) // 3) @ columns
+    return Carrier(body, interface.reference, motion, interface.radius, nodes)
+
+
+def marker_interface(mbs: exudyn.MainSystem, marker: dict) -> Interface:
+    """Return the nodes of a super-element marker, axes of its body."""
+    numbers = np.asarray(marker["meshNodeNumbers"])
+    points = nodes_of(mbs, marker["bodyNumber"])[numbers]
+    return Interface("marker", numbers, marker["weightingFactors"], points)
+
+
+def marker_carrier(mbs: exudyn.MainSystem, marker: dict) -> Carrier:
+    """Return what moves with the mean motion of the nodes of a super-element marker."""
+    return carrier_of(mbs, marker["bodyNumber"], marker_interface(mbs, marker))
 
 
 _ROTORS = "rotors"
@@ -214,36 +234,27 @@ def entry(mbs: exudyn.MainSystem) -> dict:
 
 @dataclass(eq=False)
 class ScriptMarkers:
-    """What ``mbs.Assemble()`` has done with a script's own markers on a rotor.
+    """What ``mbs.Assemble()`` has done with a script's own markers on a rotor."""
 
-    Attributes
-    ----------
-    carriers : dict
-        Markers that carry tilts, by those of a script at the node.
-    turned : set of int
-        Markers that have been given mesh axes.
-    told : set of str
-        Warnings that have been given.
-    frame_shares : ndarray, shape (r, k − r), or None
-        Motion of the frame of Exudyn's own body by the elastic columns of the reduced rotor, in
-        shares of its r rigid ones.
-    """
-
+    # markers that carry tilts, by those of a script at the node
     carriers: dict[int, int] = field(default_factory=dict)
-    turned: set[int] = field(default_factory=set)
-    told: set[str] = field(default_factory=set)
+    turned: set[int] = field(default_factory=set)  # markers that have been given mesh axes
+    told: set[str] = field(default_factory=set)  # warnings that have been given
+    is_watched: bool = False  # by a sensor that sees the solver
+    # (r, k − r) Motion of the frame of Exudyn's own body by the elastic columns of the reduced
+    # rotor, in shares of its r rigid ones
     frame_shares: np.ndarray | None = None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class RotorItems:
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class RotorItems(Plan):
     """A rotor's items in an ``mbs``.
+
+    The attributes are those of :class:`~exudyn_rotor.multibody.rotor.plan.Plan`, and these:
 
     Attributes
     ----------
     mbs : exudyn.MainSystem
-    plan : Plan
-        How the rotor was laid out; ``plan.setup`` is what was asked for.
     nodes : mapping of str
         ``'rigid'`` (frame), and ``'modes'`` (modal coordinates) or ``'fields'`` (displacements).
     objects : mapping of str
@@ -265,11 +276,10 @@ class RotorItems:
     """
 
     mbs: exudyn.MainSystem
-    plan: Plan
     nodes: Mapping[str, exudyn.NodeIndex]
     objects: Mapping[str, exudyn.ObjectIndex]
-    constraints: Mapping[str, exudyn.ObjectIndex] = field(default_factory=dict)
-    gravity_load: exudyn.LoadIndex | None = None
+    constraints: Mapping[str, exudyn.ObjectIndex]
+    gravity_load: exudyn.LoadIndex | None
     mesh_node_count: int = 0
     markers: dict = field(default_factory=dict, init=False)
     supports: list = field(default_factory=list, init=False)
@@ -279,15 +289,9 @@ class RotorItems:
     script: ScriptMarkers = field(default_factory=ScriptMarkers, init=False)
 
     def __post_init__(self) -> None:
-        checks.instance(self.plan, "plan", Plan, "add_rotor makes one")
         known = copy(self)
         object.__setattr__(known, "mbs", None)
         entry(self.mbs).setdefault(_ROTORS, {})[int(self.nodes["rigid"])] = known
-
-    @property
-    def name(self) -> str | None:
-        """Name of the rotor."""
-        return self.plan.setup.name
 
     @property
     def axis(self) -> SpinAxis:
@@ -297,46 +301,7 @@ class RotorItems:
     @property
     def standing_axes(self) -> np.ndarray:
         """(n1, n2, e) as columns (3, 3) in inertial axes, where the spin angle is zero."""
-        return self.plan.setup.placement.rotation @ axes_of(self.axis)
-
-    @property
-    def formulation(self) -> Formulation:
-        """Which coordinates the rotor has."""
-        return self.plan.setup.formulation
-
-    @property
-    def stiffening(self) -> str:
-        """Level of the centrifugal stiffening."""
-        return self.plan.setup.stiffening
-
-    @property
-    def selection(self) -> Selection:
-        """The component modes in use; ``selection.labels`` names the modal coordinates."""
-        return self.plan.selection
-
-    @property
-    def motion(self) -> Motion:
-        """Equations of motion, inertial and mesh axes.
-
-        In a plane of rotation that is skew to the inertial axes they have three translations, and
-        a constraint holds the plane.
-        """
-        return self.plan.motion
-
-    @property
-    def frame(self) -> BodyFrame:
-        """Where mesh, marker body and scene stand to each other."""
-        return self.plan.frame
-
-    @property
-    def layout(self) -> Layout:
-        """Where the unknowns stand among the coordinates of the nodes."""
-        return self.plan.layout
-
-    @property
-    def locks(self) -> Locks:
-        """What happens to the six rigid coordinates of the marker body."""
-        return self.plan.locks
+        return self.placement.rotation @ axes_of(self.axis)
 
     def coordinates(
         self, configuration: exudyn.ConfigurationType = exudyn.ConfigurationType.Current
@@ -353,15 +318,13 @@ class RotorItems:
             known = ", ".join(kind.name for kind in STATES)
             raise ValueError(f"configuration: needs one of {known}, got {configuration.name}")
         self.check_assembled()
-        kinds = exudyn.OutputVariableType
-        place = self.layout
-
-        def values(kind: exudyn.OutputVariableType) -> np.ndarray:
-            nodes = self.nodes.values()
-            parts = [self.mbs.GetNodeOutput(node, kind, configuration) for node in nodes]
-            return np.hstack(parts)[place.unknowns]
-
-        return tuple(map(values, (kinds.Coordinates, kinds.Coordinates_t, kinds.Coordinates_tt)))
+        nodes = self.nodes.values()
+        return tuple(
+            np.hstack([self.mbs.GetNodeOutput(node, kind, configuration) for node in nodes])[
+                self.layout.unknowns
+            ]
+            for kind in RATES
+        )
 
     def check_present(self) -> None:
         """Raise ValueError where the system no longer holds this rotor."""
@@ -409,12 +372,21 @@ class RotorItems:
         return self.markers[interface]
 
 
-def add_interface_markers(body: RotorItems) -> None:
-    """Add the markers that ``add_rotor`` was asked for, with the axes of the mesh."""
-    for interface, kind in body.plan.setup.markers.items():
-        body.markers[interface] = body.interface_carrier(interface).add_marker(
-            body.mbs, kind, body.frame.B, name=marker_name(body.name, interface), show=True
+Body = TypeVar("Body", bound=RotorItems)
+
+
+def finished(kind: type[Body], mbs: exudyn.MainSystem, plan: Plan, **items: Any) -> Body:
+    """Return a body of a `kind` with its `items`, its frame held, its weight and markers added."""
+    rigid, marker_body = items["nodes"]["rigid"], items["objects"]["marker_body"]
+    held = {} if plan.locking == "mass" else add_constraints(mbs, plan.locks, rigid)
+    # what the equations do not hold
+    load = add_weight(mbs, marker_body, plan.gravity - plan.motion.gravity)
+    body = kind(**vars(plan), mbs=mbs, constraints=held, gravity_load=load, **items)
+    for name, of_marker in body.marker_kinds.items():
+        body.markers[name] = body.interface_carrier(name).add_marker(
+            mbs, of_marker, body.frame.B, name=marker_name(body.name, name), show=True
         )
+    return body
 
 
 def known_rotors(mbs: exudyn.MainSystem) -> Iterator[RotorItems]:

@@ -7,7 +7,7 @@ The spring is relaxed where the interface stands at rest with its centre on the 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import exudyn
@@ -76,9 +76,9 @@ class SceneSupport(SceneLaw):
         self.body.check_assembled()
         made, mbs = self.connector, self.body.mbs
         made.read(*made.state(mbs, configuration))
-        place, rate = np.array([made.end.place, made.end.rate])
-        if made.base is not None:
-            place, rate = place - made.base.place, rate - made.base.rate
+        place, rate = np.subtract(
+            [made.end.place, made.end.rate], [made.base.place, made.base.rate]
+        )
         fx, fy, *rest = made.wrench(mbs.systemData.GetTime(configuration))
         return place, rate, np.array([fx, fy, rest[0] if rest else 0.0])
 
@@ -90,7 +90,7 @@ class SceneSupport(SceneLaw):
 def add_supports(
     body: Body,
     supports: Sequence[Given] | Given,
-    base: Base | Mapping[str, Base] | None = None,
+    base: Base | None = None,
 ) -> tuple[SceneSupport, ...]:
     """Put a rotor in a scene on the supports that linear analyses take.
 
@@ -104,7 +104,7 @@ def add_supports(
     supports : sequence of Support or bearings
         A bearing acts by its law at the rotor's place, velocity and spin; a support, too, where it
         depends on the spin.
-    base : SceneFoundation, MarkerIndex, ObjectIndex, or mapping of interface to these, optional
+    base : SceneFoundation, MarkerIndex or ObjectIndex, optional
         What carries them: a foundation, by its point of the interface's name; a marker at the place
         of the interface, along the axis to a hundredth of its radius, as a mesh may shift it, also
         that of another rotor; a rigid body, which gets such a marker; the ground by default. Forces
@@ -205,7 +205,7 @@ def _check_support(body: Body, support: Given) -> None:
             f"support at {name!r}: mass: a scene takes one number, alike across the axis [kg], "
             "got a matrix"
         )
-    stiffness, damping = support.matrices(body.plan.setup.placement.speed)
+    stiffness, damping = support.matrices(body.placement.speed)
     acting = {"stiffness": stiffness} | ({"damping": damping} if support.frame == "rotor" else {})
     for kind in [kind for kind, X in acting.items() if free and _about_the_axis(X)]:
         raise ValueError(
@@ -224,29 +224,26 @@ def _check_on_rotor(body: Body, support: Given, seat: Seat) -> None:
     rotor = carrying_rotor(body.mbs, seat.base)
     if rotor is None:
         return
-    tilts = isinstance(support, Support) and support.tilts
-    across = isinstance(support, Support) and not tilts
+    linear = isinstance(support, Support)
     bearing, reason = bearing_of(support), None
-    if not across and abs(rotor.standing_axes[:, 2] @ seat.axes[:, 2]) < 1.0 - _PARALLEL:
-        reason = (
-            f", whose axis is not parallel to that of rotor {body.name!r}; mount both on parallel "
-            "axes"
-        )
+    skew = abs(rotor.standing_axes[:, 2] @ seat.axes[:, 2]) < 1.0 - _PARALLEL
+    if skew and not (linear and not support.tilts):
+        reason = f"has an axis that is not parallel to that of rotor {body.name!r}; turn it"
     elif isinstance(support, TiltingPadBearing | MagneticBearing):
-        reason = ", with which its pads or magnets would turn; give another bearing there"
+        reason = "would turn with its pads or magnets; give another bearing there"
     elif bearing is not None and not isinstance(bearing, RollingBearing):
         reason = (
-            f", and has the coefficients of a {type(bearing).__name__} whose bore is at rest; give "
-            "the bearing itself"
+            f"turns, unlike the bore whose coefficients are those of a {type(bearing).__name__}; "
+            "give the bearing itself"
         )
-    elif tilts and any(map(_about_the_axis, support.matrices(0.0))):
+    elif linear and support.tilts and any(map(_about_the_axis, support.matrices(0.0))):
         reason = (
-            ", to which it would act about the axis; between rotors of one speed connect_rotors "
-            "with a FlexibleCoupling has torsion"
+            "would be held about the axis; between rotors of one speed connect_rotors with a "
+            "FlexibleCoupling has torsion"
         )
     if reason is not None:
         raise ValueError(
-            f"base: the support at {support.interface!r} stands on another rotor{reason}"
+            f"base: the support at {support.interface!r} stands on another rotor, which {reason}"
         )
 
 
@@ -254,7 +251,7 @@ def _added(body: Body, support: Given, seat: Seat, sensed: Seat) -> SceneSupport
     mbs = body.mbs
     end, base = RotorEnd(body, support.interface), seat.end(mbs)
     if isinstance(support, Support):
-        parts, left = native_parts(body, support, seat, base is None)
+        parts, left = native_parts(body, support, seat)
         rotor = carrying_rotor(mbs, seat.base) is not None
         made = SupportConnector(support, end, base, rotor)
         if left is not None:
@@ -273,8 +270,8 @@ def _added(body: Body, support: Given, seat: Seat, sensed: Seat) -> SceneSupport
         own = _own_node(mbs, len(support.tangents)) if pads else None
         spins = body.formulation.has_spin
         # a foundation hardly turns, which a prescribed spin leaves out as linear analyses do
-        feels = base is not None and (spins or not isinstance(base, FoundationEnd))
-        made = BearingConnector(support, end, base, spins, feels, own)
+        feels = spins or not isinstance(base, FoundationEnd)
+        made = BearingConnector(support, end, base, spins, feels and base.size > 0, own)
     watch_clearance(body, made)
     number = mbs.AddObject(made.item())
     return SceneSupport(body, (number,), (PYTHON,), made, support, seat.base)

@@ -86,11 +86,15 @@ def add_base_motion(
     numbers = [_number(mbs, body) for body in given]
     if len(set(map(int, numbers))) < len(numbers):
         raise ValueError("bodies: one is given twice, and would feel the ground twice")
-    load = _load(turned)
-    return tuple(
-        _add_forces(body, load) if _has_own_weight(body) else _add_load(mbs, number, load)
-        for body, number in zip(given, numbers, strict=True)
-    )
+    load, added = _load(turned), []
+    for body, number in zip(given, numbers, strict=True):
+        if _has_own_weight(body):
+            added.append(_add_forces(body, load))
+            continue
+        marker = mbs.AddMarker(MarkerBodyMass(bodyNumber=number))
+        item = LoadMassProportional(markerNumber=marker, loadVectorUserFunction=load)
+        added.append(mbs.AddLoad(item))
+    return tuple(added)
 
 
 def _number(mbs: exudyn.MainSystem, body: Moved) -> exudyn.ObjectIndex:
@@ -106,10 +110,8 @@ def _number(mbs: exudyn.MainSystem, body: Moved) -> exudyn.ObjectIndex:
         return body
     if body.mbs is not mbs:
         raise ValueError("bodies: one is in another mbs")
-    if isinstance(body, SceneFoundation):
-        if body.foundation.participation is None:
-            raise ValueError("bodies: the foundation needs its participation")
-        return body.objects["marker_body"]
+    if isinstance(body, SceneFoundation) and body.foundation.participation is None:
+        raise ValueError("bodies: the foundation needs its participation")
     return body.objects["physics" if _has_own_weight(body) else "marker_body"]
 
 
@@ -122,16 +124,9 @@ def _has_own_weight(body: Moved) -> bool:
     return isinstance(body, FullRotorBody) or free_about_a_point
 
 
-def _add_load(
-    mbs: exudyn.MainSystem, number: exudyn.ObjectIndex, load: Callable
-) -> exudyn.LoadIndex:
-    marker = mbs.AddMarker(MarkerBodyMass(bodyNumber=number))
-    return mbs.AddLoad(LoadMassProportional(markerNumber=marker, loadVectorUserFunction=load))
-
-
 def _add_forces(body: RotorItems, load: Callable) -> exudyn.ObjectIndex:
     """Add an object of forces, without inertia or stiffness, on the nodes of a rotor."""
-    motion, layout = body.plan.motion, body.plan.layout
+    motion, layout = body.motion, body.layout
     empty = container(sp.csr_array((layout.size, layout.size)))
     held = [place for place in body.locks.fixed if place < 3]
 

@@ -30,9 +30,8 @@ from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support, acts
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, add_function_sensor
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, entry
-from exudyn_rotor.multibody.rotor.sensors import add_function_sensor
 from exudyn_rotor.multibody.supports.ends import BaseEnd, RotorEnd
 from exudyn_rotor.theory.rotating_axes import axial_rotation, axial_skew
 
@@ -60,20 +59,41 @@ class Force(NamedTuple):
         return self.J.T @ (self.K @ self.J) + damping @ self.L, damping @ self.J
 
 
-class Connector(ABC):
-    """A law between a rotor and what carries it.
+class Between:
+    """The motion of the end of a rotor against that of its base, by the coordinates of both."""
 
-    Attributes
-    ----------
-    end : RotorEnd
-    base : FoundationEnd, MarkerEnd or None
-        None for the ground.
-    nodes : tuple of NodeIndex
-        Of the rotor, of the base, and of coordinates of the law's own.
-    own : int
-        Number of these.
-    muted : bool
-        Whether its object has no force, as where linear equations take the law itself.
+    def __init__(self, end: RotorEnd, base: BaseEnd) -> None:
+        self.end, self.base = end, base
+        self._first, self._second = end.size, end.size + base.size
+        self.size = self._second
+
+    def read(self, q: list[float], q_t: list[float]) -> None:
+        """Take the motion of the ends from coordinates and their rates."""
+        first, second = self._first, self._second
+        self.end.read(q[:first], q_t[:first])
+        self.base.read(q[first:second], q_t[first:second])
+
+    @property
+    def relative(self) -> tuple[float, float, float, float, float, float]:
+        """Place x, y [m] and velocity of the rotor against the base, spin angle and speed."""
+        end, base = self.end, self.base
+        (x, y, _), (vx, vy, _) = end.place, end.rate
+        (a, b, _), (a_t, b_t, _) = base.place, base.rate
+        return x - a, y - b, vx - a_t, vy - b_t, end.angle, end.speed
+
+    def rows(self) -> np.ndarray:
+        """Return the rows J (6, size) of the rotor's motion against the base."""
+        J = np.zeros((6, self.size))
+        J[:, : self._first] = self.end.rows()
+        J[:, self._first : self._second] = -self.base.rows()
+        return J
+
+
+class Connector(Between, ABC):
+    """A law between the end of a rotor and that of its base.
+
+    Its coordinates are those of the `nodes` of both, and `own` more of the law. `muted` its object
+    has no force, as where linear equations take the law itself.
     """
 
     has_mass = False  # whether a mass goes with the rotor across the axis
@@ -83,47 +103,16 @@ class Connector(ABC):
     def __init__(
         self,
         end: RotorEnd,
-        base: BaseEnd | None,
+        base: BaseEnd,
         own: exudyn.NodeIndex | None = None,
         count: int = 0,
     ) -> None:
-        self.end, self.base, self.own = end, base, count
-        nodes = () if base is None else base.nodes
-        self.nodes = (*end.nodes, *nodes, *(() if own is None else (own,)))
-        self._first = end.size
-        self._second = end.size + (0 if base is None else base.size)
-        self.size = self._second + count
-        self.muted = False
+        super().__init__(end, base)
+        self.nodes = (*end.nodes, *base.nodes, *(() if own is None else (own,)))
+        self.own, self.muted = count, False
+        self.size += count
 
     # ------------------------------------------------------------------ motion
-
-    def read(self, q: list[float], q_t: list[float]) -> None:
-        """Take the motion of the ends from coordinates and their rates."""
-        if self.size == self._first:
-            self.end.read(q, q_t)
-            return
-        first, second = self._first, self._second
-        self.end.read(q[:first], q_t[:first])
-        if self.base is not None:
-            self.base.read(q[first:second], q_t[first:second])
-
-    @property
-    def relative(self) -> tuple[float, float, float, float, float, float]:
-        """Place x, y [m] and velocity of the rotor against the base, spin angle and speed."""
-        end, base = self.end, self.base
-        (x, y, _), (vx, vy, _) = end.place, end.rate
-        if base is None:
-            return x, y, vx, vy, end.angle, end.speed
-        (a, b, _), (a_t, b_t, _) = base.place, base.rate
-        return x - a, y - b, vx - a_t, vy - b_t, end.angle, end.speed
-
-    def rows(self) -> np.ndarray:
-        """Return the rows J (6, size) of the rotor's motion against the base."""
-        J = np.zeros((6, self.size))
-        J[:, : self._first] = self.end.rows()
-        if self.base is not None:
-            J[:, self._first : self._second] = -self.base.rows()
-        return J
 
     def rate_rows(self) -> np.ndarray:
         """Return the derivative (6, size) of the rotor's rate by the coordinates."""
@@ -140,8 +129,10 @@ class Connector(ABC):
         own: np.ndarray | None = None,
     ) -> list[float]:
         """Return the forces on all coordinates by a force and a moment on the rotor."""
+        if fx == fy == fz == 0.0 and own is None and not any(moment):  # as of an open stop
+            return [0.0] * self.size
         found = self.end.pull(fx, fy, fz, moment).tolist()
-        if self.base is not None:
+        if self.base.size:
             load = [-fx, -fy, -fz, *(-m for m in moment)]
             found += (load @ self.base.rows()).tolist()
         return found if own is None else found + own.tolist()
@@ -243,30 +234,29 @@ class SupportConnector(Connector):
     turns with the rotor is driven there: the reaction of its moments does not act on the spin.
     """
 
-    def __init__(
-        self, support: Support, end: RotorEnd, base: BaseEnd | None, on_rotor: bool
-    ) -> None:
+    def __init__(self, support: Support, end: RotorEnd, base: BaseEnd, on_rotor: bool) -> None:
         super().__init__(end, base)
         self.support, self._turns = support, support.frame == "rotor"
         self.has_mass = acts(support.mass)
         self._between = on_rotor  # tables are over the difference of both speeds
+        self._known = None, None  # the last speed, and matrices
 
     @property
     def _motion(self) -> tuple[np.ndarray, np.ndarray]:
         """Motion (6,) and rate (6,) against the base, the spin in the last rate alone."""
         end, base = self.end, self.base
-        x, x_t = np.array([*end.place, *end.tilt]), np.array([*end.rate, *end.tilt_rate])
-        if base is not None:
-            x -= [*base.place, *base.tilt]
-            x_t -= [*base.rate, *base.tilt_rate]
+        x = np.array([*end.place, *end.tilt]) - [*base.place, *base.tilt]
+        x_t = np.array([*end.rate, *end.tilt_rate]) - [*base.rate, *base.tilt_rate]
         x_t[5] += end.speed
         return x, x_t
 
     def _matrices(self) -> tuple[np.ndarray, np.ndarray]:
         end, base = self.end, self.base
         speed = end.speed - base.speed if self._between else end.speed
-        self.support.check_range(speed)
-        K, D = self.support.matrices(speed)
+        if speed != self._known[0]:
+            self.support.check_range(speed)
+            self._known = speed, self.support.matrices(speed)
+        K, D = self._known[1]
         if self._turns:
             R = np.kron(np.eye(2), axial_rotation(end.angle))
             K, D = R @ K @ R.T, R @ D @ R.T
@@ -308,15 +298,15 @@ class MagneticConnector(Connector):
     def __init__(
         self,
         bearing: MagneticBearing,
-        ends: tuple[RotorEnd, BaseEnd | None],
-        sensors: tuple[RotorEnd, BaseEnd | None],
+        ends: tuple[RotorEnd, BaseEnd],
+        sensors: tuple[RotorEnd, BaseEnd],
         own: exudyn.NodeIndex,
     ) -> None:
         self._realised = realised = bearing.controller.realisation()
         super().__init__(*ends, own, 2 * len(realised.inertia))
         self.bearing, self.parts = bearing, [bearing]
-        self._sensor, self.sensor_base = sensors
-        self._turn, self._offset = bearing.control_axes, bearing.sensor_offset
+        self.seen, self.sensor_base = Between(*sensors), sensors[1]
+        self._turn = bearing.control_axes
         parts = realised.by_place, realised.by_rate
         self._by_place, self._by_rate = (np.kron(part, self._turn) for part in parts)
         self._shares = bearing.scale * realised.place
@@ -334,11 +324,9 @@ class MagneticConnector(Connector):
     def read(self, q: list[float], q_t: list[float]) -> None:
         """Take the motion of magnets, sensors and controller."""
         super().read(q, q_t)
-        first, second = self._first, self._second
-        if self._sensor is not self.end:
-            self._sensor.read(q[:first], q_t[:first])
-        if self.sensor_base is not self.base:
-            self.sensor_base.read(q[first:second], q_t[first:second])
+        second = self._second
+        if self.seen.end is not self.end:
+            self.seen.read(q, q_t)
         self._currents = -self._by_place.dot(q[second:]) - self._by_rate.dot(q_t[second:])
 
     def motions(self) -> list[tuple[float, ...]]:
@@ -357,10 +345,7 @@ class MagneticConnector(Connector):
             self.outside = True
         law = self.bearing.actuator.law
         force = self._turn.T @ [law(*state) for state in self.axes_states]
-        seen = np.array(self._sensor.place[:2])
-        if self.sensor_base is not None:
-            seen = seen - self.sensor_base.place[:2]
-        own = np.outer(self._shares, seen + self._offset).ravel()
+        own = np.outer(self._shares, self.seen.relative[:2]).ravel()
         return float(force[0]), float(force[1]), 0.0, (0.0, 0.0, 0.0), own
 
     def tangent(self, t: float) -> Force:
@@ -370,17 +355,11 @@ class MagneticConnector(Connector):
         fx, fy, _, _, own = self.wrench(t)
         J = np.zeros((4 + self.own, self.size))
         J[:2] = self.rows()[:2]
-        J[2:4, : self._first] = self._sensor.rows()[:2]
-        if self.sensor_base is not None:
-            J[2:4, self._first : self._second] = -self.sensor_base.rows()[:2]
+        J[2:4, : self._second] = self.seen.rows()[:2]
         J[4:, self._second :] = np.eye(self.own)
         L = np.zeros_like(J)
         L[:2, : self._first] = self.end.rate_rows()[:2]
         return Force(np.array([fx, fy, 0.0, 0.0, *own]), J, L, K, D)
-
-
-_SPEED_STEP = 1e-6  # of the speed, or of 1 rad/s: differences of friction by it
-FilmPoint = tuple[tuple[float, ...], np.ndarray, np.ndarray, np.ndarray | None]
 
 
 class BearingConnector(Connector):
@@ -398,7 +377,7 @@ class BearingConnector(Connector):
         self,
         bearing: Bearing,
         end: RotorEnd,
-        base: BaseEnd | None,
+        base: BaseEnd,
         brakes: bool,
         feels: bool,
         own: exudyn.NodeIndex | None = None,
@@ -470,43 +449,31 @@ class BearingConnector(Connector):
         total, own = forces.sum(axis=0).tolist(), -(forces[:, :2] * self.levers).sum(axis=1)
         return *total[:2], 0.0, (0.0, 0.0, total[2] if self.brakes else 0.0), own
 
-    def tangent(self, t: float) -> Force:
-        """Return the force, its tangent, and rows: across the axis, of the spin, and of pads."""
-        parts = zip(self.parts, self.motions(), strict=True)
-        return self.assembled([self._point(*each) for each in parts])
+    def tangent(self, t: float, cage: float | None = None) -> Force:
+        """Return the force, its tangent, and rows: across the axis, of the spin, and of pads.
 
-    def _point(self, part: Bearing, motion: tuple[float, ...]) -> FilmPoint:
-        """Return values of a law, K and D (2, 2); with a torque less the slopes by speed, too."""
-        if not self.brakes:
-            return part.law(*motion), *part.slopes(*motion), None
-        step = _SPEED_STEP * max(abs(motion[5]), 1.0)
-        ahead = part.law_with_torque(*motion[:5], motion[5] + step)
-        values = part.law_with_torque(*motion)
-        faster = (np.array(values) - ahead) / step
-        return values, *part.slopes(*motion), faster
-
-    def assembled(self, parts: list[FilmPoint]) -> Force:
-        """Return force and tangent on the ports, from the values and K, D (2, 2) of each film.
-
-        A third value is a torque, with less its derivative, and that of the force, by the speed.
+        Cages of rolling bearings stand as at the spin angle `cage`, if it is given. How forces
+        change with the spin speed is left out: within a step it hardly changes.
         """
         count = 3 + self.own
         force, (K, D) = np.zeros(count), np.zeros((2, count, count))
-        for number, (values, k, d, by_speed) in enumerate(parts):
+        parts = zip(self.parts, self.laws, self.motions(), strict=True)
+        for number, (part, law, motion) in enumerate(parts):
+            if cage is not None:
+                motion = *motion[:4], cage, motion[5]
+            values, (k, d) = np.array(law(*motion)), part.slopes(*motion)
             if self.feels:
                 k = k + self.base.speed * d @ np.array([[0.0, 1.0], [-1.0, 0.0]])
                 if self._turn is not None:
                     c, s = self._turn
                     R = np.array([[c, -s], [s, c]])
-                    k, d, values = R @ k @ R.T, R @ d @ R.T, [*(R @ values[:2]), *values[2:]]
+                    k, d, values[:2] = R @ k @ R.T, R @ d @ R.T, R @ values[:2]
             S = np.eye(3, count)[: len(values)]  # of what this film sees, by the ports
             if self.levers is not None:
                 S[:2, 3 + number] = -self.levers[number]
             force += values @ S
             K += S[:2].T @ k @ S[:2]
             D += S[:2].T @ d @ S[:2]
-            if by_speed is not None:
-                D[:, 2] += by_speed @ S
         J, L = np.zeros((2, count, self.size))
         J[:3], L[:3] = self.rows()[[0, 1, 5]], self.rate_rows()[[0, 1, 5]]
         J[3:, self._second :] = np.eye(self.own)
@@ -527,7 +494,8 @@ class BearingConnector(Connector):
 
 def has_torque(bearing: Bearing) -> bool:
     """Return whether a bearing has a torque about the axis in scenes."""
-    return isinstance(bearing, TiltingPadBearing) or bearing.law_with_torque is not None
+    with_torque = bearing.law_with_torque is not None and getattr(bearing, "friction", None) != 0.0
+    return with_torque or isinstance(bearing, TiltingPadBearing)
 
 
 def watch_clearance(body: RotorItems, connector: BearingConnector | MagneticConnector) -> None:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from math import cos, sin
 
 import exudyn
@@ -19,7 +19,12 @@ from exudyn.utilities import (
 )
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor.rotor_items import Carrier, RotorItems, carrying_rotor
+from exudyn_rotor.multibody.rotor.rotor_items import (
+    Carrier,
+    RotorItems,
+    carrying_rotor,
+    marker_carrier,
+)
 from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation, foundation_marker
 from exudyn_rotor.solid.places import SAME_PLACE, leeway, off_place
 from exudyn_rotor.theory.axis import skew
@@ -35,11 +40,10 @@ Base = exudyn.MarkerIndex | exudyn.ObjectIndex | SceneFoundation
 
 @dataclass(frozen=True, eq=False)
 class Seat:
-    """Where a support is, checked, before anything is added.
+    """Where a support is, checked, before anything is added; all in inertial axes.
 
-    The place of the interface `name` is inertial [m], the axes (n1, n2, e) are in inertial axes,
     `leeway` is by how much the mesh may put the interface elsewhere along e [m]; `base` is what
-    carries it, with its reference position and orientation.
+    carries it, with its reference position `origin` and orientation.
     """
 
     name: str
@@ -47,33 +51,25 @@ class Seat:
     axes: np.ndarray
     leeway: np.ndarray
     base: Base | None
-    origin: np.ndarray
-    orientation: np.ndarray
+    origin: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    orientation: np.ndarray = field(default_factory=lambda: np.eye(3))
 
     @classmethod
-    def of(cls, body: RotorItems, name: str, base: Base | Mapping[str, Base] | None) -> Seat:
+    def of(cls, body: RotorItems, name: str, base: Base | None) -> Seat:
         """Return the place of an interface on its base."""
-        setup = body.plan.setup.placement
+        setup = body.placement
         interface = body.selection.source.interfaces[name]
         on_axis = body.axis.project(interface.reference)
         place = setup.position + setup.rotation @ on_axis
         axes = body.standing_axes
         where = name, place, axes, leeway(interface.radius, axes[:, 2])
-        at_rest = np.zeros(3), np.eye(3)
-        if isinstance(base, Mapping):
-            if name not in base:
-                raise ValueError(
-                    f"base: has nothing for the interface {name!r}, only for: "
-                    f"{', '.join(map(str, base)) or 'none'}"
-                )
-            base = base[name]
         if base is None:
-            return cls(*where, None, *at_rest)
+            return cls(*where, None)
         if isinstance(base, SceneFoundation):
             if base.mbs is not body.mbs:
                 raise ValueError("base: this foundation is in another mbs")
             base.foundation.motion(name, place, where[3])
-            return cls(*where, base, *at_rest)
+            return cls(*where, base)
         checks.instance(base, "base", (exudyn.MarkerIndex, exudyn.ObjectIndex, SceneFoundation))
         origin, orientation = _reference(body.mbs, base)
         _refuse_own(body, name, base)
@@ -85,8 +81,8 @@ class Seat:
             )
         return cls(*where, base, origin, orientation)
 
-    def end(self, mbs: exudyn.MainSystem) -> BaseEnd | None:
-        """Return the end of the base at the place; None of the ground.
+    def end(self, mbs: exudyn.MainSystem) -> BaseEnd:
+        """Return the end of the base at the place.
 
         Raises
         ------
@@ -97,12 +93,10 @@ class Seat:
             motion = self.base.foundation.points[self.name]
             return FoundationEnd(self.base.node, motion, self.axes)
         if self.base is None:
-            return None
-        item = {"bodyNumber": self.base}
-        if isinstance(self.base, exudyn.MarkerIndex):
-            item = mbs.GetMarker(self.base)
+            return GroundEnd()
+        item = _item(mbs, self.base)
         if "bodyNumber" in item and mbs.GetObject(item["bodyNumber"])["objectType"] == "Ground":
-            return None
+            return GroundEnd()
         return MarkerEnd(mbs, item, self.place, self.axes, carrying_rotor(mbs, self.base))
 
     def marker(self, mbs: exudyn.MainSystem) -> exudyn.MarkerIndex:
@@ -128,6 +122,12 @@ def _frame(turn: np.ndarray, shift: np.ndarray = (0.0, 0.0, 0.0)) -> np.ndarray:
     return frame
 
 
+def _item(mbs: exudyn.MainSystem, base: exudyn.MarkerIndex | exudyn.ObjectIndex) -> dict:
+    """Return a marker, or what one of a body says of it."""
+    is_marker = isinstance(base, exudyn.MarkerIndex)
+    return mbs.GetMarker(base) if is_marker else {"bodyNumber": base}
+
+
 def _reference(mbs: exudyn.MainSystem, base: Base) -> tuple[np.ndarray, np.ndarray]:
     """Return the reference position and orientation of a marker or a rigid body."""
     is_marker = isinstance(base, exudyn.MarkerIndex)
@@ -150,9 +150,7 @@ def _reference(mbs: exudyn.MainSystem, base: Base) -> tuple[np.ndarray, np.ndarr
 
 def _refuse_own(body: RotorItems, name: str, base: exudyn.MarkerIndex | exudyn.ObjectIndex) -> None:
     """Refuse what moves with the rotor itself: between the two nothing would ever act."""
-    item = {"bodyNumber": base}
-    if isinstance(base, exudyn.MarkerIndex):
-        item = body.mbs.GetMarker(base)
+    item = _item(body.mbs, base)
     own = {"bodyNumber": body.objects, "nodeNumber": body.nodes}
     if any(int(item[kind]) in map(int, own[kind].values()) for kind in own.keys() & item.keys()):
         raise ValueError(
@@ -189,17 +187,9 @@ _TURNED = {
 class RotorEnd:
     """An interface of a rotor, by the coordinates of two nodes, the frame's first.
 
-    Attributes
-    ----------
-    nodes : tuple of NodeIndex
-    size : int
-        Number of coordinates.
-    place, rate : tuple of float
-        Displacement [m] and velocity [m/s] where it has been read, along (n1, n2, e).
-    tilt, tilt_rate : tuple of float
-        Rotation but for the spin angle [rad], and the rate of it.
-    angle, speed : float
-        Spin angle, from where the node has it at zero [rad], and its rate [rad/s].
+    Where it has been read, its displacement and velocity are `place` and `rate`, along (n1, n2, e),
+    its rotation but for the spin is `tilt`, with `tilt_rate`; the spin angle is `angle`, from where
+    the node has it at zero, and the spin `speed`.
     """
 
     def __init__(self, body: RotorItems, name: str) -> None:
@@ -222,7 +212,7 @@ class RotorEnd:
         unit = np.eye(self.size)
         self._read = np.kron(np.eye(2), np.vstack([unit[spin], rows]))
         self._pull = np.vstack([unit[[spin, *body.locks.tilts]], rows]).T
-        self._start = body.plan.setup.placement.angle
+        self._start = body.placement.angle
 
     def read(self, q: list[float], q_t: list[float]) -> None:
         """Take the motion from coordinates and their rates."""
@@ -309,6 +299,21 @@ class RotorEnd:
         return L
 
 
+class GroundEnd:
+    """The ground, which does not move; as :class:`MarkerEnd`."""
+
+    nodes, size = (), 0
+    place = rate = tilt = tilt_rate = (0.0, 0.0, 0.0)
+    turn = speed = 0.0
+
+    def read(self, q: list[float], q_t: list[float]) -> None:
+        """Take nothing."""
+
+    def rows(self) -> np.ndarray:
+        """Return no columns of displacement and rotation, (6, 0)."""
+        return np.zeros((6, 0))
+
+
 class FoundationEnd:
     """A point of a foundation, by the coordinates of its node; as :class:`MarkerEnd`."""
 
@@ -332,18 +337,8 @@ class FoundationEnd:
 class MarkerEnd:
     """A place on a body of Exudyn with a frame, rigid or with modes; another rotor is one.
 
-    Attributes
-    ----------
-    nodes : tuple of NodeIndex
-    size : int
-        Number of coordinates.
-    place, rate : ndarray, shape (3,)
-        Displacement [m] and velocity [m/s] where it has been read, along (n1, n2, e).
-    tilt, tilt_rate : ndarray, shape (3,)
-        Of the axis, without a rotation about it [rad], [rad/s].
-    turn, speed : float
-        Angle about e by which another rotor has turned, zero of what is no rotor [rad], and the
-        rate at which the body turns about e [rad/s].
+    Read as a :class:`RotorEnd`; its tilt is that of the axis, without a rotation about it. Another
+    rotor has turned about e by `turn`, what is no rotor by zero; the body turns at `speed`.
     """
 
     def __init__(
@@ -369,13 +364,12 @@ class MarkerEnd:
         self._point = A.T @ (place - self._start[:3])
         self._axis, modes = A.T @ axes[:, 2], np.zeros((6, 0))
         if "modeBasis" in body:
-            modes = _mean_motion(body, item)
-            arm = self._point - modes[1]
-            modes = np.vstack([modes[0][:3] - skew(arm) @ modes[0][3:], modes[0][3:]])
+            carrier = marker_carrier(mbs, item)
+            modes = carrier.shifted(self._point - carrier.point).motion
         self._modes, self._count = modes, count
         self.size = count + modes.shape[1]
         self.nodes = tuple(map(exudyn.NodeIndex, nodes[: 1 + bool(modes.shape[1])]))
-        self._spin, self.is_rotor = None, rotor is not None
+        self._spin = None
         if rotor is not None:
             sense = float(np.sign(rotor.standing_axes[:, 2] @ axes[:, 2]))
             self._spin = rotor.locks.spin, sense
@@ -409,18 +403,4 @@ class MarkerEnd:
         return self._J
 
 
-BaseEnd = FoundationEnd | MarkerEnd
-
-
-def _mean_motion(body: dict, marker: dict) -> tuple[np.ndarray, np.ndarray]:
-    """Return motion (6, m) and place (3,) of a marker of a flexible body, in axes of the body."""
-    columns = np.asarray(body["modeBasis"])
-    columns = columns.reshape(len(columns) // 3, 3, -1)
-    points = np.reshape(body["referencePositions"], (-1, 3))
-    numbers = list(marker["meshNodeNumbers"])
-    weights = np.asarray(marker["weightingFactors"])
-    place, mean = weights @ points[numbers], np.tensordot(weights, columns[numbers], 1)
-    shares = np.sqrt(weights)[:, None, None]
-    turning = (shares * [-skew(arm) for arm in points[numbers] - place]).reshape(-1, 3)
-    moved = (shares * (columns[numbers] - mean)).reshape(-1, mean.shape[1])
-    return np.vstack([mean, np.linalg.lstsq(turning, moved, rcond=None)[0]]), place
+BaseEnd = GroundEnd | FoundationEnd | MarkerEnd

@@ -70,17 +70,6 @@ class SceneFoundation:
     gravity_load: exudyn.LoadIndex | None = None
     _markers: dict[str, exudyn.MarkerIndex] = field(default_factory=dict, init=False)
 
-    def __post_init__(self) -> None:
-        main_system(self.mbs)
-        checks.instance(self.foundation, "foundation", Foundation)
-        checks.instance(self.node, "node", exudyn.NodeIndex)
-        objects = checks.mapping(self.objects, "objects", "ObjectIndex", ("physics", "marker_body"))
-        for name, number in objects.items():
-            checks.instance(number, f"objects: {name!r}", exudyn.ObjectIndex)
-        object.__setattr__(self, "objects", checks.read_only_mapping(objects))
-        if self.gravity_load is not None:
-            checks.instance(self.gravity_load, "gravity_load", exudyn.LoadIndex)
-
     def __repr__(self) -> str:
         """Return a short summary."""
         return f"SceneFoundation({self.foundation!r})"
@@ -201,7 +190,7 @@ def add_foundation(
     )
     _hold(mbs, frame)
     load = add_weight(mbs, body, g)
-    objects = {"physics": physics, "marker_body": body}
+    objects = checks.read_only_mapping({"physics": physics, "marker_body": body})
     return SceneFoundation(mbs, placed, coordinates, objects, load)
 
 

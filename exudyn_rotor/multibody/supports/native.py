@@ -1,11 +1,10 @@
 """Linear supports with constant coefficients in a scene, as connectors that Exudyn evaluates.
 
 Displacements go through a ``CartesianSpringDamper``: diagonal matrices by numbers, others by a
-symbolic function. Tilts go through a ``RigidBodySpringDamper``. Native tilt damping would act on
-Exudyn's angular velocity ω of the marker; of a spinning rotor with the tilt ψ, on the ground, the
-rate is ``ω + 2 Ω e × ψ``: once since the marker spins, and once because Exudyn gives ω in axes of
-the frame. The moment m across the axis has the part ``m · (e × ψ)`` about it: without it springs
-that are not alike in all directions, and dampers, would drive a free spin.
+symbolic function. Springs against tilts, alike in both directions, are a ``RigidBodySpringDamper``;
+others, and dampers, stay: Exudyn gives the angular velocity of a marker in axes of the spinning
+frame, and the moment m across the axis has the part ``m · (e × ψ)`` about it, by the tilt ψ,
+without which it would drive a free spin.
 """
 
 from __future__ import annotations
@@ -24,49 +23,41 @@ from exudyn_rotor.multibody.supports.ends import Seat, point_marker, rigid_marke
 
 _ROUNDING = 1e-13  # of the largest entry of a turned matrix
 _FUNCTIONS = "symbolic functions of supports"
-Parts = list[tuple[exudyn.ObjectIndex, str]]
+Part = tuple[exudyn.ObjectIndex, str]
 
 
 def native_parts(
-    body: RotorItems, support: Support, seat: Seat, grounded: bool
-) -> tuple[Parts, Support | None]:
-    """Add what Exudyn evaluates itself; return it, and what is left of the support, or None.
-
-    On a base, other than the ground, the rate of its tilts counts, too.
-    """
-    parts, left = [], {}
-    across, tilts = ("stiffness", "damping"), ("tilt_stiffness", "tilt_damping")
+    body: RotorItems, support: Support, seat: Seat
+) -> tuple[list[Part], Support | None]:
+    """Add what Exudyn evaluates itself; return it, and what is left of the support, or None."""
+    parts, left = [], {"mass": support.mass}
     if support.frame == "rotor" or support.couples:
         return parts, support
-    constant = [
-        not any(varies(getattr(support, name)) for name in kind) for kind in (across, tilts)
-    ]
-    if constant[0]:
-        if any(acts(getattr(support, name)) for name in across):
-            parts.append(_displacement_connector(body, support, seat))
-    else:
-        left |= {name: getattr(support, name) for name in across}
-    K, D = (X[3:, 3:] for X in support.matrices(0.0)) if constant[1] else np.zeros((2, 3, 3))
-    about = np.any(K[2]) or np.any(K[:, 2]) or np.any(D[2]) or np.any(D[:, 2])
-    alike = np.array_equal(K, np.diag([K[0, 0], K[0, 0], 0.0])) and not np.any(D)
-    if constant[1] and not about and (alike or grounded):
-        if np.any(K) or np.any(D):
-            parts.append(_tilt_connector(body, support, seat, K, D))
-    else:
-        left |= {name: getattr(support, name) for name in tilts}
-    left["mass"] = support.mass
+    for names, rows, add in (
+        (("stiffness", "damping"), slice(3), _displacement_connector),
+        (("tilt_stiffness", "tilt_damping"), slice(3, 6), _tilt_connector),
+    ):
+        given = {name: getattr(support, name) for name in names}
+        if not any(map(acts, given.values())):
+            continue
+        K, D = (X[rows, rows] for X in support.matrices(0.0))
+        native = not any(map(varies, given.values())) and add(body, support, seat, K, D)
+        if native:
+            parts.append(native)
+        else:
+            left |= given
     if not any(map(acts, left.values())):
         return parts, None
     return parts, Support(support.interface, **left, extrapolate=support.extrapolate)
 
 
 def _displacement_connector(
-    body: RotorItems, support: Support, seat: Seat
-) -> tuple[exudyn.ObjectIndex, str]:
+    body: RotorItems, support: Support, seat: Seat, K: np.ndarray, D: np.ndarray
+) -> Part:
     mbs = body.mbs
     markers = [seat.marker(mbs), point_marker(body, support.interface)]
     item = CartesianSpringDamper(markerNumbers=markers)
-    K, D = (_turned(seat.axes, X[:3, :3]) for X in support.matrices(0.0))
+    K, D = _turned(seat.axes, K), _turned(seat.axes, D)
     if not np.any(K - np.diag(np.diag(K))) and not np.any(D - np.diag(np.diag(D))):
         item.stiffness, item.damping = np.diag(K), np.diag(D)
         return mbs.AddObject(item), NATIVE
@@ -81,24 +72,13 @@ def _displacement_connector(
 
 def _tilt_connector(
     body: RotorItems, support: Support, seat: Seat, K: np.ndarray, D: np.ndarray
-) -> tuple[exudyn.ObjectIndex, str]:
-    mbs, none = body.mbs, np.zeros((6, 6))
-    markers = [seat.marker(mbs), rigid_marker(body, support.interface)]
-    item = RigidBodySpringDamper(markerNumbers=markers, stiffness=none, damping=none)
-    if not np.any(D) and K[0, 0] == K[1, 1] and not np.any(K - np.diag(np.diag(K))):
-        item.stiffness = np.kron(np.diag([0.0, 1.0]), K)
-        return mbs.AddObject(item), NATIVE
-
-    def torque(mbs, t, item, u, angles, v, omega, stiffness, damping, r0, r1, offset):
-        a, b = angles[0], angles[1]
-        rate = [omega[0] - 2.0 * omega[2] * b, omega[1] + 2.0 * omega[2] * a]
-        pairs = zip(_times(K[:2, :2], [a, b]), _times(D[:2, :2], rate), strict=True)
-        x, y = (spring + damper for spring, damper in pairs)
-        return exudyn.symbolic.Vector([0.0, 0.0, 0.0, x, y, y * a - x * b])
-
-    name = "springForceTorqueUserFunction"
-    setattr(item, name, symbolic_function(mbs, torque, item, name))
-    return mbs.AddObject(item), SYMBOLIC
+) -> Part | None:
+    if np.any(D) or not np.array_equal(K, np.diag([K[0, 0], K[0, 0], 0.0])):
+        return None
+    markers = [seat.marker(body.mbs), rigid_marker(body, support.interface)]
+    stiffness, none = np.kron(np.diag([0.0, 1.0]), K), np.zeros((6, 6))
+    item = RigidBodySpringDamper(markerNumbers=markers, stiffness=stiffness, damping=none)
+    return body.mbs.AddObject(item), NATIVE
 
 
 def _turned(axes: np.ndarray, matrix: np.ndarray) -> np.ndarray:

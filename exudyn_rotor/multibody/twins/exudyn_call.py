@@ -1,18 +1,23 @@
-"""``mbs.CreateFixedAxisFFRFReducedOrderObject``: the twin of Exudyn's own call.
+"""What importing the package does to Exudyn's ``MainSystem``: the twin of a call, and ``Assemble``.
 
-Argument names, defaults and returned keys are those of
-``mbs.CreateFFRFReducedOrderObject``; changing the name of the call swaps the formulation.
+Argument names, defaults and returned keys of ``mbs.CreateFixedAxisFFRFReducedOrderObject`` are
+those of ``mbs.CreateFFRFReducedOrderObject``; changing the name of the call swaps the formulation.
+
+Markers, loads and connectors are all known when a system is assembled. What ``mbs.Assemble()`` does
+for rotors stands in :mod:`exudyn_rotor.multibody.rotor.assembly`, which a scene without rotors does
+not load.
 """
 
 from __future__ import annotations
 
+from functools import wraps
 from typing import TYPE_CHECKING
 
 import exudyn
 from exudyn.misc.extensionRegistry import extends, install
 from numpy.typing import ArrayLike
 
-import exudyn_rotor.multibody.wrapping  # noqa: F401 (methods of MainSystem that know rotors)
+from exudyn_rotor.multibody import ENTRY
 
 if TYPE_CHECKING:
     from exudyn.FEM import FEMinterface
@@ -147,11 +152,12 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     checks.choice(markers, "markers", MARKER_KINDS)
     options, offsets = checked_options(given), superElementRigidMarkersOffsets
     if offsets is not None:
-        count = len(femInterface.nodeSets)
-        name_of = "superElementRigidMarkersOffsets"
-        offsets = checks.array(offsets, name_of, "m", shape=(count, 3))
+        shape = (len(femInterface.nodeSets), 3)
+        offsets = checks.array(offsets, "superElementRigidMarkersOffsets", "m", shape=shape)
         if markers != "rigid":
-            raise ValueError(f"{name_of}: needs markers='rigid', got {markers!r}")
+            raise ValueError(
+                f"superElementRigidMarkersOffsets: needs markers='rigid', got {markers!r}"
+            )
     body = add_swapped_body(
         mbs,
         name,
@@ -174,4 +180,32 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     }
 
 
+_OWN = "_knows_fixed_axis_rotors"  # attribute of the wrapped method
+
+
+def _wrap_assemble() -> None:
+    """Let ``mbs.Assemble()`` look after rotors; once, however often the package is imported."""
+    original = exudyn.MainSystem.Assemble
+    if hasattr(original, _OWN):
+        return
+
+    @wraps(original)
+    def assemble(mbs: exudyn.MainSystem) -> None:
+        if ENTRY not in mbs.sys:
+            return original(mbs)
+        from exudyn_rotor.multibody.rotor import assembly
+
+        assembly.prepare(mbs)
+        original(mbs)
+        return assembly.warn_of_lost_connections(mbs, stacklevel=3)
+
+    setattr(assemble, _OWN, True)
+    if hasattr(original, "_exudynExtension"):
+        # registered, or Exudyn's own would be put back with the next extension
+        extends(exudyn.MainSystem, "Assemble")(assemble)
+    else:
+        exudyn.MainSystem.Assemble = assemble
+
+
+_wrap_assemble()
 install()

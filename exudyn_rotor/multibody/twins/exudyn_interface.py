@@ -141,7 +141,12 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
         self._options = checked_options(given)
         self._axis = None if axis is None else SpinAxis.of(axis)
         self.rotorBody: RotorBody | None = None
-        self.modeBasis = _modes(femInterface)
+        if "matrix" not in femInterface.modeBasis:
+            raise ValueError(
+                "femInterface: it holds no modes; call fem.ComputeEigenmodes(…) or "
+                "fem.ComputeHurtyCraigBamptonModes(…) first"
+            )
+        self.modeBasis = checks.matrix(femInterface.modeBasis["matrix"], "femInterface: its modes")
         nodes = np.asarray(femInterface.nodes["Position"])
         self.xRef, self.nNodes, self.nModes = nodes.ravel(), len(nodes), self.modeBasis.shape[1]
         self.dim3D = 3
@@ -206,22 +211,12 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
             position="positionRef",
             rotation="rotationMatrixRef",
         )
-        self.rotorBody, made = body, numbers(body)
-        self.nRigidBody, self.nGenericODE2 = made["nRigidBody"], made["nGenericODE2"]
-        self.oFFRFreducedOrder, self.loadGravity = made["oFFRFreducedOrder"], made["loadGravity"]
+        made = numbers(body)
+        vars(self).update(made)  # which Exudyn's class keeps, too
         return made
 
 
-def _modes(fem: FEMinterface) -> np.ndarray:
-    """Return the modes, checked already where the axis is known."""
-    if "matrix" not in fem.modeBasis:
-        raise ValueError(
-            "femInterface: it holds no modes; call fem.ComputeEigenmodes(…) or "
-            "fem.ComputeHurtyCraigBamptonModes(…) first"
-        )
-    return checks.matrix(fem.modeBasis["matrix"], "femInterface: its modes")
-
-
+_SAME = 1e-9  # share of an angular velocity by which it may differ from another
 _SEEN = 1e-6  # share of a mode's mass that moves as a rigid body, above rounding of free modes
 # what the twins take beyond the arguments of Exudyn's calls
 OWN = ("translation", "spin", "spin_coupling", "stiffening", "locking", "markers", "prestress")
@@ -261,51 +256,41 @@ def add_swapped_body(
 ) -> RotorBody:
     """Add the rotor; nothing has been added where this raises ValueError or TypeError.
 
-    Parameters
-    ----------
-    mbs : exudyn.MainSystem
-    name : str or None
-    fem : FEMinterface
-    axis : optional
-        Spin axis; None takes the direction of the angular velocity.
-    options : dict
-        Of :func:`checked_options`.
-    given : dict
-        Arguments of the twin's call by their names, of which two, `position` and `rotation`, are
-        called otherwise in each of Exudyn's calls.
+    `options` are those of :func:`checked_options`, `given` the arguments of the twin's call by
+    their names. Two of these, `position` and `rotation`, are called otherwise in each of Exudyn's
+    calls. Without an `axis` that of the angular velocity is taken.
     """
-    placed = {
-        "position": checks.vector(given[position], position, "m"),
-        "rotation": checks.rotation(given[rotation], rotation),
-        "gravity": checks.vector(given["gravity"], "gravity", "m/s²"),
-        "color": color_of(given["color"]),
-    }
-    for key, argument in (
-        ("mass_damping", "massProportionalDamping"),
-        ("stiffness_damping", "stiffnessProportionalDamping"),
-    ):
-        placed[key] = checks.number(given[argument], argument, least=0.0)
+    mass_damping, stiffness_damping = (
+        checks.number(given[argument], argument, least=0.0)
+        for argument in ("massProportionalDamping", "stiffnessProportionalDamping")
+    )
+    place = checks.vector(given[position], position, "m")
+    turn = checks.rotation(given[rotation], rotation)
+    gravity, color = checks.vector(given["gravity"], "gravity", "m/s²"), color_of(given["color"])
     velocity = checks.vector(given["initialVelocity"], "initialVelocity", "m/s")
     omega = checks.vector(given["initialAngularVelocity"], "initialAngularVelocity", "rad/s")
-    turn, options = placed["rotation"], dict(options)
     rotor = SolidRotor.from_fem_interface(fem, _axis_of(turn.T @ omega) if axis is None else axis)
-    reduced = rotor.reduce(fem, prestress=options.pop("prestress"))
-    modes = np.asarray(fem.modeBasis["matrix"])
+    reduced, modes = rotor.reduce(fem, prestress=options["prestress"]), fem.modeBasis["matrix"]
+    options = {key: value for key, value in options.items() if key != "prestress"}
     options["translation"] = suited_translation(options["translation"], reduced.grounded)
     formulation = Formulation(options["translation"], options["spin"])
     if formulation.translation_count:  # Exudyn's is the velocity of the mesh origin
         velocity = velocity + np.cross(omega, turn @ reduced.center_of_mass)
-    speed = _speed_along(turn @ reduced.axis.direction, omega)
     body = add_rotor(
         mbs,
         reduced,
         name=name,
+        position=place,
+        rotation=turn,
         initial_velocity=velocity,
-        initial_speed=_initial_speed(formulation, speed),
-        **placed,
+        initial_speed=_initial_speed(formulation, turn @ reduced.axis.direction, omega),
+        gravity=gravity,
+        mass_damping=mass_damping,
+        stiffness_damping=stiffness_damping,
+        color=color,
         **options,
     )
-    body.script.frame_shares = _frame_shares(rotor, reduced, modes)
+    body.script.frame_shares = _frame_shares(rotor, reduced, np.asarray(modes))
     return body
 
 
@@ -314,14 +299,9 @@ def _frame_shares(
 ) -> np.ndarray | None:
     """Return how the frame of Exudyn's body moves with the columns of a rotor reduced with `modes`.
 
-    Displacements are ``Rρ + Ψη`` with the modes Ψ in Exudyn's body, and ``Rρ' + Qζ`` here with the
-    columns ``Q = (Ψ − RG_r) G_f⁺``, where ``G = [R Q]ᵀMΨ``; so ``ρ = ρ' − G_rG_f⁺ζ``.
-
-    Returns
-    -------
-    ndarray, shape (r, k − r), or None
-        ``−G_rG_f⁺``, shares of the rigid columns of `reduced`; None where it is zero, as for free
-        eigenmodes.
+    In shares (r, k − r) of the rigid columns of `reduced`; None where they are zero, as for free
+    eigenmodes. Displacements are ``Rρ + Ψη`` with the modes Ψ in Exudyn's body, and ``Rρ' + Qζ``
+    here with the columns ``Q = (Ψ − RG_r) G_f⁺``, where ``G = [R Q]ᵀMΨ``; so ``ρ = ρ' − G_rG_f⁺ζ``.
     """
     rigid = len(reduced.rigid_kinds)
     G = reduced.shapes.matrix.T @ (rotor.mass @ modes)
@@ -355,25 +335,22 @@ def _axis_of(omega: np.ndarray) -> SpinAxis:
     return SpinAxis(omega * np.sign(omega[np.argmax(np.abs(omega))]))
 
 
-def _speed_along(direction: np.ndarray, omega: np.ndarray) -> float:
-    """Return the spin speed of an angular velocity that must lie along the axis."""
+def _initial_speed(
+    formulation: Formulation, direction: np.ndarray, omega: np.ndarray
+) -> float | None:
+    """Return the speed of a free spin along its axis; a prescribed one must agree with it."""
     speed = float(direction @ omega)
     across = np.linalg.norm(omega - speed * direction)
-    if across > 1e-9 * np.linalg.norm(omega):
+    if across > _SAME * np.linalg.norm(omega):
         raise ValueError(
             f"initialAngularVelocity {omega.tolist()} has {across:.3g} rad/s across the spin axis "
             f"{direction.tolist()}: a fixed-axis rotor cannot tumble; start it with modal "
             "velocities of its tilt modes (exudyn_rotor.add_rotor), or use the 3D body"
         )
-    return speed
-
-
-def _initial_speed(formulation: Formulation, speed: float) -> float | None:
-    """Return the initial speed of a free spin; a prescribed one must agree with what is given."""
     if formulation.has_spin:
         return speed
     _, prescribed, _ = start_values(formulation.spin, "spin")
-    if speed and abs(speed - prescribed) > 1e-9 * abs(prescribed):
+    if speed and abs(speed - prescribed) > _SAME * abs(prescribed):
         raise ValueError(
             f"spin given twice: initialAngularVelocity is {speed} rad/s along the axis, "
             f"the prescribed spin starts with {prescribed} rad/s"

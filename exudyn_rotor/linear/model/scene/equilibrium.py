@@ -113,7 +113,7 @@ def equilibrium(
             return y
     raise UnconvergedError(
         f"{where}: no equilibrium found; is a bearing or a magnetic force stronger than what holds "
-        "the rotor? A damped run from rest shows what it does; about='given' needs no equilibrium"
+        "the rotor? A damped run from rest shows what it does"
     )
 
 

@@ -15,8 +15,7 @@ from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.linear.model.turning import interface_motion
-from exudyn_rotor.multibody.rotor.record import spin_at_start
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, spin_at_start
 from exudyn_rotor.theory.rotating_axes import into_rotor_frame, parts_across
 
 _SOFT = 1e-8  # of the stiffest mode: resistance of free motions, which are preferred
@@ -101,5 +100,5 @@ def _weights(body: RotorBody, names: list[str]) -> list[np.ndarray]:
     if left == right:
         return [np.zeros(2), np.zeros(2)]
     share = (source.center_of_mass @ e - left) / (right - left)
-    weight = source.invariants.mass * parts_across(body.standing_axes, body.plan.setup.gravity)
+    weight = source.invariants.mass * parts_across(body.standing_axes, body.gravity)
     return [(1.0 - share) * weight, share * weight]

@@ -9,7 +9,7 @@ Neglected: the change of mass matrices and constraint directions along small ste
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import exudyn
@@ -26,14 +26,11 @@ from exudyn_rotor.calls import kept
 from exudyn_rotor.linear.equations import others
 from exudyn_rotor.linear.model.body import RotorAlone
 from exudyn_rotor.linear.model.scene.equilibrium import motion_at_rest
-from exudyn_rotor.linear.model.scene.journal_start import static_loads
 from exudyn_rotor.linear.model.scene.probe import probing
 from exudyn_rotor.linear.model.scene.scene_checks import check_period, check_scene
 from exudyn_rotor.linear.model.scene.scene_coordinates import Motion, SceneCoordinates, nullspace
 from exudyn_rotor.linear.model.scene.steady_motion import steady_motion
-from exudyn_rotor.linear.model.turning import interface_motion
-from exudyn_rotor.multibody.rotor.record import spin_at_start
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, spin_at_start
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 from exudyn_rotor.multibody.supports.ends import BaseEnd
 from exudyn_rotor.reduction.reduced_rotor import ModeKind
@@ -99,57 +96,13 @@ class LinearScene(SceneCoordinates):
 
     @kept
     def rotor(self, alone: RotorAlone, whole: bool) -> RotorAlone:
-        """Return a rotor without motions that it does not have in the scene.
-
-        It has the places of foreign markers beside those of its interfaces.
-        """
+        """Return a rotor without motions that it does not have in the scene."""
         held = self.held(alone)
-        if held.shape[1]:
-            alone = alone.within(others(held if whole else la.orth(alone.turning.still @ held)))
-        source = self.body.selection.source
-        inner = source.in_attached.T if len(alone.Q) > source.size else np.eye(source.size)
-        places = {
-            name: motion @ self.by_columns @ inner
-            for name, motion in self.foreign_places.items()
-            if name not in source.interfaces
-        }
-        return replace(alone, places=places)
+        if not held.shape[1]:
+            return alone
+        return alone.within(others(held if whole else la.orth(alone.turning.still @ held)))
 
     # ------------------------------------------------------------------ what is beside it
-
-    @cached_property
-    def foreign_places(self) -> dict[str, np.ndarray]:
-        """Motion (6, r) of markers that anything foreign acts on, rotor frame, by their names.
-
-        Along (n1, n2, e), by the unknowns that move the rotor.
-        """
-        mbs, source = self.body.mbs, self.body.selection.source
-        named = {int(marker): name for name, marker in self.body.markers.items()}
-        numbers = set()
-        for item in self.foreign_items:
-            numbers |= {int(n) for n in item.get("markerNumbers", [item.get("markerNumber", -1)])}
-        found = {one.at: None for one in self.body.drives if one.at is not None}
-        own = int(self.body.objects["marker_body"])
-        for number in sorted(numbers - {-1}):
-            if int(mbs.GetMarker(number).get("bodyNumber", -2)) == own:
-                found[named.get(number, f"marker {number}")] = number
-        return {
-            name: interface_motion(source, name) @ self.columns
-            if name in source.interfaces
-            else self.marker_motion(number)[:, self.touching]
-            for name, number in found.items()
-        }
-
-    @cached_property
-    def given(self) -> list[Given]:
-        """Supports and bearings, these with their static load: by the lever rule, or their own."""
-        loads, given = static_loads(self.body), [one.support for one in self.body.supports]
-        return [replace(one, load=loads[one]) if one in loads else one for one in given]
-
-    @property
-    def follows_loads(self) -> bool:
-        """Whether any law depends on the static load."""
-        return any(follows_load(one.support) for one in self.body.supports)
 
     @cached_property
     def others(self) -> np.ndarray:

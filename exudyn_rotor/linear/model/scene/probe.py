@@ -16,11 +16,10 @@ from typing import NamedTuple
 import exudyn
 import numpy as np
 
-from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating, without_forces
-from exudyn_rotor.multibody.rotor.record import spin_at_start
-from exudyn_rotor.multibody.supports.connector import BearingConnector, Connector, FilmPoint, Force
+from exudyn_rotor.multibody.rotor.rotor_body import spin_at_start
+from exudyn_rotor.multibody.supports.connector import BearingConnector, Connector, Force
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.stiffening import stiffening
@@ -51,17 +50,9 @@ class Attached:
     def force(self, t: float) -> Force:
         """Return the law's forces on its ports where it has been read, and its tangent."""
         made = self.connector
-        if not isinstance(made, BearingConnector):
-            return made.tangent(t)
-        parts = zip(made.parts, made.motions(), strict=True)
-        return made.assembled([self._point(*each) for each in parts])
-
-    def _point(self, part: Bearing, motion: tuple[float, ...]) -> FilmPoint:
-        if part.uses_angle:  # cages of rolling bearings stand
-            motion = *motion[:4], self._cage, motion[5]
-        brakes = self.connector.brakes
-        law = part.law_with_torque if brakes else part.law
-        return law(*motion), *part.slopes(*motion), np.zeros(3) if brakes else None
+        return (
+            made.tangent(t, self._cage) if isinstance(made, BearingConnector) else made.tangent(t)
+        )
 
 
 class Forces(NamedTuple):
@@ -98,6 +89,10 @@ class Probe:
         self.rotor_terms = lru_cache(_KEPT)(self._rotor_terms)
         self.turn = lru_cache(_KEPT)(scene.turn)
 
+    def at_rest(self) -> Probe:
+        """Return the same scene without spin."""
+        return Probe(self.scene, 0.0, self.solver, self.laws)
+
     # ------------------------------------------------------------------ constraints and masses
 
     def constraints(self, theta: float) -> np.ndarray:
@@ -112,10 +107,9 @@ class Probe:
     def mass(self) -> np.ndarray:
         """Return the mass matrix of all but the rotor at the present state, free coordinates."""
         self.solver.ComputeMassMatrix(self.mbs)
-        full = np.array(self.solver.GetSystemMassMatrix())
-        free, attached = self.scene.free, self._attached_mass()
-        mass, rotor = full[free[:, None], free], self.rotor
-        mass[rotor[:, None], rotor] = attached[rotor[:, None], rotor]
+        mass = self._of_free(np.array(self.solver.GetSystemMassMatrix()))
+        attached, rotor = self._attached_mass(), np.ix_(self.rotor, self.rotor)
+        mass[rotor] = attached[rotor]
         return mass
 
     def _attached_mass(self) -> np.ndarray:
@@ -124,7 +118,7 @@ class Probe:
         for one in self.laws:
             if one.connector.has_mass:
                 whole[one.places[:, None], one.places] += one.connector.inertia()[0]
-        return whole[self.scene.free[:, None], self.scene.free]
+        return self._of_free(whole)
 
     def mass_beside(self) -> np.ndarray:
         """Return the mass matrix of all but the rotor and laws, without deviations, (k, k)."""
@@ -173,19 +167,21 @@ class Probe:
 
     def foreign(self, theta: float, x: np.ndarray, v: np.ndarray) -> Forces:
         """Return the forces of what is neither the rotor nor a law, with their derivatives."""
-        values = self._exudyn(theta, x, v)
-        return Forces(values, *(self._slopes(*factors) for factors in ((-1.0, 0.0), (0.0, -1.0))))
+        values, slopes = self._exudyn(theta, x, v), []
+        size = len(self.scene.rest) + self.solver.GetAEsize()
+        for by_place, by_rate in ((-1.0, 0.0), (0.0, -1.0)):
+            self.solver.SetSystemJacobian(np.zeros((size, size)))
+            self.solver.ComputeJacobianODE2RHS(self.mbs, by_place, by_rate, 0.0, _LOADS)
+            slopes.append(self._of_free(np.array(self.solver.GetSystemJacobian())))
+        return Forces(values, *slopes)
+
+    def _of_free(self, X: np.ndarray) -> np.ndarray:
+        return X[np.ix_(self.scene.free, self.scene.free)]
 
     def _exudyn(self, theta: float, x: np.ndarray, v: np.ndarray) -> np.ndarray:
         self._set(theta, x, v)
         self.solver.ComputeODE2RHS(self.mbs)  # the rotor's own object has none while it is probed
         return np.array(self.solver.GetSystemResidual())[self.scene.free]
-
-    def _slopes(self, by_place: float, by_rate: float) -> np.ndarray:
-        size = len(self.scene.rest) + self.solver.GetAEsize()
-        self.solver.SetSystemJacobian(np.zeros((size, size)))
-        self.solver.ComputeJacobianODE2RHS(self.mbs, by_place, by_rate, 0.0, _LOADS)
-        return np.array(self.solver.GetSystemJacobian())[np.ix_(self.scene.free, self.scene.free)]
 
     def read(self, theta: float, x: np.ndarray, v: np.ndarray) -> None:
         """Let the laws see a state."""
@@ -209,8 +205,7 @@ class Probe:
                 parts += [more] if has_slopes else []
             for total, *blocks in zip((K, D), *parts, strict=True) if parts else ():
                 total[places[:, None], places] += sum(blocks)
-        free = self.scene.free
-        return Forces(force[free], *(X[free[:, None], free] for X in (K, D)))
+        return Forces(force[self.scene.free], self._of_free(K), self._of_free(D))
 
     # ------------------------------------------------------------------ states
 
@@ -281,32 +276,38 @@ class LinearPoint(NamedTuple):
     residual: np.ndarray
 
 
-def unbalanced(
-    probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray
-) -> np.ndarray:
+def unbalanced(probe: Probe, theta: float, *state: np.ndarray) -> np.ndarray:
     """Return the residual of y at one angle (k,), as :func:`linearised` has it."""
-    T, T1, T2 = (probe.speed**n * X for n, X in enumerate(probe.turn(theta)))
-    x, v = T @ y, T @ y_t + T1 @ y
-    M, D, K, constant = probe.rotor_terms(theta)
-    force = probe.force(theta, x, v)
-    inertia = (M + probe.mass()) @ (T @ y_tt + 2.0 * T1 @ y_t + T2 @ y)
-    return T.T @ (inertia + D @ v + K @ x - constant - force)
+    force = probe.force(theta, *_moved(probe, theta, *state)[:2])
+    return _residual(probe, theta, state, force)
 
 
-def linearised(
-    probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray
-) -> LinearPoint:
-    """Return the scene linearised about y at one angle."""
+def linearised(probe: Probe, theta: float, *state: np.ndarray) -> LinearPoint:
+    """Return the scene linearised about y, with its rate and acceleration, at one angle."""
     T, T1, T2 = (probe.speed**n * X for n, X in enumerate(probe.turn(theta)))
-    x, v = T @ y, T @ y_t + T1 @ y
-    M, D, K, constant = probe.rotor_terms(theta)
-    force, more_K, more_D = probe.forces(theta, x, v)
-    M = M + probe.mass()
-    residual = M @ (T @ y_tt + 2.0 * T1 @ y_t + T2 @ y) + D @ v + K @ x - constant - force
-    D, K = D + more_D, K + more_K
+    M, D, K, _ = probe.rotor_terms(theta)
+    force, more_K, more_D = probe.forces(theta, *_moved(probe, theta, *state)[:2])
+    residual = _residual(probe, theta, state, force)
+    M, D, K = M + probe.mass(), D + more_D, K + more_K
     return LinearPoint(
         T.T @ M @ T,
         T.T @ (2.0 * M @ T1 + D @ T),
         T.T @ (M @ T2 + D @ T1 + K @ T),
-        T.T @ residual,
+        residual,
     )
+
+
+def _moved(
+    probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray
+) -> list[np.ndarray]:
+    """Return free coordinates with their rates and accelerations."""
+    T, T1, T2 = (probe.speed**n * X for n, X in enumerate(probe.turn(theta)))
+    return [T @ y, T @ y_t + T1 @ y, T @ y_tt + 2.0 * T1 @ y_t + T2 @ y]
+
+
+def _residual(
+    probe: Probe, theta: float, state: Sequence[np.ndarray], force: np.ndarray
+) -> np.ndarray:
+    x, v, a = _moved(probe, theta, *state)
+    M, D, K, constant = probe.rotor_terms(theta)
+    return probe.turn(theta)[0].T @ ((M + probe.mass()) @ a + D @ v + K @ x - constant - force)

@@ -12,8 +12,7 @@ import scipy.linalg
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.multibody.rotor.plan import turned_origin
-from exudyn_rotor.multibody.rotor.record import StartState
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState
 from exudyn_rotor.theory.axis import SpinAxis, skew
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_rotation, axial_skew
 
@@ -56,7 +55,7 @@ class SceneCoordinates:
         rest[free[made.count :]] = 0.0
         # where the rotor is when it has turned back
         angle = rest[made.spin_coordinate]
-        turned = turned_origin(body.selection, body.plan.setup.placement.rotation, angle)
+        turned = turned_origin(body.selection, body.placement.rotation, angle)
         rest[free[: made.count]] -= body.motion.free_directions.T @ turned
         return made
 
@@ -120,9 +119,7 @@ class SceneCoordinates:
     def foreign_items(self) -> list[dict]:
         """Objects and loads that are neither the rotor's own nor its supports, as dictionaries."""
         mbs, body = self.body.mbs, self.body
-        own = {*map(int, body.objects.values()), *map(int, body.constraints.values())}
-        own |= {int(n) for one in body.supports for n in one.objects}
-        objects = set(range(mbs.systemData.NumberOfObjects())) - own
+        objects = set(range(mbs.systemData.NumberOfObjects())) - known_objects(body)
         weight = set() if body.gravity_load is None else {int(body.gravity_load)}
         loads = set(range(mbs.systemData.NumberOfLoads())) - weight
         items = filter(_has_force, map(mbs.GetObject, sorted(objects)))
@@ -157,30 +154,15 @@ class SceneCoordinates:
         """
         return np.minimum(np.sqrt(self.mass / np.maximum(mass, 1e-300)), self._most)
 
-    @property
-    def interfaces(self) -> tuple[str, ...]:
-        """Names of the interfaces that have a marker."""
-        return tuple(self.body.markers)
-
     def interface_motion(self, name: str) -> np.ndarray:
-        """Return an interface's motion (6, k), as :meth:`marker_motion` does.
+        """Return an interface's displacement and rotation along (n1, n2, e), (6, k), rotor frame.
 
         Raises
         ------
         TypeError, ValueError
             For an interface that is not there.
         """
-        return self._motion(self.body.interface_carrier(name).motion)
-
-    def marker_motion(self, number: int) -> np.ndarray:
-        """Return a marker's motion (6, k): displacement and rotation along (n1, n2, e).
-
-        In the rotor frame.
-        """
-        return self._motion(_marker_motion(self.body, number))
-
-    def _motion(self, columns: np.ndarray) -> np.ndarray:
-        """Return a motion (6, k) by its columns (6, m) of modes, axes of the marker body."""
+        columns = self.body.interface_carrier(name).motion  # of modes, in axes of the marker body
         motion = np.zeros((6, len(self.free)))
         motion[: self.count, : self.count] = np.eye(self.count)
         motion[:, self.modal] = np.kron(np.eye(2), self.axes.T @ self.body.frame.B.T) @ columns
@@ -223,6 +205,12 @@ class SceneCoordinates:
         return StartState(q, q_t, angle, speed)
 
 
+def known_objects(body: RotorBody) -> set[int]:
+    """Return the numbers of the objects of a rotor and its supports."""
+    found = {*map(int, body.objects.values()), *map(int, body.constraints.values())}
+    return found | {int(number) for one in body.supports for number in one.objects}
+
+
 def _has_force(item: dict) -> bool:
     """Return whether an object may have a force: no ground, no constraint, no mere mass."""
     kind = item["objectType"]
@@ -251,17 +239,3 @@ def nullspace(C: np.ndarray) -> np.ndarray:
     N[untouched, np.arange(len(untouched))] = 1.0
     N[touched, len(untouched) :] = kernel
     return N
-
-
-def _marker_motion(body: RotorBody, number: int) -> np.ndarray:
-    """Return displacement and rotation (6, m) of a marker, axes of the marker body."""
-    item = body.mbs.GetMarker(number)
-    nodes, shares = list(item["meshNodeNumbers"]), np.array(item["weightingFactors"])
-    marker_body = body.mbs.GetObject(body.objects["marker_body"])
-    columns = np.asarray(marker_body["modeBasis"])
-    columns = columns.reshape(len(columns) // 3, 3, -1)[nodes]
-    arms = np.reshape(marker_body["referencePositions"], (-1, 3))[nodes]
-    mean, arms = np.tensordot(shares, columns, 1), arms - shares @ arms
-    turning = np.vstack([-skew(arm) for arm in arms])  # φ × a = −ã φ
-    apart = (columns - mean).reshape(len(turning), -1)
-    return np.vstack([mean, np.linalg.lstsq(turning, apart, rcond=None)[0]])

@@ -1,13 +1,13 @@
 """The linear model of a scene: its rotor and laws as in a list of supports, and what is foreign.
 
 Laws of this package enter as they do from a list, bearings under the static force that they have
-in the equilibrium of the scene. What else Exudyn has there is one more element (:mod:`.foreign`),
-and its coordinates are one more body.
+in the equilibrium of the scene. What else Exudyn has there is foreign: its coordinates are one
+more body, and its forces have Exudyn's own derivatives by the coordinates of the model.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -18,20 +18,19 @@ from exudyn_rotor.bearings.clearance_stop import ClearanceStop
 from exudyn_rotor.bearings.given import Given, linear_supports
 from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.equations import PeriodicSystem, Terms, joined
+from exudyn_rotor.linear.equations import PeriodicSystem, Terms, UnconvergedError, joined
 from exudyn_rotor.linear.model.assembly import (
     NO_EQUATIONS,
     Assembly,
-    Element,
     End,
     OwnBody,
     PadBody,
-    elements_of,
+    Powers,
+    put,
 )
 from exudyn_rotor.linear.model.body import RotorAlone, RotorBody, StandingBody
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.scene.equilibrium import equilibrium
-from exudyn_rotor.linear.model.scene.foreign import ALL, Foreign
 from exudyn_rotor.linear.model.scene.journal_start import journal_start
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene, follows_load
 from exudyn_rotor.linear.model.scene.probe import Attached, Probe, probing
@@ -39,10 +38,11 @@ from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 from exudyn_rotor.multibody.supports.ends import BaseEnd
 from exudyn_rotor.theory.rotating_axes import axial_skew
 
-ABOUT = ("equilibrium", "given")
 _WAVE_FREE = 0.99  # share of a held motion that must be no lateral wave
 _TOLERANCE = 1e-8  # of an equilibrium
 _SAME_LOAD, _NO_LOAD = 1e-6, 1e-9  # of a load, and of the rotor's weight
+_SAME = 0.05  # share of the stiffness of motions by which the unevenness of a mesh may change it
+_ROUNDING = 1e-7  # share of a matrix of Exudyn's differences that is their rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,28 +52,37 @@ class SceneModel(LinearModel):
     Attributes
     ----------
     scene : LinearScene
-    about : {'equilibrium', 'given'}
-        State about which it is linearised.
     """
 
     scene: LinearScene = field(kw_only=True)
-    about: str = field(kw_only=True)
 
     @classmethod
-    def of(cls, scene: LinearScene, about: str, axes: str) -> SceneModel:
+    def of(cls, scene: LinearScene, axes: str) -> SceneModel:
         """Return the model of a scene."""
-        supports = scene.given
-        if about == "equilibrium":  # any load, until that there is known
-            share = np.array([0.0, -9.81 * scene.mass / max(len(supports), 1)])
-            unknown = [follows_load(one) and one.load is None for one in supports]
-            pairs = zip(supports, unknown, strict=True)
-            supports = [replace(one, load=share) if yes else one for one, yes in pairs]
+        given = [one.support for one in scene.body.supports]
+        # any load, until that in the equilibrium is known
+        share = np.array([0.0, -9.81 * scene.mass / max(len(given), 1)])
+        given = [
+            replace(one, load=share) if follows_load(one) and one.load is None else one
+            for one in given
+        ]
         return cls(
-            {"": scene.body.selection.source}, {"": 1.0}, {"": supports}, (), None,
-            scene.body.stiffening, axes, scene=scene, about=about,
+            {"": scene.body.selection.source}, {"": 1.0}, {"": given}, (), None,
+            scene.body.stiffening, axes, scene=scene,
         )  # fmt: skip
 
     # ------------------------------------------------------------------ what it consists of
+
+    @property
+    def _has_foreign(self) -> bool:
+        """Whether Exudyn has forces beside the rotor and laws."""
+        return bool(self.scene.foreign_items or self.scene.body.drives)
+
+    @property
+    def _is_list(self) -> bool:
+        """Whether all is known without a look at Exudyn."""
+        follow = any(follows_load(one.support) for one in self.scene.body.supports)
+        return not follow and not self._has_foreign
 
     def _alone(self, name: str, whole: bool) -> RotorAlone:
         return self.scene.rotor(super()._alone(name, whole), whole)
@@ -87,42 +96,30 @@ class SceneModel(LinearModel):
             return {"": np.inf}
         return {"": self._alone("", False).unevenness(self.places(""))}
 
-    def _elements_for(
-        self,
-        turns: int,
-        kind: str = "",
-        supports: Sequence[Given] | None = None,
-        foreign: Foreign | None = None,
-    ) -> tuple[list[Element], list]:
-        kind = kind or ("undamped" if self.is_undamped else "full")
-        elements, own = [], []
-        for number, given in enumerate(supports or self.supports[""]):
-            bases = {name: end for name, (end, _) in self._bases(number).items()}
-            one = {"": [given]}
-            more, added = elements_of(one, self.ratios, (), bases, turns, kind, len(own))
-            elements, own = elements + more, own + added
-        if self.scene.foreign_places or len(self.scene.others):
-            elements.append((foreign or self._foreign_at_rest).element(kind))
-        return elements, own
+    @property
+    def _is_alike(self) -> bool:
+        return not self._has_foreign and super()._is_alike
 
-    @cached_property
-    def _foreign_at_rest(self) -> Foreign:
-        with probing(self.scene, 0.0) as probe:
-            none = np.zeros((2, len(self.scene.free)))
-            return Foreign.of(self.scene, probe, lambda _: tuple(none))
+    @property
+    def stiffness_varies(self) -> bool:
+        """Whether a stiffness depends on the speed; a foreign one may, with the equilibrium."""
+        return self._has_foreign or super().stiffness_varies
 
-    def _bases(self, number: int) -> dict[str, tuple[End, BaseEnd]]:
-        """Return what carries a support and its sensors, by their interfaces."""
+    @property
+    def richer(self) -> LinearModel | None:
+        """The model with more shapes; None beside foreign forces, which do not know these."""
+        return None if self._has_foreign else super().richer
+
+    def _base(self, number: int, name: str) -> End | None:
+        end = self._base_ends(number).get(name)
+        return ("scene", f"{number}: {name}") if end and end.size else None
+
+    def _base_ends(self, number: int) -> dict[str, BaseEnd]:
+        """Return what carries a support and its sensor in the scene, by their interfaces."""
         one = self.scene.body.supports[number]
         ends = {one.support.interface: one.connector.base}
         sensor = getattr(one.support, "sensor_interface", None)
-        if sensor is not None:
-            ends[sensor] = one.connector.sensor_base
-        return {
-            name: (("scene", f"{number}: {name}"), end)
-            for name, end in ends.items()
-            if end is not None
-        }
+        return ends if sensor is None else ends | {sensor: one.connector.sensor_base}
 
     @cached_property
     def _standing_bodies(self) -> list[StandingBody]:
@@ -132,10 +129,11 @@ class SceneModel(LinearModel):
             return []
         M = scene.mass_beside
         labels = tuple(f"scene, {number}" for number in range(1, len(M) + 1))
-        points = {ALL: np.eye(len(M))} | {
-            end[1]: scene.base_motion(base)
+        points = {
+            f"{number}: {name}": scene.base_motion(base)
             for number in range(len(scene.body.supports))
-            for end, base in self._bases(number).values()
+            for name, base in self._base_ends(number).items()
+            if base.size
         }
         none = (np.zeros_like(M),)
         return [StandingBody("scene", 0, M, none, none, labels, points=points)]
@@ -146,13 +144,16 @@ class SceneModel(LinearModel):
         pairs = zip(self.scene.body.supports, self.supports[""], strict=True)
         return [one for one, given in pairs if linear_supports([given])[1]]
 
-    # ------------------------------------------------------------------ equations
+    @cached_property
+    def _held_at_rest(self) -> tuple[Assembly, np.ndarray]:
+        assembly, K = super()._held_at_rest
+        if self._has_foreign:
+            with probing(self.scene, 0.0) as probe:
+                state = _Standing.of(self, probe, assembly)
+                K = K + self._foreign(probe, state, assembly)["K", 0, 0]
+        return assembly, K
 
-    @property
-    def _is_list(self) -> bool:
-        """Whether all is known without a look at Exudyn."""
-        alike = self.about == "given" or not self.scene.follows_loads
-        return alike and not self.scene.foreign_items and not self.scene.body.drives
+    # ------------------------------------------------------------------ equations
 
     def at(self, speed: float, frequency: float | None = None) -> PeriodicSystem:
         """Return the equations at a spin speed, and a frequency of motions [rad/s].
@@ -169,25 +170,67 @@ class SceneModel(LinearModel):
         assembly = self.assembly(speed)
         with probing(self.scene, speed) as probe:
             state = self._equilibrium(probe)
-            foreign = Foreign.of(self.scene, probe, state)
-            elements, _ = self._elements_for(self.turns, "", self._loaded(probe, state), foreign)
-        return replace(assembly, elements=tuple(elements)).system(speed, frequency)
+            foreign = self._foreign(probe, state, assembly) if self._has_foreign else {}
+            elements, _ = self._elements_for(self.turns, "", self._loaded(probe, state))
+        return replace(assembly, elements=tuple(elements)).system(speed, frequency, foreign)
 
-    def _systems(
-        self, speeds: np.ndarray, within: str = "", frequencies: np.ndarray | None = None
+    def _foreign(self, probe: Probe, state: _Standing, assembly: Assembly) -> Powers:
+        """Return what foreign forces add to the equations of an assembly, about a state.
+
+        In axes that stand still it is the mean over a turn, as of the rotor's matrices.
+
+        Raises
+        ------
+        UnconvergedError
+            Where it changes as the rotor turns, but for the unevenness of the mesh.
+        """
+        # what a support brings with it is known by its law
+        pairs = zip(self.in_scene(assembly), assembly.bodies, strict=True)
+        parts = [part for part, body in pairs if not isinstance(body, OwnBody)]
+        moved, found = _Standing(probe, parts, np.zeros(assembly.size)), []
+        # what stands still has two harmonics in axes that turn
+        count = (5 if self.turns else 3) if probe.speed else 1
+        angles = 2.0 * np.pi * np.arange(count) / count
+        # where nothing moves, damping adds no stiffness
+        seen = probe.at_rest() if self.is_undamped else probe
+        for theta in angles:
+            x, v = state(theta)
+            _, K, D = seen.foreign(theta, x, 0.0 * v if self.is_undamped else v)
+            if self.is_undamped:
+                K, D = 0.5 * (K + K.T), 0.5 * (D - D.T)
+            by_z, by_rate = moved.by_coordinates(theta)
+            K, D = by_z.T @ _without_rounding(K) @ by_z + by_z.T @ D @ by_rate, by_z.T @ D @ by_z
+            found.append([D, _without_rounding(K)])
+        orders = np.fft.fftfreq(count, 1.0 / count).round().astype(int)
+        spectrum = np.fft.fft(np.array(found), axis=0) / count
+        if not self.turns or not probe.speed:
+            size = np.sqrt(np.abs(np.diag(assembly.K + spectrum[0, 1].real)))
+            least = _SAME * np.outer(size, size) + _ROUNDING * size.max() ** 2
+            if np.any(np.abs(spectrum[1:, 1]) > least):
+                raise UnconvergedError(
+                    f"linear scene at {probe.speed:g} rad/s: an object acts otherwise as the rotor "
+                    "turns; let it act at interfaces, body.marker(name), or add a Support of "
+                    "frame='rotor' in its place"
+                )
+            orders, spectrum = orders[:1], spectrum[:1]
+        powers: Powers = {}
+        for n, (D, K) in zip(orders.tolist(), spectrum, strict=True):
+            put(powers, "D", 0, {n: D})
+            put(powers, "K", 0, {n: K})
+        return powers
+
+    def systems(
+        self, speeds: np.ndarray, frequencies: np.ndarray | None
     ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         if self._is_list:
-            return super()._systems(speeds, within, frequencies)
+            return super().systems(speeds, frequencies)
         found, refused = [], {}
-        basis = getattr(self, f"{within}_basis") if within else None
         rates = [None] * len(speeds) if frequencies is None else frequencies.tolist()
         for place, (speed, rate) in enumerate(zip(speeds.tolist(), rates, strict=True)):
             try:
-                one = self.at(speed, rate)
+                found.append(self.at(speed, rate))
             except NO_EQUATIONS as error:
                 refused[place] = error
-            else:
-                found.append(one if basis is None else one.projected(basis))
         return joined(found) if found else None, refused
 
     @property
@@ -203,32 +246,20 @@ class SceneModel(LinearModel):
         """Return equations at speeds as one stack."""
         return super().at_points(speeds, coefficients) if self._is_list else joined(coefficients)
 
-    # ------------------------------------------------------------------ the unknowns of the scene
+    # ------------------------------------------------------------------ equilibrium
 
-    def _in_scene(self, assembly: Assembly) -> Iterator[tuple[np.ndarray, slice, Terms]]:
+    def in_scene(self, assembly: Assembly) -> Iterator[tuple[np.ndarray, slice, Terms]]:
         """Yield rows of the unknowns y, places of the coordinates, and y(θ) by these, terms."""
-        scene, own = self.scene, iter(self._with_own)
+        scene, pairs = self.scene, zip(self.scene.body.supports, self.supports[""], strict=True)
+        with_own = (one for one, given in pairs if linear_supports([given])[1])
         for body, place in zip(assembly.bodies, assembly.slices, strict=True):
             if isinstance(body, RotorBody):
                 yield np.flatnonzero(scene.touching), place, _of_rotor(scene, body)
             elif isinstance(body, StandingBody):
                 yield scene.others, place, {0: np.eye(body.size)}
             else:
-                one = next(own)
-                rows = scene.own_unknowns(one)
-                yield rows, place, _of_own(body, one, assembly.turns)
-
-    def unknowns(self, motion: Mapping[int, np.ndarray], speed: float) -> dict[int, np.ndarray]:
-        """Return harmonics of the unknowns y of the scene, given those (…, k) of coordinates."""
-        found = {}
-        for rows, place, terms in self._in_scene(self.assembly(speed)):
-            for m, X in terms.items():
-                for n, x in motion.items():
-                    none = np.zeros((*x.shape[:-1], self.scene.size), dtype=complex)
-                    found.setdefault(m + n, none)[..., rows] += x[..., place] @ X.T
-        return found
-
-    # ------------------------------------------------------------------ equilibrium
+                one = next(with_own)
+                yield scene.own_unknowns(one), place, _of_own(body, one, assembly.turns)
 
     def _equilibrium(self, probe: Probe) -> _Standing:
         """Return the equilibrium under loads that stand still.
@@ -238,14 +269,12 @@ class SceneModel(LinearModel):
         speed, scene = probe.speed, self.scene
         _, controllers = self._elements_for(0, "full")
         assembly = Assembly((*self._bodies(0, speed == 0.0), *controllers), (), 0)
-        state = _Standing(probe, list(self._in_scene(assembly)), np.zeros(assembly.size))
-        if self.about == "given":
-            return state
+        state = _Standing.of(self, probe, assembly)
         start = journal_start(scene, speed, np.arange(-1, 2)).sum(axis=0).real
         W = state.of_unknowns(0.0)[0]
         z = np.linalg.lstsq(W, start, rcond=1e-9)[0]
         own = la.block_diag(*(body.K[0] + speed * sum(body.K[1:2]) for body in assembly.bodies))
-        still = Probe(scene, 0.0, probe.solver, probe.laws)
+        still = probe.at_rest()
         angles = 2.0 * np.pi * np.arange(3) / 3.0 if speed else [0.0]
         weights = [state.by_coordinates(a)[0].T @ still.rotor_terms(a)[3] for a in angles]
         weight = np.mean(weights, axis=0)
@@ -268,8 +297,6 @@ class SceneModel(LinearModel):
 
     def _loaded(self, probe: Probe, state: _Standing) -> Sequence[Given]:
         """Return the supports, bearings under the loads that they have in an equilibrium."""
-        if self.about == "given":
-            return self.supports[""]
         probe.read(0.0, *state(0.0))
         least = _NO_LOAD * 9.81 * self.scene.mass
         return [
@@ -286,19 +313,26 @@ class SceneModel(LinearModel):
     def __repr__(self) -> str:
         lines = super().__repr__().splitlines()
         lines[1] = f"scene around {lines[1].replace('rotor', repr(self.scene.body.name), 1)}"
+        if self._has_foreign:
+            lines[2] = f"{lines[2]}, and forces of Exudyn".replace("none, and ", "")
         return "\n".join(lines)
 
 
 @dataclass(frozen=True, eq=False)
 class _Standing:
-    """A motion of constant coordinates z in axes that stand still, as a state of a scene.
+    """A motion of constant coordinates z of an assembly, as a state of a scene.
 
-    `parts` are those of :meth:`SceneModel._in_scene`.
+    `parts` are those of :meth:`SceneModel.in_scene`.
     """
 
     probe: Probe
     parts: list[tuple[np.ndarray, slice, Terms]]
     z: np.ndarray
+
+    @classmethod
+    def of(cls, model: SceneModel, probe: Probe, assembly: Assembly) -> _Standing:
+        """Return the undeformed state."""
+        return cls(probe, list(model.in_scene(assembly)), np.zeros(assembly.size))
 
     def of_unknowns(self, theta: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the unknowns y and their rates by z, each (k, l)."""
@@ -357,3 +391,10 @@ def _under_load(given: Given, law: Attached, speed: float, least: float) -> Give
     if np.abs(load - given.load).max() <= _SAME_LOAD * np.abs(load).max():
         return given  # it remembers its coefficients
     return replace(given, load=load)
+
+
+def _without_rounding(X: np.ndarray) -> np.ndarray:
+    """Return a matrix of differences without a skew part that is their rounding."""
+    symmetric = 0.5 * (X + X.T)
+    noise = np.abs(X - symmetric).max(initial=0.0) <= _ROUNDING * np.abs(X).max(initial=0.0)
+    return symmetric if noise else X

@@ -47,7 +47,7 @@ def steady_motion(
     """
     samples, start, before = _FIRST_SAMPLES, None, np.inf
     if begin is not None:
-        start = _same_harmonics(*begin)
+        start = begin[1]
         samples = max(samples, len(start) + _LEFT_OUT)
     while samples <= _MOST_SAMPLES:
         search = _Search(scene, probe, samples, tolerance)
@@ -66,14 +66,6 @@ def steady_motion(
         "resolve the motion; is there a stop, contact or friction, or an oil film whose edge moves "
         "from node to node? A damped run from rest shows the motion"
     )
-
-
-def _same_harmonics(orders: np.ndarray, harmonics: np.ndarray) -> np.ndarray:
-    """Return harmonics from −n to n of a motion by some of its harmonics."""
-    most = np.abs(orders).max()
-    found = np.zeros((2 * most + 1, harmonics.shape[1]), dtype=complex)
-    found[orders + most] = harmonics
-    return found
 
 
 class _UnheldError(UnconvergedError):

@@ -1,1 +1,0 @@
-"""Drives, couplings and gears in scenes."""
