@@ -96,21 +96,14 @@ def storable(cls: Class) -> Class:
     return cls
 
 
-class Result:
-    """Base of result classes: checked, read-only, and saved and loaded by methods.
-
-    Examples
-    --------
-    >>> from exudyn_rotor import Result, StabilityMap
-    >>> issubclass(StabilityMap, Result)
-    True
-    """
+class Checked:
+    """Base of dataclasses whose fields are checked, by their types and :func:`numbers`."""
 
     def __init_subclass__(cls, **options) -> None:
         """Keep the dataclass decorator from making a repr that prints whole arrays."""
         super().__init_subclass__(**options)
         if "__repr__" not in cls.__dict__:
-            cls.__repr__ = Result.__repr__
+            cls.__repr__ = Checked.__repr__
 
     def __post_init__(self) -> None:
         sizes: dict[str, int] = {}
@@ -131,6 +124,17 @@ class Result:
         in_order = sorted(fields(self), key=lambda item: item.kw_only)  # as the constructor
         parts = [f"{f.name}={_short(getattr(self, f.name))}" for f in in_order]
         return f"{type(self).__name__}({', '.join(parts)})"
+
+
+class Result(Checked):
+    """Base of result classes: checked, read-only, and saved and loaded by methods.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import Result, StabilityMap
+    >>> issubclass(StabilityMap, Result)
+    True
+    """
 
     def save(self, path: str | PathLike) -> None:
         """Write the result to an ``.npz`` file, lossless and without pickle.

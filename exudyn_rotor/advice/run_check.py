@@ -10,8 +10,8 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.advice.proposal import Proposal
+from exudyn_rotor.advice.request import AssumptionWarning
 from exudyn_rotor.advice.run_rows import ROWS, RecordedRun
-from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -193,8 +193,7 @@ def check_run(
     ``axial force``      2a       axial force between interfaces over the load at which the shaft
                                   buckles, hinged where the force acts, less what the prestress
                                   holds; frequencies err by half of it
-    ``yield``            1        static von Mises stress, by rotation and at rest, over the yield
-                                  stress; the larger of those at rest and at the highest speed
+    ``yield``            1        static von Mises stress at the highest speed over the yield stress
     ``speed``            1 + a    highest speed over that of the proposal
     ===================  =======  ==================================================================
 

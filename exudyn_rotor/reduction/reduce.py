@@ -7,7 +7,6 @@ from dataclasses import replace
 from functools import cache, partial
 
 import numpy as np
-import scipy.linalg
 import scipy.sparse as sp
 from exudyn.FEM import FEMinterface
 
@@ -99,7 +98,7 @@ def reduced_for_loads(
     Its deflection under these loads is that of the solid model. One that `spins` has free modes,
     too, and the static centrifugal displacement. ValueError if it has loose parts.
     """
-    columns = [attachment_modes(rotor, np.zeros((rotor.nodes.size, 0))).matrix]
+    columns = [attachment_modes(rotor, np.zeros((rotor.nodes.size, 0)))]
     loads = [np.eye(1, rotor.nodes.size, 3 * n + i)[0] for n in nodes for i in range(3)]
     if rotor.grounded:
         loads += list((rotor.mass @ translations(rotor.node_count)).T)
@@ -134,24 +133,20 @@ def _reduced(
         basis.momenta,
     )
     invariants = _cleaned(invariants, basis)
-    mode_mass = _mode_mass(component, basis)
-    if rotor.mass_damping:
-        invariants = replace(invariants, D=invariants.D + rotor.mass_damping * mode_mass)
-    if rotor.structural_damping:
-        invariants = replace(invariants, H=rotor.structural_damping * invariants.K)
     if network is not None:
         estimate = basis.matrix.T @ (network @ basis.matrix)
         invariants = replace(invariants, K2_estimated=0.5 * (estimate + estimate.T))
-    return ReducedRotor(
+    reduced = ReducedRotor(
         axis=rotor.axis,
         center_of_mass=center,
         invariants=_stiffened(rotor, invariants, basis.matrix),
         rigid_kinds=basis.rigid_kinds,
         interfaces=_interfaces(rotor, basis.matrix),
-        mode_mass=mode_mass,
+        mode_mass=_mode_mass(component, basis),
         dropped=basis.dropped,
         grounded=rotor.grounded,
     )
+    return reduced.with_damping(mass=rotor.mass_damping, loss=rotor.structural_damping)
 
 
 def _with_attachments(
@@ -166,40 +161,26 @@ def _with_attachments(
     stiffness = np.maximum(basis.stiffness, 0.0)
     with one_thread():
         try:
-            added = _joined(
-                attachment_modes(rotor, component.matrix),
-                inertial_modes(rotor, component.matrix, basis.matrix, stiffness),
-            )
+            static = attachment_modes(rotor, component.matrix)
+            inertial = inertial_modes(rotor, component.matrix, basis.matrix, stiffness)
         except ValueError:  # loose parts; the given modes may do without them
             return None
-        every = _joined(component, added)
+        matrix = np.hstack([component.matrix, static, inertial])
+        every = ModeBasis(matrix, numbered("column", matrix.shape[1]), rotor.nodes)
         finer = _basis(rotor, every)
         reduced = _reduced(rotor, every, finer)
         return reduced, finer.matrix.T @ basis.momenta
 
 
 def _basis(rotor: FiniteElementRotor, modes: ModeBasis) -> OrthonormalBasis:
-    rigid = _rigid_motions(rotor, rotor.center_of_mass)
-    return OrthonormalBasis.of(rigid, modes, rotor.mass, rotor.stiffness)
+    return OrthonormalBasis.of(_rigid_motions(rotor), modes, rotor.mass, rotor.stiffness)
 
 
-def _joined(first: ModeBasis, second: ModeBasis) -> ModeBasis:
-    columns = np.hstack([first.matrix, second.matrix])
-    return ModeBasis(columns, first.labels + second.labels, first.nodes)
-
-
-def _rigid_motions(
-    rotor: FiniteElementRotor, center: np.ndarray
-) -> tuple[np.ndarray, tuple[ModeKind, ...]]:
+def _rigid_motions(rotor: FiniteElementRotor) -> tuple[np.ndarray, tuple[ModeKind, ...]]:
     """Return the rigid motions that the stiffness matrix leaves free, and what they are."""
-    rigid = rigid_columns(rotor.nodes, rotor.axis, center)
     if not rotor.grounded:
-        return rigid, RIGID_KINDS
-    if rotor.rigid_motions == 0:
-        return rigid[:, :0], ()
-    scaled = rigid / np.maximum(np.linalg.norm(rigid, axis=0), 1e-300)
-    _, _, vt = scipy.linalg.svd(rotor.stiffness @ scaled, full_matrices=False)
-    free = scaled @ vt[6 - rotor.rigid_motions :].T
+        return rigid_columns(rotor.nodes, rotor.axis, rotor.center_of_mass), RIGID_KINDS
+    free = free_motions_of(rotor)
     return free, (ModeKind.FREE,) * free.shape[1]
 
 
@@ -212,20 +193,19 @@ def _with_turned_displacement(rotor: FiniteElementRotor, component: ModeBasis) -
     carried = rotor.carried_prestress
     if carried is None or carried.initial_displacement is None or carried.displacement is None:
         return component
-    center = rotor.center_of_mass
-    rigid, _ = _rigid_motions(rotor, center)
-    motions = np.hstack([translations(rotor.node_count), rotations(rotor.nodes, center)])
-    turns = np.linalg.lstsq(motions, rigid, rcond=None)[0][3:].T
+    turns = rotations(rotor.nodes, rotor.center_of_mass)
+    motions = np.hstack([translations(rotor.node_count), turns])
+    turns = np.linalg.lstsq(motions, _rigid_motions(rotor)[0], rcond=None)[0][3:].T
     turns = turns[np.linalg.norm(turns, axis=1) > _NO_TURN * np.abs(turns).max(initial=0.0)]
     if not len(turns):
         return component
     static = carried.displacement.reshape(-1, 3)
     columns = np.stack([np.cross(turn, static).ravel() for turn in turns], axis=1)
-    columns = columns / np.sqrt(np.einsum("ik,ik->k", columns, rotor.mass @ columns))
-    labels = tuple(f"static displacement turned {i + 1}" for i in range(len(turns)))
+    columns = unit_columns(rotor, columns)
+    labels = numbered("static displacement turned", columns.shape[1])
     stress = component.stress
     if stress is not None:
-        stress = np.concatenate([stress, rotor.stress_recovery(columns)], axis=2)
+        stress = np.concatenate([stress, rotor.elements.nodal_stress(columns)], axis=2)
     matrix = np.hstack([component.matrix, columns])
     return ModeBasis(matrix, component.labels + labels, rotor.nodes, stress=stress)
 
@@ -287,7 +267,11 @@ def _centrifugal(rotor: FiniteElementRotor) -> Centrifugal | None:
     carried = rotor.carried_prestress
     if carried is None or carried.displacement is None:
         return None
-    return Centrifugal(carried.displacement, carried.stress, carried.yield_stress)
+    return Centrifugal(
+        displacement=carried.displacement,
+        stress=carried.stress,
+        yield_stress=carried.yield_stress,
+    )
 
 
 def _interfaces(rotor: FiniteElementRotor, basis: np.ndarray) -> dict[str, ReducedInterface]:
@@ -309,10 +293,10 @@ def _shapes(
     if component.stress is not None:
         columns = component.stress @ basis.from_modes
     elif stress:
-        if rotor.stress_recovery is None:
+        if rotor.elements is None:
             raise ValueError(
                 "stress=True: this rotor has no stress recovery; make it with from_ngsolve, or "
                 "give a FEMinterface with post-processing modes"
             )
-        columns = rotor.stress_recovery(basis.matrix)
-    return ModeShapes(rotor.nodes, basis.matrix, rotor.triangles, columns)
+        columns = rotor.elements.nodal_stress(basis.matrix)
+    return ModeShapes(rotor.nodes, basis.matrix, rotor.triangles, stress=columns)

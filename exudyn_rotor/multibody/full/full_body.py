@@ -104,15 +104,15 @@ class FullRotorBody(SceneBody):
         ValueError
             For a rotor without elements.
         """
-        recover = self.selection.source.stress_recovery
-        if recover is None:
+        elements = self.selection.source.elements
+        if elements is None:
             raise ValueError(
                 f"stress: rotor {self.name!r} has no elements that it could be computed with; make "
                 "it with SolidRotor.from_ngsolve"
             )
         moved = self.displacement(of)
         columns = moved.reshape(-1, 3 * self.node_count).T
-        return np.moveaxis(recover(columns), -1, 0).reshape(*moved.shape[:-1], 6)
+        return np.moveaxis(elements.nodal_stress(columns), -1, 0).reshape(*moved.shape[:-1], 6)
 
     def interface_carrier(self, interface: str) -> Carrier:
         """Return what moves with the mean motion of an interface; there is one for each."""
