@@ -2,9 +2,9 @@
 
 from exudyn_rotor.advice.proposal import Proposal as Proposal
 from exudyn_rotor.advice.proposal import propose as propose
+from exudyn_rotor.advice.request import AssumptionWarning as AssumptionWarning
 from exudyn_rotor.advice.run_check import RunCheck as RunCheck
 from exudyn_rotor.advice.run_check import check_run as check_run
-from exudyn_rotor.advice.warning import AssumptionWarning as AssumptionWarning
 from exudyn_rotor.bearings.actuator import LinearActuator as LinearActuator
 from exudyn_rotor.bearings.actuator import SaturatingActuator as SaturatingActuator
 from exudyn_rotor.bearings.annular_seal import AnnularSeal as AnnularSeal

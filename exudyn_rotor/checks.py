@@ -89,8 +89,6 @@ def number(
 
 
 def _scalar(value: object, name: str, needed: str) -> float:
-    if value is np.ma.masked:
-        raise ValueError(f"{name}: needs {needed}, got a masked value")
     if isinstance(value, np.ndarray | np.generic):
         if value.ndim or value.dtype.kind not in "uif":
             raise TypeError(told(name, needed, value))
@@ -138,7 +136,7 @@ def whole_number(value: int, name: str) -> int:
 
 def _whole(value: object, name: str, needed: str, least: int, most: int) -> int:
     if isinstance(value, np.ndarray | np.generic):
-        is_whole = value.ndim == 0 and value.dtype.kind in "ui" and not np.ma.is_masked(value)
+        is_whole = value.ndim == 0 and value.dtype.kind in "ui"
     else:
         is_whole = isinstance(value, int) and not isinstance(value, bool)
     if not is_whole:
@@ -428,8 +426,8 @@ def _numbers(values: object, name: str, needed: str, dtype: type) -> np.ndarray:
     foreign = str | bytes | Mapping | set | frozenset | None
     if isinstance(values, foreign) or sp.issparse(values):
         raise TypeError(told(name, needed, values))
-    if np.ma.isMaskedArray(values) and np.ma.is_masked(values):
-        raise ValueError(f"{name}: needs {needed}, got an array with masked entries; fill them")
+    if np.ma.is_masked(values):
+        raise ValueError(f"{name}: needs {needed}, got masked entries; fill them")
     try:
         result = np.asarray(values)
     # ragged lists, foreign objects with broken array protocols

@@ -23,16 +23,11 @@ def write_csv(path: str | PathLike, columns: Mapping[str, np.ndarray]) -> None:
     TypeError, OSError
         See :func:`exudyn_rotor.storage.write_arrays`.
     """
-    write_text(path, csv_text(columns))
-
-
-def csv_text(columns: Mapping[str, np.ndarray]) -> str:
-    """Return columns of one length as the text of a CSV file."""
     text = io.StringIO()
     writer = csv.writer(text)
     writer.writerow(columns)
     writer.writerows(zip(*(values.tolist() for values in columns.values()), strict=True))
-    return text.getvalue()
+    write_text(path, text.getvalue())
 
 
 def data_frame(columns: Mapping[str, np.ndarray]) -> Any:

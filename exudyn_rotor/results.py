@@ -96,21 +96,14 @@ def storable(cls: Class) -> Class:
     return cls
 
 
-class Result:
-    """Base of result classes: checked, read-only, and saved and loaded by methods.
-
-    Examples
-    --------
-    >>> from exudyn_rotor import Result, StabilityMap
-    >>> issubclass(StabilityMap, Result)
-    True
-    """
+class Checked:
+    """Base of dataclasses whose fields are checked, by their types and :func:`numbers`."""
 
     def __init_subclass__(cls, **options) -> None:
         """Keep the dataclass decorator from making a repr that prints whole arrays."""
         super().__init_subclass__(**options)
         if "__repr__" not in cls.__dict__:
-            cls.__repr__ = Result.__repr__
+            cls.__repr__ = Checked.__repr__
 
     def __post_init__(self) -> None:
         sizes: dict[str, int] = {}
@@ -132,6 +125,17 @@ class Result:
         parts = [f"{f.name}={_short(getattr(self, f.name))}" for f in in_order]
         return f"{type(self).__name__}({', '.join(parts)})"
 
+
+class Result(Checked):
+    """Base of result classes: checked, read-only, and saved and loaded by methods.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import Result, StabilityMap
+    >>> issubclass(StabilityMap, Result)
+    True
+    """
+
     def save(self, path: str | PathLike) -> None:
         """Write the result to an ``.npz`` file, lossless and without pickle.
 
@@ -146,7 +150,7 @@ class Result:
         """
         name = type(self).__name__
         if _REGISTERED.get(name) is not type(self):
-            raise TypeError(f"a {name} cannot be stored; results that can: {_known()}")
+            raise TypeError(f"a {name} cannot be stored; its class needs the decorator storable")
         data: dict[str, object] = {"class": name}
         for item in fields(self):
             value = getattr(self, item.name)
@@ -332,11 +336,12 @@ def load_result(path: str | PathLike) -> Result:
     StabilityMap(x=array(1,), y=array(2,), growth=array(1, 2), stable=array(1, 2), ...)
     """
     data = read_arrays(path, _KIND)
-    name = data.pop("class", None)
-    _import_public(str(name))
-    cls = _REGISTERED.get(str(name))
+    name, package = str(data.pop("class", None)), sys.modules[__package__]
+    if name in package.__all__:
+        getattr(package, name)  # its module registers it
+    cls = _REGISTERED.get(name)
     if cls is None:
-        raise ValueError(f"{path}: holds a {name}; results that can be: {_known()}")
+        raise ValueError(f"{path}: holds a {name}, which is no result of this package")
     try:
         return cls(**_arguments(cls, data))
     except (TypeError, ValueError) as error:
@@ -377,16 +382,3 @@ def _decoded(array: np.ndarray, hint: Any, item: Field) -> object:
     if array.ndim or array.dtype.kind != kind or (hint is float and array.dtype != float):
         raise ValueError(f"{item.name}: needs one {hint.__name__}, holds {array.dtype}")
     return array.item()
-
-
-def _import_public(*names: str) -> None:
-    """Import public names of the package, as far as there are such: their modules register them."""
-    package = sys.modules[__package__]
-    for name in names:
-        if name in package.__all__:
-            getattr(package, name)
-
-
-def _known() -> str:
-    _import_public(*sys.modules[__package__].__all__)
-    return ", ".join(sorted(_REGISTERED)) or "none"

@@ -22,7 +22,6 @@ from exudyn_rotor import checks
 
 _PACKAGE = "exudyn_rotor"
 _VERSION = 2  # of the file format
-_CHECKSUM = "sha256"  # in older files
 _KINDS = "biufcU"  # flags, numbers, text
 
 
@@ -94,7 +93,7 @@ def read_arrays(path: str | PathLike, kind: str) -> dict[str, np.ndarray]:
     source = checks.file(path)
     try:
         with open(source, "rb") as opened, np.load(opened, allow_pickle=False) as file:
-            data = {name: file[name] for name in file.files if name != _CHECKSUM}
+            data = {name: file[name] for name in file.files}
     # damage shows as errors of zip, zlib, struct, numpy or the file system, or as a wrong type
     except Exception as error:
         raise ValueError(
@@ -203,11 +202,10 @@ def _target(path: str | PathLike) -> Path:
         raise IsADirectoryError(f"path: needs the name of a file, {os.fspath(path)!r} is a folder")
     if not target.parent.is_dir():
         raise FileNotFoundError(f"path: the folder {str(target.parent)!r} does not exist; make it")
-    if target.exists():
-        if not target.is_file():
-            raise OSError(f"path: needs the name of a file, {str(given)!r} is a device")
-        if not os.access(target, os.W_OK):
-            raise PermissionError(f"path: the file {str(given)!r} is read-only")
+    if target.exists() and not target.is_file():
+        raise OSError(f"path: needs the name of a file, {str(given)!r} is a device")
+    if target.exists() and not os.access(target, os.W_OK):
+        raise PermissionError(f"path: the file {str(given)!r} is read-only")
     return target
 
 

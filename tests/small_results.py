@@ -50,7 +50,11 @@ def rotor(attached: bool) -> ReducedRotor:
             K0=square + square.T,
         ),
         shapes=replace(made.shapes, stress=RNG.normal(size=(count, 6, size))),
-        centrifugal=Centrifugal(RNG.normal(size=3 * count), RNG.normal(size=(count, 6)), 3e8),
+        centrifugal=Centrifugal(
+            displacement=RNG.normal(size=3 * count),
+            stress=RNG.normal(size=(count, 6)),
+            yield_stress=3e8,
+        ),
         dropped=("column 7",),
         attached=made.attached if attached else None,
     )

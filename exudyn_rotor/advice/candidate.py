@@ -133,8 +133,6 @@ class Candidate:
 
 
 def _acts_along(given: object) -> bool:
-    """True if a support acts along the axis, at rest or spinning; a bearing acts across it."""
-    if not isinstance(given, Support):
-        return False
-    matrices = [matrix for speed in (0.0, 1.0, 1e3) for matrix in given.matrices(speed)]
+    """Return whether a support acts along the axis; bearings act across it."""
+    matrices = given.matrices(1.0) if isinstance(given, Support) else ()
     return any(np.any(matrix[2]) or np.any(matrix[:, 2]) for matrix in matrices)

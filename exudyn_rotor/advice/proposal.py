@@ -12,9 +12,8 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.advice.candidate import Candidate
 from exudyn_rotor.advice.mode_choice import GROWTH, Truncation, choose_modes
-from exudyn_rotor.advice.request import Request
+from exudyn_rotor.advice.request import AssumptionWarning, Request
 from exudyn_rotor.advice.step_size import Step, choose_step
-from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import keep_modes

@@ -1,4 +1,4 @@
-"""What a proposal is asked for, checked."""
+"""What a proposal is asked for, checked, and the warning where an assumption does not hold."""
 
 from __future__ import annotations
 
@@ -12,6 +12,20 @@ from exudyn_rotor import checks
 # relative period error per (ωh)² of generalised alpha with Exudyn's spectral radius 0.9; 1/12 at 1
 PERIOD_ERROR = 0.0844
 _SPEEDS = 5  # within a range
+
+
+class AssumptionWarning(UserWarning):
+    """An assumption of the model does not hold, or its error exceeds what was asked for.
+
+    Examples
+    --------
+    An error instead:
+
+    >>> import warnings
+    >>> from exudyn_rotor import AssumptionWarning
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("error", AssumptionWarning)
+    """
 
 
 @dataclass(frozen=True)

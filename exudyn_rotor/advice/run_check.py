@@ -10,8 +10,8 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.advice.proposal import Proposal
+from exudyn_rotor.advice.request import AssumptionWarning
 from exudyn_rotor.advice.run_rows import ROWS, RecordedRun
-from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor

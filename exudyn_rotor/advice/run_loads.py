@@ -15,7 +15,7 @@ import numpy as np
 from exudyn_rotor.multibody.rotor.connections import load_places
 from exudyn_rotor.multibody.rotor.rotor_body import Record, RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.theory.axis import SpinAxis, skew
+from exudyn_rotor.theory.axis import skew
 
 _MOST = 400  # instants of a run that are looked at
 _STILL = 1e-5  # of the rotor's size: motion that counts as none
@@ -59,12 +59,6 @@ def interface_loads(
     return total
 
 
-def turned(body: RotorBody, q: np.ndarray) -> np.ndarray:
-    """Return the orientation (3, 3) of the rotor frame for coordinates of the body's nodes."""
-    motion = body.motion
-    return motion.orientation @ SpinAxis(motion.invariants.direction).rotation(q[body.locks.spin])
-
-
 def _without_weight(body: RotorBody, record: Record, index: int) -> np.ndarray:
     """Return loads on the modes and, over √m and in rotor axes, on the frame (m + 3,)."""
     motion, inv, weight = body.motion, body.motion.invariants, np.zeros(3)
@@ -74,7 +68,7 @@ def _without_weight(body: RotorBody, record: Record, index: int) -> np.ndarray:
     if body.gravity_load is not None:
         gravity = body.mbs.GetLoadParameter(body.gravity_load, "loadVector")
         weight = inv.mass * np.asarray(gravity)
-    turn, N = turned(body, record.q[index]), motion.free_directions
+    turn, N = motion.at(t, q, q_t).A, motion.free_directions
     on_modes = external[motion.modes] - inv.S.T @ turn.T @ weight / inv.mass
     on_frame = turn.T @ N @ (external[motion.translations] - N.T @ weight)
     return np.concatenate([on_modes, on_frame / np.sqrt(inv.mass)])
@@ -104,17 +98,19 @@ def residual_deflection(body: RotorBody, record: Record, size: float) -> float |
     missing += np.outer(stretch - own_stretch, record.speed[picked] ** 2)
     rigid = len(rotor.rigid_kinds)
     bent = moved[:, rigid:] @ columns[rigid:]
-    frame = np.column_stack([_of_frame(body, record.q[index]) for index in picked])
+    frame = np.column_stack([_of_frame(body, record, index) for index in picked])
     whole = moved @ columns + np.tile(frame, (len(rotor.interfaces), 1))
     return _largest(missing) / max(_largest(whole), _largest(bent), _STILL * size)
 
 
-def _of_frame(body: RotorBody, q: np.ndarray) -> np.ndarray:
+def _of_frame(body: RotorBody, record: Record, index: int) -> np.ndarray:
     """Return how far the frame's axis has moved, in its own axes, without rotation (6,)."""
-    motion, turn = body.motion, turned(body, q)
+    motion, places = body.motion, body.layout.unknowns
+    q, q_t = record.q[index][places], record.q_t[index][places]
+    turn = motion.at(float(record.time[index]), q, q_t).A
     # the frame may stand in a centre of mass off the axis, and that circles about it
     arm = body.selection.origin - body.axis.project(body.selection.origin)
-    shift = motion.free_directions @ q[body.layout.unknowns][motion.translations]
+    shift = motion.free_directions @ q[motion.translations]
     return np.concatenate([turn.T @ (shift + motion.orientation @ arm) - arm, np.zeros(3)])
 
 

@@ -76,8 +76,11 @@ def run_demo(folder: str | Path, *, quick: bool = False) -> list[Run]:
     runs = []
     print(f"{'':34}{'seconds':>9}{'ratio':>7}{'deviation':>11}")
     for label, add in variants.items():
-        runs.append(_simulated(label, add, fem, end_time, pictures.get(label)))
-        print(_line(runs[-1], runs[0]), flush=True)
+        run = _simulated(label, add, fem, end_time, pictures.get(label))
+        runs.append(run)
+        deviation = run.deviation(runs[0]).max() / np.abs(runs[0].orbit).max()
+        ratio = runs[0].seconds / run.seconds
+        print(f"{label:34}{run.seconds:9.2f}{ratio:7.1f}{deviation:11.1e}", flush=True)
     amplitude = 1e6 * np.abs(runs[0].orbit).max()
     print(
         f"spin speed {runs[0].speed[0]:.0f} → {runs[0].speed[-1]:.0f} rad/s, largest journal "
@@ -87,13 +90,6 @@ def run_demo(folder: str | Path, *, quick: bool = False) -> list[Run]:
     _draw_comparison(runs[0], runs[2], target)
     print(f"pictures: {', '.join(sorted(path.name for path in target.glob('*.png')))} in {target}")
     return runs
-
-
-def _line(run: Run, reference: Run) -> str:
-    """Return a line of the table."""
-    deviation = run.deviation(reference).max() / np.abs(reference.orbit).max()
-    ratio = reference.seconds / run.seconds
-    return f"{run.label:34}{run.seconds:9.2f}{ratio:7.1f}{deviation:11.1e}"
 
 
 def _draw_comparison(reference: Run, fixed: Run, folder: Path) -> None:

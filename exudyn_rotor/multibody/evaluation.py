@@ -9,10 +9,8 @@ import exudyn
 import numpy as np
 
 # configurations that hold coordinates
-STATES = tuple(
-    getattr(exudyn.ConfigurationType, name)
-    for name in ("Initial", "Current", "StartOfStep", "Visualization")
-)
+_KIND = exudyn.ConfigurationType
+STATES = (_KIND.Initial, _KIND.Current, _KIND.StartOfStep, _KIND.Visualization)
 _NO_FORCES = {
     "stiffnessMatrix": np.zeros((0, 0)),
     "dampingMatrix": np.zeros((0, 0)),

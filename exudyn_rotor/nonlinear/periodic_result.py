@@ -134,11 +134,6 @@ class PeriodicResponse(Result):
         )
 
     @property
-    def abscissa(self) -> np.ndarray:
-        """The parameter at the points."""
-        return self.values
-
-    @property
     def stable(self) -> np.ndarray:
         """Whether the motion of each point is stable, shape (p,)."""
         return self.growth < 0.0

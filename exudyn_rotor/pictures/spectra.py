@@ -98,7 +98,7 @@ class Spectra(Result):
         for order, style in zip(orders, itertools.cycle(plotting.LINES[1:]), strict=False):
             line = order * shown.frequencies(self.speeds)
             ax.plot(line, base, ls=style, color="0.4", lw=0.9, label=f"{order:g} ×")
-        ax.set_xlim(*_limits(abscissa))
+        ax.set_xlim(abscissa.min(), abscissa.max())
         ax.set_ylim(base.min() - step, base.max() + 5.0 * step)
         ax.set_xlabel(f"frequency [{shown.frequency}]")
         per = f"{step / scale:.2g} per {step:.3g} {shown.speed}"
@@ -123,7 +123,7 @@ class Spectra(Result):
         )  # fmt: skip
         spin = shown.frequencies(self.speeds)
         ax.plot(self.times, spin, "--", color="white", lw=0.9, label="spin speed")
-        ax.set_ylim(*_limits(abscissa))
+        ax.set_ylim(abscissa.min(), abscissa.max())
         ax.set_xlabel("time [s]")
         ax.set_ylabel(f"frequency [{shown.frequency}]")
         ax.legend(loc="upper left", facecolor="0.4", labelcolor="white", framealpha=0.7)
@@ -311,7 +311,3 @@ def _even_step(time: np.ndarray) -> float:
             "such steps"
         )
     return float(steps.mean())
-
-
-def _limits(values: np.ndarray) -> tuple[float, float]:
-    return float(values.min()), float(values.max())

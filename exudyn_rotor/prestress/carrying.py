@@ -127,45 +127,26 @@ def estimated_stiffness(rotor: FiniteElementRotor) -> sp.csr_array | None:
         return None
     K = sp.bsr_array(rotor.stiffness, blocksize=(3, 3))
     first = np.repeat(np.arange(count), np.diff(K.indptr))
-    joined = first != K.indices
-    i, j = first[joined], K.indices[joined]
-    bars = rotor.nodes[j] - rotor.nodes[i]
-    lengths = np.linalg.norm(bars, axis=1)
-    if np.any(lengths == 0.0):
+    joined = first < K.indices
+    ends = np.column_stack([first[joined], K.indices[joined]])
+    bars = rotor.nodes[ends[:, 1]] - rotor.nodes[ends[:, 0]]
+    squares = np.sum(bars**2, axis=1)
+    if np.any(squares == 0.0):
         return None
-    stiffness = np.linalg.norm(K.data[joined], axis=(1, 2)) / lengths**2
-    try:
-        rigid = inertia_relief(rotor).rigid
-        truss = _truss(rotor, i, j, bars, stiffness)
-        relief = InertiaRelief(truss, rotor.mass, rigid)
-    except (ValueError, TooLittleMemoryError):
-        return None
-    moved = relief.solve(rotor.centrifugal_load).reshape(-1, 3)
-    tension = stiffness * np.einsum("ba,ba->b", bars, moved[j] - moved[i])  # force per length
-    network = sp.csr_array((-tension, (i, j)), shape=(count, count))
-    network = network - sp.diags_array(np.asarray(network.sum(axis=1)).ravel())
-    network = 0.5 * (network + network.T)
-    return matrices.in_all_directions(network)
-
-
-def _truss(
-    rotor: FiniteElementRotor,
-    i: np.ndarray,
-    j: np.ndarray,
-    bars: np.ndarray,
-    stiffness: np.ndarray,
-) -> sp.csr_array:
-    """Return the stiffness (3n, 3n) of the bars, and of springs where the rotor is held."""
-    count = rotor.node_count
-    blocks = stiffness[:, None, None] * bars[:, :, None] * bars[:, None, :]
-    diagonal = np.zeros((count, 3, 3))
-    np.add.at(diagonal, i, blocks)
+    stiffness = np.linalg.norm(K.data[joined], axis=(1, 2)) / squares
+    signs, rows = np.tile([-1.0, 1.0], len(bars)), np.repeat(np.arange(len(bars)), 2)
+    parted = sp.csr_array((signs, (rows, ends.ravel())), shape=(len(bars), count))
+    stretched = sp.hstack([parted * column[:, None] for column in bars.T], format="csr")
+    order = np.arange(3 * count).reshape(3, count).T.ravel()  # x0 y0 z0 x1 …
+    stretched = sp.csr_array(stretched[:, order])
     held = np.linalg.norm((rotor.stiffness @ translations(count)).reshape(-1, 9), axis=1)
     largest = abs(rotor.stiffness).sum(axis=1).reshape(-1, 3).max(axis=1)
-    diagonal += np.where(held > _GROUNDED * largest, held, 0.0)[:, None, None] * np.eye(3)
-    order = np.argsort(np.concatenate([i, np.arange(count)]), kind="stable")
-    data = np.concatenate([-blocks, diagonal])[order]
-    columns = np.concatenate([j, np.arange(count)])[order]
-    ends = np.cumsum(np.bincount(i, minlength=count) + 1)
-    truss = sp.bsr_array((data, columns, np.append(0, ends)), shape=rotor.stiffness.shape)
-    return sp.csr_array(truss)
+    springs = np.repeat(np.where(held > _GROUNDED * largest, held, 0.0), 3)
+    truss = stretched.T @ sp.diags_array(stiffness) @ stretched + sp.diags_array(springs)
+    try:
+        rigid = inertia_relief(rotor).rigid
+        relief = InertiaRelief(sp.csr_array(truss), rotor.mass, rigid)
+    except (ValueError, TooLittleMemoryError):
+        return None
+    tension = stiffness * (stretched @ relief.solve(rotor.centrifugal_load))  # force per length
+    return matrices.in_all_directions(parted.T @ sp.diags_array(tension) @ parted)

@@ -25,7 +25,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from exudyn_rotor.reduction.component import ModeBasis, numbered, rigid_columns, unit_columns
+from exudyn_rotor.reduction.component import rigid_columns, unit_columns
 from exudyn_rotor.solid.model import clamped_coordinates
 from exudyn_rotor.solid.rotor import FiniteElementRotor, Interface
 from exudyn_rotor.solvers.inertia_relief import (
@@ -48,7 +48,7 @@ _ABOVE = 10.0
 _SMALL = 1e-3
 
 
-def attachment_modes(rotor: FiniteElementRotor, others: np.ndarray) -> ModeBasis:
+def attachment_modes(rotor: FiniteElementRotor, others: np.ndarray) -> np.ndarray:
     """Return static responses to unit forces and moments at the interfaces, with inertia relief.
 
     Parameters
@@ -72,8 +72,7 @@ def attachment_modes(rotor: FiniteElementRotor, others: np.ndarray) -> ModeBasis
     responses = [np.zeros((rotor.nodes.size, 0))]
     if loads:
         responses.append(static_responses(rotor, rigid, np.hstack(loads)))
-    columns = unit_columns(rotor, np.hstack(responses))
-    return ModeBasis(columns, numbered("attachment mode", columns.shape[1]), rotor.nodes)
+    return unit_columns(rotor, np.hstack(responses))
 
 
 def static_responses(
@@ -117,7 +116,7 @@ def _stays_rigid(interface: Interface, modes: np.ndarray) -> bool:
 
 def inertial_modes(
     rotor: FiniteElementRotor, others: np.ndarray, basis: np.ndarray, stiffness: np.ndarray
-) -> ModeBasis:
+) -> np.ndarray:
     """Return static responses to the loads of a turning rotor's modes, of unit strain energy.
 
     Only the independent ones that can matter. Interfaces that the modes `others` (3n, k) keep rigid
@@ -131,8 +130,7 @@ def inertial_modes(
     energy = loads.T @ responses
     values, turn = np.linalg.eigh(0.5 * (energy + energy.T))
     strong = values > _SMALL
-    columns = responses @ (turn[:, strong] / np.sqrt(values[strong]))
-    return ModeBasis(columns, numbered("inertial mode", columns.shape[1]), rotor.nodes)
+    return responses @ (turn[:, strong] / np.sqrt(values[strong]))
 
 
 def _loads(

@@ -14,6 +14,7 @@ from exudyn.FEM import FEMinterface
 from exudyn_rotor import checks
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.reduction.reduced_rotor import ModeKind, rigid_names
+from exudyn_rotor.results import Checked, numbers, words
 from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers import modes as eigen
@@ -32,7 +33,7 @@ _APART = 2e-2  # relative distance of the frequencies of a pair, at most
 
 
 @dataclass(frozen=True, eq=False)
-class ModeBasis:
+class ModeBasis(Checked):
     """Displacement modes of one mesh.
 
     Parameters
@@ -62,29 +63,18 @@ class ModeBasis:
     ('sideways',) [nan]
     """
 
-    matrix: np.ndarray
-    labels: tuple[str, ...]
-    nodes: np.ndarray
-    frequencies: np.ndarray | None = None
-    stress: np.ndarray | None = None
+    matrix: np.ndarray = numbers("coordinates", "modes")
+    labels: tuple[str, ...] = words("modes")
+    nodes: np.ndarray = numbers("nodes", 3)
+    frequencies: np.ndarray | None = numbers("modes", finite=False, optional=True)
+    stress: np.ndarray | None = numbers("nodes", 6, "modes", optional=True)
 
     def __post_init__(self) -> None:
-        labels = checks.labels(self.labels, "mode basis: labels")
-        nodes = checks.array(self.nodes, "mode basis: nodes", "m", shape=(None, 3))
-        modes, frequencies = len(labels), self.frequencies
-        frequencies = np.full(modes, np.nan) if frequencies is None else frequencies
-        checked = {
-            "labels": labels,
-            "nodes": nodes,
-            "matrix": checks.array(self.matrix, "mode basis: matrix", shape=(nodes.size, modes)),
-            "frequencies": checks.array(
-                frequencies, "mode basis: frequencies", "rad/s", shape=(modes,), finite=False
-            ),
-        }
-        if self.stress is not None:
-            shape = (len(nodes), 6, modes)
-            checked["stress"] = checks.array(self.stress, "mode basis: stress", shape=shape)
-        checks.keep(self, **checked)
+        super().__post_init__()
+        if len(self.matrix) != self.nodes.size:
+            raise ValueError(f"matrix: needs {self.nodes.size} rows, got {len(self.matrix)}")
+        if self.frequencies is None:
+            checks.keep(self, frequencies=checks.read_only(np.full(len(self.labels), np.nan)))
 
 
 def free_modes(rotor: FiniteElementRotor, count: int) -> ModeBasis:
@@ -150,7 +140,7 @@ def free_modes(rotor: FiniteElementRotor, count: int) -> ModeBasis:
     precision = relative_rounding(stiffness, rigid)
     eigen.check_modes(stiffness, mass, values, modes, precision=precision)
     modes = with_fixed_sign(modes)
-    return ModeBasis(modes, numbered("eigenmode", count), rotor.nodes, np.sqrt(values))
+    return ModeBasis(modes, numbered("eigenmode", count), rotor.nodes, frequencies=np.sqrt(values))
 
 
 def with_fixed_sign(modes: np.ndarray) -> np.ndarray:

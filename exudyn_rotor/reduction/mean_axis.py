@@ -18,7 +18,7 @@ import scipy.linalg
 from exudyn.FEM import FEMinterface
 
 from exudyn_rotor import checks
-from exudyn_rotor.reduction.component import NEW, gram_schmidt, modes_of, rigid_columns
+from exudyn_rotor.reduction.component import gram_schmidt, modes_of, rigid_columns
 from exudyn_rotor.solid.matrices import as_mass, as_nodes
 from exudyn_rotor.solid.model import import_model
 from exudyn_rotor.theory.axis import SpinAxis
@@ -76,11 +76,9 @@ def use_mean_axis_modes(fem: FEMinterface) -> tuple[int, ...]:
     rigid = rigid_columns(nodes, SpinAxis.of("z"), nodes.mean(axis=0))
     weighted = mass @ rigid
     flexible = modes - rigid @ (scipy.linalg.pinvh(rigid.T @ weighted) @ (weighted.T @ modes))
-    left, whole = (
-        np.sqrt(np.maximum(np.einsum("ik,ik->k", columns, mass @ columns), 0.0))
-        for columns in (flexible, modes)
-    )
-    elastic = [k for k in gram_schmidt(flexible, mass)[2] if left[k] > NEW * whole[k]]
+    count = rigid.shape[1]
+    used = gram_schmidt(np.hstack([rigid, modes]), mass)[2]
+    elastic = [index - count for index in used if index >= count]
     if not elastic:
         raise ValueError("fem: its modes are rigid motions alone; no flexible mode would remain")
     fem.modeBasis = {**fem.modeBasis, "matrix": flexible[:, elastic]}

@@ -7,7 +7,6 @@ from dataclasses import replace
 from functools import cache, partial
 
 import numpy as np
-import scipy.linalg
 import scipy.sparse as sp
 from exudyn.FEM import FEMinterface
 
@@ -99,7 +98,7 @@ def reduced_for_loads(
     Its deflection under these loads is that of the solid model. One that `spins` has free modes,
     too, and the static centrifugal displacement. ValueError if it has loose parts.
     """
-    columns = [attachment_modes(rotor, np.zeros((rotor.nodes.size, 0))).matrix]
+    columns = [attachment_modes(rotor, np.zeros((rotor.nodes.size, 0)))]
     loads = [np.eye(1, rotor.nodes.size, 3 * n + i)[0] for n in nodes for i in range(3)]
     if rotor.grounded:
         loads += list((rotor.mass @ translations(rotor.node_count)).T)
@@ -134,24 +133,20 @@ def _reduced(
         basis.momenta,
     )
     invariants = _cleaned(invariants, basis)
-    mode_mass = _mode_mass(component, basis)
-    if rotor.mass_damping:
-        invariants = replace(invariants, D=invariants.D + rotor.mass_damping * mode_mass)
-    if rotor.structural_damping:
-        invariants = replace(invariants, H=rotor.structural_damping * invariants.K)
     if network is not None:
         estimate = basis.matrix.T @ (network @ basis.matrix)
         invariants = replace(invariants, K2_estimated=0.5 * (estimate + estimate.T))
-    return ReducedRotor(
+    reduced = ReducedRotor(
         axis=rotor.axis,
         center_of_mass=center,
         invariants=_stiffened(rotor, invariants, basis.matrix),
         rigid_kinds=basis.rigid_kinds,
         interfaces=_interfaces(rotor, basis.matrix),
-        mode_mass=mode_mass,
+        mode_mass=_mode_mass(component, basis),
         dropped=basis.dropped,
         grounded=rotor.grounded,
     )
+    return reduced.with_damping(mass=rotor.mass_damping, loss=rotor.structural_damping)
 
 
 def _with_attachments(
@@ -166,13 +161,12 @@ def _with_attachments(
     stiffness = np.maximum(basis.stiffness, 0.0)
     with one_thread():
         try:
-            added = _joined(
-                attachment_modes(rotor, component.matrix),
-                inertial_modes(rotor, component.matrix, basis.matrix, stiffness),
-            )
+            static = attachment_modes(rotor, component.matrix)
+            inertial = inertial_modes(rotor, component.matrix, basis.matrix, stiffness)
         except ValueError:  # loose parts; the given modes may do without them
             return None
-        every = _joined(component, added)
+        matrix = np.hstack([component.matrix, static, inertial])
+        every = ModeBasis(matrix, numbered("column", matrix.shape[1]), rotor.nodes)
         finer = _basis(rotor, every)
         reduced = _reduced(rotor, every, finer)
         return reduced, finer.matrix.T @ basis.momenta
@@ -183,11 +177,6 @@ def _basis(rotor: FiniteElementRotor, modes: ModeBasis) -> OrthonormalBasis:
     return OrthonormalBasis.of(rigid, modes, rotor.mass, rotor.stiffness)
 
 
-def _joined(first: ModeBasis, second: ModeBasis) -> ModeBasis:
-    columns = np.hstack([first.matrix, second.matrix])
-    return ModeBasis(columns, first.labels + second.labels, first.nodes)
-
-
 def _rigid_motions(
     rotor: FiniteElementRotor, center: np.ndarray
 ) -> tuple[np.ndarray, tuple[ModeKind, ...]]:
@@ -195,11 +184,7 @@ def _rigid_motions(
     rigid = rigid_columns(rotor.nodes, rotor.axis, center)
     if not rotor.grounded:
         return rigid, RIGID_KINDS
-    if rotor.rigid_motions == 0:
-        return rigid[:, :0], ()
-    scaled = rigid / np.maximum(np.linalg.norm(rigid, axis=0), 1e-300)
-    _, _, vt = scipy.linalg.svd(rotor.stiffness @ scaled, full_matrices=False)
-    free = scaled @ vt[6 - rotor.rigid_motions :].T
+    free = free_motions_of(rotor)
     return free, (ModeKind.FREE,) * free.shape[1]
 
 
@@ -225,7 +210,7 @@ def _with_turned_displacement(rotor: FiniteElementRotor, component: ModeBasis) -
     labels = tuple(f"static displacement turned {i + 1}" for i in range(len(turns)))
     stress = component.stress
     if stress is not None:
-        stress = np.concatenate([stress, rotor.stress_recovery(columns)], axis=2)
+        stress = np.concatenate([stress, rotor.elements.nodal_stress(columns)], axis=2)
     matrix = np.hstack([component.matrix, columns])
     return ModeBasis(matrix, component.labels + labels, rotor.nodes, stress=stress)
 
@@ -287,7 +272,11 @@ def _centrifugal(rotor: FiniteElementRotor) -> Centrifugal | None:
     carried = rotor.carried_prestress
     if carried is None or carried.displacement is None:
         return None
-    return Centrifugal(carried.displacement, carried.stress, carried.yield_stress)
+    return Centrifugal(
+        displacement=carried.displacement,
+        stress=carried.stress,
+        yield_stress=carried.yield_stress,
+    )
 
 
 def _interfaces(rotor: FiniteElementRotor, basis: np.ndarray) -> dict[str, ReducedInterface]:
@@ -309,10 +298,10 @@ def _shapes(
     if component.stress is not None:
         columns = component.stress @ basis.from_modes
     elif stress:
-        if rotor.stress_recovery is None:
+        if rotor.elements is None:
             raise ValueError(
                 "stress=True: this rotor has no stress recovery; make it with from_ngsolve, or "
                 "give a FEMinterface with post-processing modes"
             )
-        columns = rotor.stress_recovery(basis.matrix)
-    return ModeShapes(rotor.nodes, basis.matrix, rotor.triangles, columns)
+        columns = rotor.elements.nodal_stress(basis.matrix)
+    return ModeShapes(rotor.nodes, basis.matrix, rotor.triangles, stress=columns)

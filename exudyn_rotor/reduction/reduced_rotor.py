@@ -13,6 +13,8 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.reduction.reduced_file import load_reduced, save_reduced
+from exudyn_rotor.results import Checked, numbers
+from exudyn_rotor.solid.matrices import as_triangles
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
 
@@ -57,7 +59,7 @@ def rigid_names(kinds: Sequence[ModeKind]) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True, eq=False)
-class ReducedInterface:
+class ReducedInterface(Checked):
     """Mean motion of an interface in the reduced basis.
 
     Attributes
@@ -72,26 +74,17 @@ class ReducedInterface:
     Raises
     ------
     TypeError, ValueError
-        If shapes do not fit, an entry is not finite, or the radius is negative.
+        If shapes do not fit, or an entry is not finite.
     """
 
-    reference: np.ndarray
-    center: np.ndarray
+    reference: np.ndarray = numbers(3)
+    center: np.ndarray = numbers(3)
     radius: float
-    motion: np.ndarray
-
-    def __post_init__(self) -> None:
-        checks.keep(
-            self,
-            reference=checks.vector(self.reference, "interface: reference", "m"),
-            center=checks.vector(self.center, "interface: center", "m"),
-            radius=checks.number(self.radius, "interface: radius", "m", least=0.0),
-            motion=checks.array(self.motion, "interface: motion", shape=(6, None)),
-        )
+    motion: np.ndarray = numbers(6, "columns")
 
 
 @dataclass(frozen=True, eq=False)
-class ModeShapes:
+class ModeShapes(Checked):
     """Mode shapes at mesh nodes, for sensors and drawing.
 
     Attributes
@@ -110,31 +103,20 @@ class ModeShapes:
         If shapes do not fit, an entry is not finite, or a triangle names a node that is not there.
     """
 
-    nodes: np.ndarray
-    matrix: np.ndarray
-    triangles: np.ndarray
-    stress: np.ndarray | None = None
+    nodes: np.ndarray = numbers("nodes", 3)
+    matrix: np.ndarray = numbers("coordinates", "columns")
+    triangles: np.ndarray = numbers("triangles", "corners", dtype=int)
+    stress: np.ndarray | None = numbers("nodes", 6, "columns", optional=True)
 
     def __post_init__(self) -> None:
-        nodes = checks.array(self.nodes, "shapes: nodes", "m", shape=(None, 3))
-        matrix = checks.array(self.matrix, "shapes: matrix", shape=(nodes.size, None))
-        triangles = checks.array(self.triangles, "shapes: triangles", shape=(None, None), dtype=int)
-        if triangles.shape[1] not in (3, 6):
-            raise ValueError(f"shapes: triangles need 3 or 6 nodes, got {triangles.shape[1]}")
-        if triangles.size and not 0 <= triangles.min() <= triangles.max() < len(nodes):
-            raise ValueError(
-                f"shapes: triangles need nodes 0 to {len(nodes) - 1}, got {triangles.min()} to "
-                f"{triangles.max()}"
-            )
-        stress = self.stress
-        if stress is not None:
-            shape = (len(nodes), 6, matrix.shape[1])
-            stress = checks.array(stress, "shapes: stress", "Pa", shape=shape)
-        checks.keep(self, nodes=nodes, matrix=matrix, triangles=triangles, stress=stress)
+        super().__post_init__()
+        as_triangles(self.triangles, len(self.nodes))
+        if len(self.matrix) != self.nodes.size:
+            raise ValueError(f"matrix: needs {self.nodes.size} rows, got {len(self.matrix)}")
 
 
 @dataclass(frozen=True, eq=False)
-class Centrifugal:
+class Centrifugal(Checked):
     """Static fields about which the rotor vibrates; all of them, not modes only.
 
     Attributes
@@ -149,24 +131,12 @@ class Centrifugal:
     Raises
     ------
     TypeError, ValueError
-        If shapes do not fit, an entry is not finite, or the yield stress is not positive.
+        If shapes do not fit, or an entry is not finite.
     """
 
-    displacement: np.ndarray | None = None
-    stress: np.ndarray | None = None
+    displacement: np.ndarray | None = numbers("coordinates", optional=True)
+    stress: np.ndarray | None = numbers("nodes", 6, optional=True)
     yield_stress: float | None = None
-
-    def __post_init__(self) -> None:
-        fields = {}
-        if self.displacement is not None:
-            name = "centrifugal: displacement"
-            fields["displacement"] = checks.vector(self.displacement, name, "m s²", size=None)
-        if self.stress is not None:
-            fields["stress"] = checks.array(self.stress, "centrifugal: stress", shape=(None, 6))
-        if self.yield_stress is not None:
-            name = "centrifugal: yield_stress"
-            fields["yield_stress"] = checks.number(self.yield_stress, name, "Pa", above=0.0)
-        checks.keep(self, **fields)
 
 
 _SAME_DIRECTION = 1e-9  # of unit vectors: a file keeps them to the last bit
@@ -380,16 +350,12 @@ class ReducedRotor:
         if loss:
             structural = loss * inv.K + (0.0 if inv.H is None else inv.H)
         damping = inv.D + mass * self.mode_mass + stiffness * inv.K
-        damped = replace(inv, D=damping, H=structural)
-        if self.attached is None:
-            return replace(self, invariants=damped)
-
-        def finer() -> tuple[ReducedRotor, np.ndarray] | None:
-            rotor, columns = self._finer
-            factors = {"mass": mass, "stiffness": stiffness, "loss": loss}
-            return None if rotor is None else (rotor.with_damping(**factors), columns)
-
-        return replace(self, invariants=damped, attached=finer)
+        factors = {"mass": mass, "stiffness": stiffness, "loss": loss}
+        return replace(
+            self,
+            invariants=replace(inv, D=damping, H=structural),
+            attached=attached_by(self, lambda rotor, T: (rotor.with_damping(**factors), T)),
+        )
 
     def static_displacement(self, speed: float) -> np.ndarray:
         """Return the static centrifugal displacement at a spin speed.
@@ -527,3 +493,15 @@ class ReducedRotor:
 def _check_columns(matrix: np.ndarray, name: str, size: int) -> None:
     if matrix.shape[1] != size:
         raise ValueError(f"{name}: needs one column for each of {size}, got {matrix.shape[1]}")
+
+
+def attached_by(reduced: ReducedRotor, change: Callable) -> Callable | None:
+    """Return ``attached`` of another rotor: `change` of the finer rotor and its columns."""
+    if reduced.attached is None:
+        return None
+
+    def finer() -> tuple[ReducedRotor, np.ndarray] | None:
+        rotor, columns = reduced.with_attachments, reduced.in_attached
+        return None if rotor is None else change(rotor, columns)
+
+    return finer

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
+from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor, attached_by
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.invariants import Invariants
 
@@ -56,16 +56,12 @@ class Selection:
         sign are another basis.
         """
         checks.instance(reduced, "reduced", ReducedRotor)
-        one, two = self.source, reduced
-        if one.rigid_kinds != two.rigid_kinds or one.size != two.size:
+        if self.source.rigid_kinds != reduced.rigid_kinds or self.source.size != reduced.size:
             return False
         # what is linear or bilinear in the columns, and kept without shapes
-        pairs = [(getattr(one.invariants, x), getattr(two.invariants, x)) for x in "PGCK"]
-        pairs += [
-            (one.interfaces[name].motion, two.interfaces[name].motion)
-            for name in one.interfaces.keys() & two.interfaces.keys()
-        ]
-        return all(np.abs(x - y).max() <= _SAME * np.abs(x).max() for x, y in pairs if x.size)
+        one, two = self.source.invariants, reduced.invariants
+        pairs = [(getattr(one, x), getattr(two, x)) for x in "PGCK"]
+        return all(np.abs(x - y).max() <= _SAME * np.abs(x).max() for x, y in pairs)
 
     def __repr__(self) -> str:
         return f"Selection({len(self.labels)} of the {self.T.shape[0]} columns of {self.source!r})"
@@ -221,14 +217,11 @@ def without_spin(reduced: ReducedRotor) -> ReducedRotor:
         return reduced
     T = _beside_spin(reduced)
 
-    def finer() -> tuple[ReducedRotor, np.ndarray] | None:
-        rotor = reduced.with_attachments
-        if rotor is None:
-            return None
+    def finer(rotor: ReducedRotor, columns: np.ndarray) -> tuple[ReducedRotor, np.ndarray]:
         U = _beside_spin(rotor)
-        return _without_kind(rotor, U), U.T @ reduced.in_attached @ T
+        return _without_kind(rotor, U), U.T @ columns @ T
 
-    return replace(_without_kind(reduced, T), attached=None if reduced.attached is None else finer)
+    return replace(_without_kind(reduced, T), attached=attached_by(reduced, finer))
 
 
 def _beside_spin(reduced: ReducedRotor) -> np.ndarray:
@@ -275,24 +268,16 @@ def keep_modes(reduced: ReducedRotor, indices: Sequence[int]) -> ReducedRotor:
     """
     checks.instance(reduced, "reduced", ReducedRotor, "SolidRotor.reduce(…) makes one")
     rigid = len(reduced.rigid_kinds)
-    chosen = _checked_indices(indices, reduced.size - rigid)
-    columns = np.r_[np.arange(rigid), rigid + chosen].astype(int)
-    if columns.size == 0:
-        raise ValueError("keep_modes: this rotor has no rigid motions; keep at least one mode")
-
-    def finer() -> tuple[ReducedRotor, np.ndarray] | None:
-        rotor, shares = reduced.with_attachments, reduced.in_attached
-        return None if rotor is None else (rotor, shares[:, columns])
-
-    kept = in_basis(reduced, np.eye(reduced.size)[:, columns], reduced.rigid_kinds)
-    return replace(kept, attached=None if reduced.attached is None else finer)
-
-
-def _checked_indices(indices: Sequence[int], count: int) -> np.ndarray:
+    count = reduced.size - rigid
     chosen = np.sort(checks.whole_numbers(indices, "indices"))
     if chosen.size and chosen[-1] >= count:
         there = f"flexible modes 0 to {count - 1}" if count else "no flexible modes"
         raise ValueError(f"indices: the rotor has {there}, got {chosen[-1]}")
-    if len(np.unique(chosen)) < len(chosen):
-        raise ValueError(f"indices: a mode is named twice: {chosen.tolist()}")
-    return chosen
+    checks.different(chosen.tolist(), "indices")
+    columns = np.r_[np.arange(rigid), rigid + chosen].astype(int)
+    if columns.size == 0:
+        raise ValueError("keep_modes: this rotor has no rigid motions; keep at least one mode")
+
+    kept = in_basis(reduced, np.eye(reduced.size)[:, columns], reduced.rigid_kinds)
+    attached = attached_by(reduced, lambda rotor, shares: (rotor, shares[:, columns]))
+    return replace(kept, attached=attached)

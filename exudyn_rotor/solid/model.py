@@ -87,14 +87,11 @@ def import_model(fem: FEMinterface) -> FiniteElementModel:
 
 def _positions(nodes: dict[str, Any]) -> np.ndarray:
     """Return the positions of the only node list; rotations and planar nodes are refused."""
-    kinds = list(nodes)
-    if any(kind.startswith("RigidBody") for kind in kinds):
+    if list(nodes) != ["Position"]:
         raise ValueError(
-            f"fem: its nodes {kinds} are rotation-carrying (shells, beams); a solid rotor needs "
-            "solid elements with 'Position' nodes"
+            f"fem: needs 'Position' nodes only, got {list(nodes) or 'no nodes'}; a solid rotor has "
+            "no nodes with rotations (shells, beams)"
         )
-    if kinds != ["Position"]:
-        raise ValueError(f"fem: needs 'Position' nodes only, got {kinds or 'no nodes'}")
     return nodes["Position"]
 
 
@@ -155,26 +152,7 @@ def materials_by_region(
             f"materials: the mesh regions {missing} have no material; "
             f"given are {sorted(materials)}, the mesh has {names}"
         )
-    checked = {name: _checked_material(name, materials[name]) for name in names}
-    for name, material in checked.items() if check_units else ():
-        _check_material_units(name, material)
-    return checked
-
-
-def _check_material_units(name: str, material: Material) -> None:
-    """Raise ValueError if the material `name` cannot be in SI units."""
-    density = material["density"]
-    speed = np.sqrt(material["youngsModulus"] / density)
-    if not _inside(density, DENSITY_RANGE):
-        raise ValueError(
-            f"materials: {name!r}: a density of {density:g} kg/m³ cannot be; "
-            f"{_guess(density)} {_ADVICE}"
-        )
-    if not _inside(speed, WAVE_SPEED_RANGE):
-        raise ValueError(
-            f"materials: {name!r}: Young's modulus and density give a wave speed of "
-            f"{speed:.3g} m/s (steel: 5200), which cannot be; {_ADVICE}"
-        )
+    return {name: _checked_material(name, materials[name], check_units) for name in names}
 
 
 def check_model_units(nodes: np.ndarray, total_mass: float) -> None:
@@ -196,13 +174,13 @@ def check_model_units(nodes: np.ndarray, total_mass: float) -> None:
     if volume <= 1e-12 * np.max(extent) ** 3:
         return
     density = total_mass / volume
-    if not _inside(density, MEAN_DENSITY_RANGE):
+    if not MEAN_DENSITY_RANGE[0] <= density <= MEAN_DENSITY_RANGE[1]:
         raise ValueError(
             f"units: {size}, {density:.3g} kg/m³, cannot be; {_guess(density)} {_ADVICE}"
         )
 
 
-def _checked_material(name: str, material: Any) -> Material:
+def _checked_material(name: str, material: Any, check_units: bool) -> Material:
     label = f"materials: {name!r}"
     checks.mapping(material, label, "number")
     if set(material) != set(MATERIAL_KEYS):
@@ -210,15 +188,19 @@ def _checked_material(name: str, material: Any) -> Material:
             f"{label}: needs exactly the keys {list(MATERIAL_KEYS)}, got {sorted(material)}"
         )
     modulus, ratio, density = (material[key] for key in MATERIAL_KEYS)
-    return {
-        "youngsModulus": checks.number(modulus, f"{label}: youngsModulus", "Pa", above=0.0),
-        "poissonsRatio": checks.number(ratio, f"{label}: poissonsRatio", above=-1.0, below=0.5),
-        "density": checks.number(density, f"{label}: density", "kg/m³", above=0.0),
-    }
-
-
-def _inside(value: float, limits: tuple[float, float]) -> bool:
-    return limits[0] <= value <= limits[1]
+    modulus = checks.number(modulus, f"{label}: youngsModulus", "Pa", above=0.0)
+    ratio = checks.number(ratio, f"{label}: poissonsRatio", above=-1.0, below=0.5)
+    density = checks.number(density, f"{label}: density", "kg/m³", above=0.0)
+    speed = np.sqrt(modulus / density)
+    for what, value, unit, (low, high) in (
+        ("a density", density, "kg/m³ (steel: 7850)", DENSITY_RANGE),
+        ("a wave speed √(E/ρ)", speed, "m/s (steel: 5200)", WAVE_SPEED_RANGE),
+    ):
+        if check_units and not low <= value <= high:
+            raise ValueError(
+                f"{label}: {what} of {value:.3g} {unit} cannot be; {_guess(density)} {_ADVICE}"
+            )
+    return dict(zip(MATERIAL_KEYS, (modulus, ratio, density), strict=True))
 
 
 def _guess(density: float) -> str:

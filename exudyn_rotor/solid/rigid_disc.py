@@ -22,12 +22,13 @@ from numpy.typing import ArrayLike
 from scipy.sparse.linalg import spsolve
 
 from exudyn_rotor import checks
+from exudyn_rotor.results import Checked, numbers
 from exudyn_rotor.solid.matrices import as_node_numbers, in_all_directions
 from exudyn_rotor.theory.axis import SpinAxis, rotations, translations
 
 
 @dataclass(frozen=True, eq=False)
-class PointMass:
+class PointMass(Checked):
     """A point mass, asked for at `position` and placed on the nearest `node`.
 
     Attributes
@@ -51,19 +52,10 @@ class PointMass:
     (0, 0.005, 0.02)
     """
 
-    position: np.ndarray
+    position: np.ndarray = numbers(3)
     node: int
     mass: float
     distance: float
-
-    def __post_init__(self) -> None:
-        checks.keep(
-            self,
-            position=checks.vector(self.position, "position", "m"),
-            node=checks.count(self.node, "node"),
-            mass=checks.number(self.mass, "mass", "kg"),
-            distance=checks.number(self.distance, "distance", "m", least=0.0),
-        )
 
 
 def add_nodal_mass(matrix: sp.csr_array, node: int, mass: float) -> sp.csr_array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
@@ -231,14 +231,6 @@ class FiniteElementRotor:
         return len(self.nodes)
 
     @property
-    def stress_recovery(self) -> Callable[[np.ndarray], np.ndarray] | None:
-        """Maps displacement columns (3n, k) to nodal stress (n, 6, k) [Pa]; None without elements.
-
-        Components xx, yy, zz, yz, xz, xy in mesh axes.
-        """
-        return None if self.elements is None else self.elements.nodal_stress
-
-    @property
     def total_mass(self) -> float:
         """Mass with all point masses [kg]."""
         return float(self.mass[::3, ::3].sum())
@@ -257,11 +249,6 @@ class FiniteElementRotor:
     def centrifugal_load(self) -> np.ndarray:
         """Centrifugal nodal load ``f_c = M x_⊥`` per ω², shape (3n,) [N s²]."""
         return self.mass @ self.axis.radial(self.nodes).ravel()
-
-    @property
-    def euler_load(self) -> np.ndarray:
-        """Euler nodal load ``−M ẽx`` per ω̇, shape (3n,) [N s²]."""
-        return -self.mass @ np.cross(self.axis.direction, self.nodes - self.axis.point).ravel()
 
     def with_solver(self: Rotor, solver: str) -> Rotor:
         """Return the rotor with another solver, 'auto', 'direct' or 'iterative'.

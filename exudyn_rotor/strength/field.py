@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from mpl_toolkits.mplot3d import Axes3D
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
@@ -26,6 +26,9 @@ from exudyn_rotor.reduction.selection import Selection
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.solid.elements import von_mises
 from exudyn_rotor.units import Units
+
+if TYPE_CHECKING:
+    from mpl_toolkits.mplot3d import Axes3D
 
 Nodes = slice | np.ndarray
 
@@ -66,10 +69,6 @@ class StressField(Result):
     modes: np.ndarray = numbers("nodes", 6, "modes")
     rest: np.ndarray = numbers("nodes", 6)
     has_static: bool
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_triangles(self.triangles, len(self.positions))
 
     @classmethod
     def of(cls, reduced: ReducedRotor, selection: Selection | RotorBody) -> StressField:
@@ -182,15 +181,6 @@ class StressField(Result):
         warn_without_static(self, speed)
         label = "von Mises stress [MPa]"
         return draw_surface(self.positions, self.triangles, 1e-6 * von_mises(stress), label, ax)
-
-
-def check_triangles(triangles: np.ndarray, count: int) -> None:
-    """Refuse triangles that do not belong to `count` nodes."""
-    if triangles.size and (triangles.shape[1] not in (3, 6) or triangles.max() >= count):
-        raise ValueError(
-            f"triangles: needs 3 or 6 node numbers below {count} each, got the shape "
-            f"{triangles.shape} with numbers up to {triangles.max()}"
-        )
 
 
 def warn_without_static(field: StressField, speed: ArrayLike) -> None:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.solid.elements import principal, von_mises
-from exudyn_rotor.strength.field import StressField, check_triangles, warn_without_static
+from exudyn_rotor.strength.field import StressField, warn_without_static
 from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:
@@ -73,7 +73,6 @@ class StressHistory(Result):
     def __post_init__(self) -> None:
         super().__post_init__()
         checks.whole_numbers(self.nodes, "nodes", most=len(self.positions) - 1)
-        check_triangles(self.triangles, len(self.positions))
 
     @property
     def von_mises(self) -> np.ndarray:

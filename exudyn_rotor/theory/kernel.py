@@ -65,11 +65,6 @@ class Kernel:
         Places of the motion's unknowns among `size` coordinates; the modes come last, in a row.
     size : int
 
-    Raises
-    ------
-    TypeError, ValueError
-        For sparse invariants, or places that do not fit.
-
     Attributes
     ----------
     rows, columns : ndarray of int

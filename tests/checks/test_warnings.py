@@ -150,7 +150,7 @@ PLACES = {
     "bearings/annular_seal.py:__post_init__": (
         lambda _: AnnularSeal(interface="a", **LAMINAR),
         UserWarning, "may be laminar"),
-    "multibody/rotor/sensors.py:warn_of_static_stress": (
+    "multibody/rotor/rotor_body.py:_warn_of_static_stress": (
         native_stress_of_a_prestressed_rotor, UserWarning, "stress of the modes alone"),
     "reduction/component.py:lowest_with_pairs": (
         lambda _: disc_rotor().reduce(1), UserWarning, "one of a pair in two planes"),
@@ -168,7 +168,7 @@ PLACES = {
         scene_of_a_full_lossy_rotor, UserWarning, "A scene runs without it"),
     "multibody/rotor/rotor_body.py:check_connections": (
         asked_for_connections, ConnectionWarning, "does not tilt"),
-    "multibody/rotor/assembly.py:_tell_of_dense_solver": (
+    "multibody/rotor/assembly.py:watch": (
         run_of_a_full_body_with_a_dense_solver, UserWarning, "EigenSparse"),
     "multibody/rotor/assembly.py:warn_of_lost_connections": (
         torque_on_a_tilt_of_the_node, ConnectionWarning, "does not tilt"),

@@ -90,7 +90,7 @@ def test_patch_test(kind):
     shear = STEEL["youngsModulus"] / (2 * (1 + STEEL["poissonsRatio"]))
     stress = 2 * shear * (strain + 0.3 / 0.4 * np.trace(strain) * np.eye(3))
     expected = [stress[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))]
-    found = rotor.stress_recovery(u[:, None])[:, :, 0]
+    found = rotor.elements.nodal_stress(u[:, None])[:, :, 0]
     np.testing.assert_allclose(found, np.tile(expected, (len(found), 1)), rtol=1e-11)
     is_inner = np.all((rotor.nodes > 1e-9) & (rotor.nodes < SIZE - 1e-9), axis=1)
     force = (rotor.stiffness @ u).reshape(-1, 3)

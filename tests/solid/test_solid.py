@@ -138,7 +138,7 @@ def test_stress_of_linear_displacements_is_hookes_law(order):
     gradients = np.random.default_rng(3).normal(size=(2, 3, 3)) * 1e-3
     columns = np.stack([(rotor.nodes @ g.T).ravel() for g in gradients], axis=1)
 
-    stress = rotor.stress_recovery(columns)
+    stress = rotor.elements.nodal_stress(columns)
 
     assert stress.shape == (rotor.node_count, 6, 2)
     height = rotor.nodes[:, 2]

@@ -100,8 +100,8 @@ def test_regions_without_material():
         ({"colour": 1.0}, "materials: 'steel': needs exactly the keys"),
         ({"density": 7.85e-9, "youngsModulus": 2.1e5}, "mm and tonnes.*check_units=False"),
         ({"density": 7.85e-6}, "mm and kg.*convert to SI"),
-        ({"youngsModulus": 2.1e5}, "wave speed of 5.17 m/s.*cannot be"),
-        ({"youngsModulus": 2.1e14}, r"wave speed of 1\.64e\+05 m/s"),
+        ({"youngsModulus": 2.1e5}, r"wave speed .* of 5.17 m/s.*cannot be"),
+        ({"youngsModulus": 2.1e14}, r"wave speed .* of 1\.64e\+05 m/s"),
     ],
 )
 def test_materials_that_cannot_be(mesh, changes, message):
@@ -136,7 +136,7 @@ def node_set(name, *numbers):
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"nodes": {"RigidBodyRxyz": np.zeros((3, 6))}}, "rotation-carrying"),
+        ({"nodes": {"RigidBodyRxyz": np.zeros((3, 6))}}, "no nodes with rotations"),
         ({"nodes": {"Position2D": np.zeros((3, 2))}}, r"'Position' nodes only.*Position2D"),
         ({"nodes": {}}, "got no nodes"),
         ({"massMatrix": None}, "massMatrix is missing"),

@@ -12,8 +12,7 @@ from exudyn.itemInterface import SensorSuperElement
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.full.ties import Ties, add_ties
-from exudyn_rotor.multibody.rotor import sensors
-from exudyn_rotor.multibody.rotor.rotor_body import Record, RotorBody, SceneBody
+from exudyn_rotor.multibody.rotor.rotor_body import Record, RotorBody, SceneBody, native_settings
 from exudyn_rotor.multibody.rotor.rotor_items import (
     Carrier,
     append_nodes,
@@ -105,15 +104,15 @@ class FullRotorBody(SceneBody):
         ValueError
             For a rotor without elements.
         """
-        recover = self.selection.source.stress_recovery
-        if recover is None:
+        elements = self.selection.source.elements
+        if elements is None:
             raise ValueError(
                 f"stress: rotor {self.name!r} has no elements that it could be computed with; make "
                 "it with SolidRotor.from_ngsolve"
             )
         moved = self.displacement(of)
         columns = moved.reshape(-1, 3 * self.node_count).T
-        return np.moveaxis(recover(columns), -1, 0).reshape(*moved.shape[:-1], 6)
+        return np.moveaxis(elements.nodal_stress(columns), -1, 0).reshape(*moved.shape[:-1], 6)
 
     def interface_carrier(self, interface: str) -> Carrier:
         """Return what moves with the mean motion of an interface; there is one for each."""
@@ -150,7 +149,7 @@ class FullRotorBody(SceneBody):
         """
         self.check_present()
         checks.count(node, "node", most=self.node_count - 1)
-        settings = sensors.native_settings(self, output, options)
+        settings = native_settings(self, output, options)
         point = self._nodes_carrier([node], "position")
         (number,) = append_nodes(self.mbs, point.body, *point.virtual_nodes("position"))
         item = SensorSuperElement(bodyNumber=point.body, meshNodeNumber=number, **settings)

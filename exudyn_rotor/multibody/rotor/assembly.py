@@ -14,8 +14,7 @@ Before a scene is assembled:
   Exudyn's body, which are modes here, so the three nodes take the offset.
 - Where the axes of the flexible body are not those of the mesh, rigid markers get the latter.
 - What a script attaches to rigid and position markers at the node of the frame is pointed at
-  markers that move as the node of Exudyn's body; see
-  :func:`mean_motion`.
+  markers that move as the node of Exudyn's body; see :func:`mean_motion`.
 
 Afterwards one warning names what a rotor cannot carry.
 """
@@ -79,6 +78,11 @@ def _watch_solvers(body: RotorItems) -> None:
     if body.script.is_watched or not (held or is_large):
         return
     body.script.is_watched = True
+    slow = (
+        f"rotor {name!r}: the linear solver of this run is a dense one, slow for the {size} "
+        "coordinates of a full body; use recommended_settings(…, body=body), which takes "
+        "LinearSolverType.EigenSparse"
+    )
     instead = "translation='free'" if locks.normal is not None else "locking='mass'"
 
     def watch(mbs, t, sensors, factors, configuration):
@@ -89,24 +93,14 @@ def _watch_solvers(body: RotorItems) -> None:
                 f"locking: rotor {name!r} is held by constraints, which explicit solvers do not "
                 f"take; use add_rotor(…, {instead}) or an implicit solver"
             )
-        if is_large and settings and settings.linearSolver.solverType in _DENSE:
-            _tell_of_dense_solver(name, size, told)
+        dense = settings is not None and settings.linearSolver.solverType in _DENSE
+        if is_large and dense and slow not in told:
+            told.add(slow)
+            warnings.warn(slow, UserWarning, stacklevel=4)
         return [0.0]
 
     item = SensorUserFunction(sensorUserFunction=watch, storeInternal=False, writeToFile=False)
     body.mbs.AddSensor(item)
-
-
-def _tell_of_dense_solver(name: str | None, size: int, told: set[str]) -> None:
-    """Warn once of what makes runs of full bodies slow."""
-    message = (
-        f"rotor {name!r}: the linear solver of this run is a dense one, which factorises a full "
-        f"body's {size} coordinates slowly; use recommended_settings(…, body=body), which takes "
-        "LinearSolverType.EigenSparse"
-    )
-    if message not in told:
-        told.add(message)
-        warnings.warn(message, UserWarning, stacklevel=5)
 
 
 def warn_of_lost_connections(mbs: exudyn.MainSystem, stacklevel: int) -> None:

@@ -208,18 +208,12 @@ def load_places(body: RotorItems) -> tuple[LoadPlace, ...]:
             rigid = with_moments and marker["markerType"] == "SuperElementRigid"
             found.append(_at_marker(body, marker, 6 if rigid else 3))
     interfaces = body.selection.source.interfaces
-    for name in sorted(_driven(body)):
+    # drives and connections of rotors act by coordinates
+    driven = {one.at if one.body.token is body.token else one.other_at for one in body.drives}
+    for name in sorted(driven - {None}):
         motion = interfaces[name].motion @ body.selection.T
         found.append(LoadPlace(interfaces[name].reference, motion, name))
     return tuple(found)
-
-
-def _driven(body: RotorItems) -> set[str]:
-    """Return the interfaces that drives and connections of rotors act on, by coordinates."""
-    places = {
-        drive.at if drive.body.token is body.token else drive.other_at for drive in body.drives
-    }
-    return places - {None}
 
 
 def _at_marker(body: RotorItems, marker: dict, count: int) -> LoadPlace:

@@ -117,12 +117,6 @@ LOCKINGS = ("auto", "mass", "constraints")
 MODES = 6  # the first coordinate after those of the rigid-body node
 LOCKS = "locks"  # name of the constraint of all that stand still or turn at constant speed
 
-LOCK_RATIO = 1e18  # of the rotor's own inertia
-# beside a constraint that explicit solvers eliminate: of what moves within one of their steps
-ELIMINATED_RATIO = 1e9
-# of coordinates that are driven: rounding of the driving force is seen in the external one
-DRIVEN_RATIO = 1e9
-
 LockedForce = Callable[[float], np.ndarray]
 
 
@@ -231,33 +225,6 @@ class Layout:
         full = np.diag(np.broadcast_to(diagonal, self.size).astype(float))
         full[np.ix_(self.unknowns, self.unknowns)] += matrix
         return full
-
-
-def lock_masses(locks: Locks, size: int, inertia: np.ndarray, by_mass: bool) -> np.ndarray:
-    """Return the masses (size,) of locked coordinates, zero for unknowns.
-
-    `inertia` holds the rotor's mass (three times) and moment of inertia (three times).
-    """
-    mass = np.zeros(size)
-    for index in (*locks.fixed, *locks.prescribed):
-        if by_mass:
-            ratio = DRIVEN_RATIO if index in locks.varying else LOCK_RATIO
-        else:
-            ratio = ELIMINATED_RATIO if locks.stand_still else 1.0
-        mass[index] = inertia[index] * ratio
-    return mass
-
-
-def driving_force(locks: Locks, masses: np.ndarray) -> LockedForce | None:
-    """Return the forces (size,) over time by which huge masses are driven; None where none is."""
-
-    def force(t: float) -> np.ndarray:
-        total = np.zeros(len(masses))
-        for index, motion in locks.varying.items():
-            total[index] = masses[index] * motion.acceleration(t)
-        return total
-
-    return force if locks.varying else None
 
 
 def held(

@@ -12,15 +12,7 @@ from exudyn.itemInterface import NodeGenericODE2, NodeRigidBodyRxyz, VNodeRigidB
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor.frame import (
-    MODES,
-    BodyFrame,
-    Layout,
-    LockedForce,
-    Locks,
-    driving_force,
-    lock_masses,
-)
+from exudyn_rotor.multibody.rotor.frame import MODES, BodyFrame, Layout, LockedForce, Locks
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import Selection, select_modes
 from exudyn_rotor.theory.formulation import Formulation, start_values
@@ -210,9 +202,16 @@ class Plan(Setup):
 
     @property
     def guide(self) -> LockedForce | None:
-        """Forces over time that drive locked coordinates; None where constraints hold them."""
-        by_mass = self.locking == "mass"
-        return driving_force(self.locks, self.layout.lock_mass) if by_mass else None
+        """Forces (size,) over time that drive huge masses; None where none is driven."""
+        varying, masses = self.locks.varying, self.layout.lock_mass
+
+        def force(t: float) -> np.ndarray:
+            total = np.zeros(len(masses))
+            for index, motion in varying.items():
+                total[index] = masses[index] * motion.acceleration(t)
+            return total
+
+        return force if self.locking == "mass" and varying else None
 
 
 def add_nodes(mbs: exudyn.MainSystem, plan: Plan) -> tuple[exudyn.NodeIndex, exudyn.NodeIndex]:
@@ -285,15 +284,26 @@ def laid_out(
     )
 
 
+_LOCK_RATIO = 1e18  # masses of locked coordinates over those of the rotor
+# beside a constraint that explicit solvers eliminate: of what moves within one of their steps
+_ELIMINATED_RATIO = 1e9
+# of coordinates that are driven: rounding of the driving force is seen in the external one
+_DRIVEN_RATIO = 1e9
+
+
 def _layout(setup: Setup, locks: Locks, motion: Motion) -> Layout:
     """Return where the unknowns stand among the coordinates of the nodes, and what is locked."""
     inv = motion.invariants
-    size = MODES + inv.size
     # a rotor all on its axis has no inertia about it, and its locked spin still needs one
     about_axis = inv.Theta or np.trace(inv.J) or inv.mass
-    inertia = np.repeat([inv.mass, about_axis], 3)
-    unknowns = np.array([*locks.unknown, *range(MODES, size)])
-    return Layout(size, unknowns, lock_masses(locks, size, inertia, setup.locking == "mass"))
+    inertia, size = np.repeat([inv.mass, about_axis], 3), MODES + inv.size
+    masses = np.zeros(size)
+    for index in (*locks.fixed, *locks.prescribed):
+        ratio = _ELIMINATED_RATIO if locks.stand_still else 1.0
+        if setup.locking == "mass":
+            ratio = _DRIVEN_RATIO if index in locks.varying else _LOCK_RATIO
+        masses[index] = inertia[index] * ratio
+    return Layout(size, np.array([*locks.unknown, *range(MODES, size)]), masses)
 
 
 def turned_origin(selection: Selection, rotation: np.ndarray, angle: float) -> np.ndarray:

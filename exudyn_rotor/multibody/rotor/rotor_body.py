@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import exudyn
 import numpy as np
-from exudyn.itemInterface import SensorMarker, SensorNode, SensorSuperElement
+from exudyn.itemInterface import SensorMarker, SensorNode, SensorSuperElement, SensorUserFunction
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor import sensors
 from exudyn_rotor.multibody.rotor.connections import ConnectionWarning, lost_connections
+from exudyn_rotor.multibody.rotor.frame import LOCKS
 from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS
 from exudyn_rotor.multibody.rotor.rotor_items import (
     RATES,
@@ -24,7 +26,8 @@ from exudyn_rotor.multibody.rotor.rotor_items import (
     interface_of_nodes,
     nodes_of,
 )
-from exudyn_rotor.theory.formulation import start_values
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.formulation import ConstantSpeed, start_values
 
 _KINDS = exudyn.OutputVariableType
 
@@ -103,10 +106,8 @@ class StartState:
                 f"q, q_t: need one velocity for each coordinate, got the shapes {q.shape} and "
                 f"{q_t.shape}"
             )
-        object.__setattr__(self, "q", checks.read_only(q))
-        object.__setattr__(self, "q_t", checks.read_only(q_t))
-        object.__setattr__(self, "angle", checks.number(self.angle, "angle", "rad"))
-        object.__setattr__(self, "speed", checks.number(self.speed, "speed", "rad/s"))
+        checks.keep(self, q=q, q_t=q_t)
+        checks.keep_numbers(self, {"angle": "rad", "speed": "rad/s"})
 
 
 def spin_at_start(body: RotorItems) -> tuple[float, float]:
@@ -127,6 +128,92 @@ def keep_in_node(mbs: exudyn.MainSystem, number: int, state: StartState) -> None
     place = slice(first, first + len(node[velocities]))
     mbs.SetNodeParameter(number, "initialCoordinates", state.q[place].tolist())
     mbs.SetNodeParameter(number, velocities, state.q_t[place].tolist())
+
+
+def _warn_of_static_stress(body: RotorItems, output: exudyn.OutputVariableType) -> None:
+    """Warn where a native stress sensor leaves out a static stress that the rotor was given."""
+    spin = body.formulation.spin
+    at_rest = isinstance(spin, ConstantSpeed) and spin.speed == 0.0
+    # K2 is what a body keeps of a prestress
+    if output != _KINDS.StressLocal or at_rest or body.selection.invariants.K2 is None:
+        return
+    warnings.warn(
+        f"rotor {body.name!r}: Exudyn's stress sensor shows the stress of the modes alone, without "
+        "the static centrifugal stress that they do not hold; record the modal coordinates and use "
+        "StressField.of(reduced, body) with stress_history",
+        UserWarning,
+        stacklevel=3,
+    )
+
+
+def _friction(body: RotorItems, configuration: exudyn.ConfigurationType) -> float:
+    """Return the torque of bearings and stops on a rotor that does not feel it [N m]."""
+    total = 0.0
+    for made in (one.connector for one in body.supports):
+        made.read(*made.state(body.mbs, configuration))
+        total += made.friction()
+    return total
+
+
+def _deflected_weight(body: RotorItems, t: float, zeta: np.ndarray) -> float:
+    """Return the moment about e of gravity by the deflection Sζ, which Exudyn's load leaves out."""
+    if body.gravity_load is None:
+        return 0.0
+    motion = body.motion
+    axis = SpinAxis(motion.invariants.direction)
+    gravity = np.asarray(body.mbs.GetLoadParameter(body.gravity_load, "loadVector"))
+    turn = motion.orientation @ axis.rotation(motion.formulation.spin.value(t))
+    return float(turn @ axis.skew @ (motion.invariants.S @ zeta) @ gravity)
+
+
+def _external_moment(body: RotorItems, t: float, configuration: exudyn.ConfigurationType) -> float:
+    """Return the external moment about e, which the locked spin collects [N m]."""
+    node, mbs, spin = body.nodes["rigid"], body.mbs, body.locks.spin
+    acceleration = mbs.GetNodeOutput(node, _KINDS.Coordinates_tt, configuration)[spin]
+    moment = body.layout.lock_mass[spin] * float(acceleration)
+    if body.guide is not None:
+        moment -= body.guide(t)[spin]
+    if "spin" in body.constraints:
+        moment += float(np.ravel(mbs.GetObjectOutput(body.constraints["spin"], _KINDS.Force))[0])
+    elif body.constraints:
+        share = body.locks.rows[0][:, spin]
+        moment += float(share @ mbs.GetObjectOutput(body.constraints[LOCKS], _KINDS.Force))
+    return moment
+
+
+def add_function_sensor(
+    body: RotorItems, function: Callable, options: Mapping[str, Any]
+) -> exudyn.SensorIndex:
+    """Add a sensor of what a user function returns."""
+    settings = _settings_of(body, options)
+    return body.mbs.AddSensor(SensorUserFunction(sensorUserFunction=function, **settings))
+
+
+def native_settings(
+    body: RotorItems, output: exudyn.OutputVariableType, options: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the settings of a native sensor; Exudyn refuses unsuited outputs in Assemble."""
+    checks.instance(output, "output", _KINDS)
+    return {"outputVariableType": output} | _settings_of(body, options)
+
+
+def _settings_of(body: RotorItems, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the settings of a sensor, stored internally by default."""
+    body.check_present()
+    known = ("name", "storeInternal", "writeToFile", "fileName")
+    for option in options:
+        if option not in known:
+            raise TypeError(f"{option}: is no option of this sensor; it takes {', '.join(known)}")
+    settings = {"storeInternal": True, "writeToFile": False} | dict(options)
+    for option in ("storeInternal", "writeToFile"):
+        checks.flag(settings[option], option)
+    if "fileName" in settings:
+        settings["fileName"] = os.fspath(checks.path(settings["fileName"], "fileName"))
+    if "name" in settings:
+        name = checks.label(settings["name"], "name")
+        if int(body.mbs.GetSensorNumber(name)) != -1:
+            raise ValueError(f"name: this system already has a sensor {name!r}; choose another")
+    return settings
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -255,7 +342,7 @@ class SceneBody(RotorItems, ABC):
     def add_interface_sensor(self, interface: str, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at an interface's marker; `options` go to ``SensorMarker``."""
         marker = self.marker(interface)
-        settings = sensors.native_settings(self, output, options)
+        settings = native_settings(self, output, options)
         return self.mbs.AddSensor(SensorMarker(markerNumber=marker, **settings))
 
     def add_spin_sensor(self, **options):
@@ -267,7 +354,7 @@ class SceneBody(RotorItems, ABC):
             speed = mbs.GetNodeOutput(node, _KINDS.Coordinates_t, configuration)[index]
             return [float(angle), float(speed)]
 
-        return sensors.add_function_sensor(self, spin, options)
+        return add_function_sensor(self, spin, options)
 
     def add_drive_torque_sensor(self, **options):
         """Add a sensor of the torque about e that a prescribed spin needs [N m].
@@ -288,11 +375,11 @@ class SceneBody(RotorItems, ABC):
             q, q_t, q_tt = self.coordinates(configuration)
             zeta, zeta_tt = q[self.motion.modes], q_tt[self.motion.modes]
             needed = self.motion.drive_torque(t, q, q_t, zeta_tt)
-            needed -= sensors.external_moment(self, t, configuration)
-            needed -= sensors.deflected_weight(self, t, zeta)
-            return [needed - sensors.friction(self, configuration)]
+            needed -= _external_moment(self, t, configuration)
+            needed -= _deflected_weight(self, t, zeta)
+            return [needed - _friction(self, configuration)]
 
-        return sensors.add_function_sensor(self, torque, options)
+        return add_function_sensor(self, torque, options)
 
     def add_energy_sensor(self, **options):
         """Add a sensor of kinetic energy, elastic energy and the potential of the weight [J].
@@ -311,7 +398,7 @@ class SceneBody(RotorItems, ABC):
             energy = self.motion.energy(t, q, q_t, gravity)
             return list(energy)
 
-        return sensors.add_function_sensor(self, energy, options)
+        return add_function_sensor(self, energy, options)
 
     def start_recording(self) -> None:
         """Record all coordinates of the coming run, for :func:`exudyn_rotor.check_run`.
@@ -411,8 +498,8 @@ class RotorBody(SceneBody):
                 f"node: rotor {self.name!r} has mesh nodes 0 … {count - 1}, not {node}"
                 + ("" if count else "; it has no shapes (without_shapes)")
             )
-        settings = sensors.native_settings(self, output, options)
-        sensors.warn_of_static_stress(self, output)
+        settings = native_settings(self, output, options)
+        _warn_of_static_stress(self, output)
         item = SensorSuperElement(bodyNumber=marker_body, meshNodeNumber=int(node), **settings)
         return self.mbs.AddSensor(item)
 

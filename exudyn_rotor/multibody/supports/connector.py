@@ -30,9 +30,8 @@ from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support, acts
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, add_function_sensor
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, entry
-from exudyn_rotor.multibody.rotor.sensors import add_function_sensor
 from exudyn_rotor.multibody.supports.ends import BaseEnd, RotorEnd
 from exudyn_rotor.theory.rotating_axes import axial_rotation, axial_skew
 

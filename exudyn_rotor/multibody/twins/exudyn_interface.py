@@ -212,7 +212,7 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
             rotation="rotationMatrixRef",
         )
         made = numbers(body)
-        vars(self).update(made)
+        vars(self).update(made)  # which Exudyn's class keeps, too
         return made
 
 

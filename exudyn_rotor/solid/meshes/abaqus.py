@@ -153,21 +153,11 @@ class _Deck:
             )
 
     def _give_materials(self) -> None:
-        """Split the groups by the materials of the sections; a region is called as its material."""
-        materials = self.data.materials
-        regions = {}
+        """Call the regions of elements as the materials of their sections."""
         for element_set, material in self.sections:
-            name = _spelled(materials, material)
-            regions.update(dict.fromkeys(_of(self.data.element_sets, element_set), name))
-        groups = []
-        for group in self.data.groups:
-            names = np.array([regions.get(number, group.region) for number in group.numbers])
-            for name in np.unique(names):
-                chosen = names == name
-                groups.append(
-                    ElementGroup(group.kind, group.numbers[chosen], group.nodes[chosen], str(name))
-                )
-        self.data.groups = groups
+            name = _spelled(self.data.materials, material)
+            chosen = _of(self.data.element_sets, element_set)
+            self.data.regions.update(dict.fromkeys(chosen, name))
 
 
 _READ = {

@@ -48,15 +48,10 @@ def convert(mesh: meshio.Mesh) -> MeshData:
         first += len(cells.data)
         names = _names(mesh, i)
         if cells.type in KINDS:
-            regions = np.full(len(numbers), "solid", dtype=object)
+            data.groups.append(ElementGroup(cells.type, numbers, cells.data, "solid"))
             for name, chosen in names:
-                regions[chosen] = name
+                data.regions.update(dict.fromkeys(numbers[chosen].tolist(), name))
                 data.element_sets.setdefault(name, []).extend(numbers[chosen].tolist())
-            for region in dict.fromkeys(regions):
-                chosen = regions == region
-                data.groups.append(
-                    ElementGroup(cells.type, numbers[chosen], cells.data[chosen], region)
-                )
         elif cells.type.startswith(_SURFACES):
             for name, chosen in names:
                 nodes = np.unique(cells.data[chosen]).tolist()

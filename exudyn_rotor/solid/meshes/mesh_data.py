@@ -38,6 +38,8 @@ class MeshData:
         Numbers of nodes, and their positions (3,), lengths of the file.
     groups : list of ElementGroup
     node_sets, element_sets : dict of str to list of int
+    regions : dict of int to str
+        Region of elements, where it is another than that of their group.
     surfaces : dict of str to list of (element, face)
         Faces are counted from zero, in the order of ``ElementKind.faces``.
     materials : dict
@@ -49,6 +51,7 @@ class MeshData:
     groups: list[ElementGroup] = field(default_factory=list)
     node_sets: dict[str, list[int]] = field(default_factory=dict)
     element_sets: dict[str, list[int]] = field(default_factory=dict)
+    regions: dict[int, str] = field(default_factory=dict)
     surfaces: dict[str, list[tuple[int, int]]] = field(default_factory=dict)
     materials: dict[str, dict[str, float]] = field(default_factory=dict)
 

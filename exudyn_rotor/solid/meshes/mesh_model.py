@@ -99,19 +99,18 @@ def _used_nodes(data: MeshData) -> tuple[list[int], np.ndarray]:
 
 def _regions(data: MeshData, materials: Mapping[str, Any] | None) -> dict[int, str]:
     """Return the region of elements by number, of the element sets that materials are given for."""
-    regions: dict[int, str] = {}
-    if materials is None or not isinstance(materials, Mapping):
-        return regions
-    own = {group.region for group in data.groups}
-    for name in materials:
+    given: dict[int, str] = {}
+    own = {group.region for group in data.groups} | set(data.regions.values())
+    sets = materials if isinstance(materials, Mapping) else ()
+    for name in sets:
         if name in data.element_sets and name not in own:
-            twice = [number for number in data.element_sets[name] if number in regions]
+            twice = [number for number in data.element_sets[name] if number in given]
             if twice:
                 raise ValueError(
-                    f"materials: element {twice[0]} is in {regions[twice[0]]!r} and in {name!r}"
+                    f"materials: element {twice[0]} is in {given[twice[0]]!r} and in {name!r}"
                 )
-            regions.update(dict.fromkeys(data.element_sets[name], name))
-    return regions
+            given.update(dict.fromkeys(data.element_sets[name], name))
+    return data.regions | given
 
 
 def _blocks(
