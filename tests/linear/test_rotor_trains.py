@@ -60,7 +60,6 @@ def test_bad_trains_are_refused():
         (both, {"A": 1.0, "B": 0.0}, {}, "foundation"),
         (both, ratios, {"supports": {"C": [spring]}}, "'C' is unknown"),
         (both, ratios, {"supports": {"A": [Support("c", 1.0)]}}, "no such interface"),
-        (both, ratios, {"driven": ["A", "A"]}, "every rotor once"),
         (both, ratios, {"links": [Link("A:a", "C:a", spring)]}, "'C' is unknown"),
         (both, ratios, {"links": [Link("A:a", "B:c", spring)]}, "'c' is unknown"),
     ]

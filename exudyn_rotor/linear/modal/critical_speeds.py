@@ -36,7 +36,7 @@ _BESIDE, _ERROR = 0.97, 1e-6  # of a critical speed: where its change is told, a
 @storable
 @dataclass(frozen=True, eq=False)
 class CriticalSpeeds(ModelResult):
-    """Critical speeds, ascending; an uneven rotor has both of a pair.
+    """Critical speeds, ascending; an uneven rotor has both of a pair, from 0.5 % apart on.
 
     Attributes
     ----------

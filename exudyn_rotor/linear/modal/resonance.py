@@ -90,8 +90,8 @@ class Stiffness:
 
     def stacked(self, speeds: np.ndarray) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         """Return the equations at speeds (s,) where there are any, and why there are none else."""
-        assembly, basis = self.model.assembly(speeds[0]), self.model.moving_basis
-        stack, refused = assembly.systems(speeds, self.order * speeds)
+        basis = self.model.moving_basis
+        stack, refused = self.model.systems(speeds, self.order * speeds)
         projects = basis is not None and stack is not None
         return stack.projected(basis) if projects else stack, refused
 

@@ -211,17 +211,12 @@ class Content:
         """Return repeated motions, whose shapes are arbitrary, as waves of one sense each."""
         values, vectors, alike = motions.values, motions.vectors, {}
         scale = _SAME * np.maximum(np.abs(values), np.abs(motions.speeds[:, None]))
-        near = (
-            np.abs(values[:, :, None] - values[:, None])
-            <= (scale + motions.bounds[:, None])[:, :, None]
-        )
-        for row in np.flatnonzero(near.sum(axis=2).max(axis=1, initial=0) > 1):
-            left = np.ones(values.shape[1], dtype=bool)
-            for i in np.flatnonzero(near[row].sum(axis=1) > 1):
-                group = np.flatnonzero(near[row, i] & left)
-                if left[i] and group.size > 1:
+        allowed = (scale + motions.bounds[:, None])[:, 1:]
+        near = np.abs(np.diff(values, axis=1)) <= allowed  # they stand side by side
+        for row in np.flatnonzero(near.any(axis=1)):
+            for group in np.split(np.arange(values.shape[1]), np.flatnonzero(~near[row]) + 1):
+                if group.size > 1:
                     alike.setdefault(tuple(group), []).append(row)
-                left[group] = False
         if not alike:
             return motions
         changed = vectors.copy()

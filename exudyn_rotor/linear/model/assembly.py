@@ -183,7 +183,7 @@ def is_isotropic_matrix(X: np.ndarray) -> bool:
 class OwnBody(Body):
     """Coordinates that a support brings with it, as a body: of a controller, of pads."""
 
-    def rows(self) -> dict[int, np.ndarray]:
+    def supported(self, _: str) -> dict[int, np.ndarray]:
         """Return the displacements of its pairs of coordinates, seen from outside, (3p, k)."""
         return turned({0: np.kron(np.eye(self.size // 2), ACROSS)}, self.turns)
 
@@ -191,7 +191,7 @@ class OwnBody(Body):
 class PadBody(OwnBody):
     """The tilts of pads, which stand still."""
 
-    def rows(self) -> dict[int, np.ndarray]:
+    def supported(self, _: str) -> dict[int, np.ndarray]:
         """Return the coordinates, (k, k)."""
         return {0: np.eye(self.size)}
 
@@ -391,13 +391,7 @@ class Assembly:
         """Return the motion that an element acts on, seen from outside."""
         name, interface = end
         place, body = next((i, body) for i, body in enumerate(self.bodies) if body.name == name)
-        if isinstance(body, OwnBody):
-            rows = body.rows()
-        elif isinstance(body, RotorBody):
-            rows = body.supported(interface)
-        else:
-            rows = body.seen(interface)
-        return self.wide(rows, self.slices[place])
+        return self.wide(body.supported(interface), self.slices[place])
 
     @cached_property
     def motions(self) -> list[Terms]:

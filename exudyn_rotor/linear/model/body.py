@@ -25,7 +25,6 @@ from exudyn_rotor.linear.model.spin import Spin, spin_of
 from exudyn_rotor.linear.model.turning import (
     Turning,
     interface_motion,
-    radius_of_gyration,
     turning_of,
 )
 from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
@@ -350,6 +349,8 @@ class StandingBody(Body):
         """Return the motion of a point, (6, k)."""
         return {0: self.points[name]}
 
+    supported = seen  # what supports act on
+
 
 def foundation_body(foundation: Foundation, rotor: ReducedRotor) -> StandingBody:
     """Return a foundation in the axes of a rotor's mesh as a body, in modal coordinates."""
@@ -360,12 +361,6 @@ def foundation_body(foundation: Foundation, rotor: ReducedRotor) -> StandingBody
     return StandingBody(
         "foundation", 0, *matrices, labels, base_loads=loads, points=dict(given.points)
     )
-
-
-def largest_radius(bodies: tuple[Body, ...]) -> float:
-    """Return the largest radius of gyration of the rotors [m]."""
-    radii = [radius_of_gyration(b.alone.invariants) for b in bodies if isinstance(b, RotorBody)]
-    return max(radii)
 
 
 def rigid_columns_of(alone: RotorAlone) -> tuple[list[str], np.ndarray]:

@@ -40,13 +40,13 @@ from exudyn_rotor.linear.model.body import (
     RotorBody,
     StandingBody,
     foundation_body,
-    largest_radius,
     rigid_columns_of,
     rotor_alone,
     rotor_body,
 )
 from exudyn_rotor.linear.model.rotor_train import Link
 from exudyn_rotor.linear.model.spin import ARM
+from exudyn_rotor.linear.model.turning import radius_of_gyration
 from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
 from exudyn_rotor.theory.stiffening import LEVELS
 
@@ -301,7 +301,7 @@ class LinearModel:
         for places in (np.flatnonzero(speeds), np.flatnonzero(speeds == 0.0)):
             if places.size:
                 rates = None if frequencies is None else np.asarray(frequencies)[places]
-                part, errors = self._systems(speeds[places], rates)
+                part, errors = self.systems(speeds[places], rates)
                 refused |= {int(places[i]): error for i, error in errors.items()}
                 if part is not None:
                     parts.append((np.delete(places, list(errors)), part))
@@ -309,7 +309,7 @@ class LinearModel:
         warn_of_refused(lost, len(speeds), " rad/s")
         return spread(speeds, parts)
 
-    def _systems(
+    def systems(
         self, speeds: np.ndarray, frequencies: np.ndarray | None
     ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         """Return the stack at speeds (s,), all zero or none, and why there are none at some."""
@@ -522,7 +522,7 @@ class LinearModel:
     @cached_property
     def radius(self) -> float:
         """By which a rotation counts as a displacement [m]."""
-        return largest_radius(self.bodies)
+        return max(radius_of_gyration(b.alone.invariants) for b in rotors_of(self.bodies))
 
     @cached_property
     def interfaces(self) -> tuple[str, ...]:

@@ -191,8 +191,6 @@ class RotorTrain:
                 _known(interface, rotors[name].interfaces, f"links: interfaces of {name!r}")
             link._check_ratios(ratios)
         driven = checks.labels(self.driven, "driven", rotors)
-        if len(set(driven)) < len(driven):
-            raise ValueError(f"driven: needs every rotor once, got {list(driven)}")
         uneven = checks.number(self.largest_unevenness, "largest_unevenness", least=0.0, most=1.0)
         for name, value in {
             "rotors": checks.read_only_mapping(rotors),
@@ -229,10 +227,10 @@ def _checked_rotors(given: Mapping[str, ReducedRotor]) -> Mapping[str, ReducedRo
     rotors = checks.mapping(given, "rotors", "ReducedRotor")
     if not rotors:
         raise ValueError("rotors: needs at least one rotor, got none")
-    how = "reduce a SolidRotor by its method reduce(…)"
     for name, rotor in rotors.items():
         if ":" in checks.label(name, "rotors"):
             raise ValueError(f"rotors: needs names without a colon, got {name!r}")
+        how = "reduce a SolidRotor by its method reduce(…)"
         checks.instance(rotor, f"rotors[{name!r}]", ReducedRotor, how)
     return rotors
 

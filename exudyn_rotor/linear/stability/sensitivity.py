@@ -86,23 +86,18 @@ class Sensitivity(Result):
         return np.nanmax(np.abs(self.values), axis=1)
 
     @property
-    def peak_frequencies(self) -> np.ndarray:
-        """Where that is [rad/s], shape (axes,)."""
-        return self.frequencies[np.nanargmax(np.abs(self.values), axis=1)]
-
-    @property
     def zones(self) -> tuple[str, ...]:
         """Zone of each axis by ISO 14839-3: 'A', 'B', 'C' or 'D'."""
         return tuple(next(z for z, most in ZONES.items() if peak <= most) for peak in self.peaks)
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns, one row for each axis; see :meth:`Result.columns`."""
-        shown = Units.of(units)
+        shown, at = Units.of(units), np.nanargmax(np.abs(self.values), axis=1)
         return {
             "axis": np.array(self.axes),
             "peak |S|": self.peaks,
             "peak [dB]": 20.0 * np.log10(self.peaks),
-            f"at [{shown.frequency}]": shown.frequencies(self.peak_frequencies),
+            f"at [{shown.frequency}]": shown.frequencies(self.frequencies[at]),
             "zone": np.array(self.zones),
         }
 

@@ -231,9 +231,12 @@ class Stability(ModelResult):
         for (family, growth), color in zip(found.items(), plotting.COLORS, strict=True):
             if not np.all(np.isnan(growth)):
                 ax.plot(speeds, growth, ".-", color=color, lw=1.3, label=family)
-        low, high = ax.get_ylim()
+        drawn = [growth for growth in found.values() if not np.all(np.isnan(growth))] or [0.0]
+        low, high = np.nanmin(drawn), np.nanmax(drawn)
         lateral = np.fmin.reduce(found["lateral"], initial=0.0)
-        limits = (max(low, _SHOWN * lateral) if lateral < 0.0 else low), high
+        low = max(low, _SHOWN * lateral) if lateral < 0.0 else low
+        room = 0.05 * (high - low) or 1.0
+        limits = low - room, high + room
         shade = {"where": self.growth > self.bounds, "color": plotting.COLORS[1], "alpha": 0.2}
         ax.fill_between(speeds, *limits, lw=0.0, **shade)
         ax.set_ylim(limits)

@@ -213,8 +213,8 @@ class _Margin:
         if np.isnan(bound):
             return np.nan
         counted = growth[np.argsort(np.abs(growth))[self.resting :]]
-        counted = np.where(np.abs(counted) <= bound, 0.0, counted)
-        return float(np.fmax.reduce(counted, initial=-np.inf if counted.size else 0.0) - bound)
+        counted = np.where(np.abs(counted) <= bound, 0.0, counted)[~np.isnan(counted)]
+        return float(counted.max() if counted.size else 0.0) - bound
 
     def motions(self, model: LinearModel, *speeds: float) -> Motions:
         """Return the motions of a model at speeds, of which the least stable one is right."""

@@ -119,9 +119,7 @@ class SceneCoordinates:
     def foreign_items(self) -> list[dict]:
         """Objects and loads that are neither the rotor's own nor its supports, as dictionaries."""
         mbs, body = self.body.mbs, self.body
-        own = {*map(int, body.objects.values()), *map(int, body.constraints.values())}
-        own |= {int(n) for one in body.supports for n in one.objects}
-        objects = set(range(mbs.systemData.NumberOfObjects())) - own
+        objects = set(range(mbs.systemData.NumberOfObjects())) - known_objects(body)
         weight = set() if body.gravity_load is None else {int(body.gravity_load)}
         loads = set(range(mbs.systemData.NumberOfLoads())) - weight
         items = filter(_has_force, map(mbs.GetObject, sorted(objects)))
@@ -205,6 +203,12 @@ class SceneCoordinates:
         spin = self.spin_coordinate
         q[spin], q_t[spin] = angle, speed
         return StartState(q, q_t, angle, speed)
+
+
+def known_objects(body: RotorBody) -> set[int]:
+    """Return the numbers of the objects of a rotor and its supports."""
+    found = {*map(int, body.objects.values()), *map(int, body.constraints.values())}
+    return found | {int(number) for one in body.supports for number in one.objects}
 
 
 def _has_force(item: dict) -> bool:

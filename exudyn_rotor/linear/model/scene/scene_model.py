@@ -101,6 +101,11 @@ class SceneModel(LinearModel):
         return not self._has_foreign and super()._is_alike
 
     @property
+    def stiffness_varies(self) -> bool:
+        """Whether a stiffness depends on the speed; a foreign one may, with the equilibrium."""
+        return self._has_foreign or super().stiffness_varies
+
+    @property
     def richer(self) -> LinearModel | None:
         """The model with more shapes; None beside foreign forces, which do not know these."""
         return None if self._has_foreign else super().richer
@@ -214,11 +219,11 @@ class SceneModel(LinearModel):
             put(powers, "K", 0, {n: K})
         return powers
 
-    def _systems(
+    def systems(
         self, speeds: np.ndarray, frequencies: np.ndarray | None
     ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         if self._is_list:
-            return super()._systems(speeds, frequencies)
+            return super().systems(speeds, frequencies)
         found, refused = [], {}
         rates = [None] * len(speeds) if frequencies is None else frequencies.tolist()
         for place, (speed, rate) in enumerate(zip(speeds.tolist(), rates, strict=True)):
@@ -308,6 +313,8 @@ class SceneModel(LinearModel):
     def __repr__(self) -> str:
         lines = super().__repr__().splitlines()
         lines[1] = f"scene around {lines[1].replace('rotor', repr(self.scene.body.name), 1)}"
+        if self._has_foreign:
+            lines[2] = f"{lines[2]}, and forces of Exudyn".replace("none, and ", "")
         return "\n".join(lines)
 
 

@@ -15,6 +15,7 @@ from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.linear.model.rotor_train import Link, RotorTrain
 from exudyn_rotor.linear.model.scene.scene_checks import check_body, rotors_in
+from exudyn_rotor.linear.model.scene.scene_coordinates import known_objects
 from exudyn_rotor.multibody.drives import SceneConnection
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, spin_at_start
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
@@ -68,12 +69,11 @@ def _check_all_rotors(mbs: exudyn.MainSystem, bodies: Sequence[RotorBody]) -> No
     for body in bodies:
         check_body(mbs, body)
     names = [body.name for body in bodies]
-    if len(set(names)) < len(names) or len(names) < 2:
-        raise ValueError(f"body: needs two rotors or more, each once, got {names}")
-    given = {int(body.objects["physics"]) for body in bodies}
-    left = [name for number, name in rotors_in(mbs).items() if number not in given]
-    if left:
-        raise ValueError(f"body: leaves out the rotors {left} of this scene; give all of them")
+    if len(bodies) < 2 or sorted(names) != sorted(rotors_in(mbs).values()):
+        raise ValueError(
+            f"body: needs all rotors of the scene, {[*rotors_in(mbs).values()]}, each once, "
+            f"got {names}"
+        )
 
 
 def _check_alike(first: RotorBody, body: RotorBody) -> None:
@@ -132,11 +132,8 @@ def _link_of(one: SceneConnection) -> Link:
 
 def _check_nothing_else(mbs: exudyn.MainSystem, bodies: Sequence[RotorBody]) -> None:
     """Refuse objects that are not of the rotors, their supports and connections."""
-    known = set()
-    for body in bodies:
-        known |= {*map(int, body.objects.values()), *map(int, body.constraints.values())}
-        known |= {int(number) for one in body.supports for number in one.objects}
-        known |= {int(number) for one in body.drives for number in one.objects}
+    known = set().union(*map(known_objects, bodies))
+    known |= {int(number) for body in bodies for one in body.drives for number in one.objects}
     for number in set(range(mbs.systemData.NumberOfObjects())) - known:
         item = mbs.GetObject(number)
         if item["objectType"] != "Ground":
