@@ -193,8 +193,7 @@ def check_run(
     ``axial force``      2a       axial force between interfaces over the load at which the shaft
                                   buckles, hinged where the force acts, less what the prestress
                                   holds; frequencies err by half of it
-    ``yield``            1        static von Mises stress, by rotation and at rest, over the yield
-                                  stress; the larger of those at rest and at the highest speed
+    ``yield``            1        static von Mises stress at the highest speed over the yield stress
     ``speed``            1 + a    highest speed over that of the proposal
     ===================  =======  ==================================================================
 

@@ -173,17 +173,13 @@ def _with_attachments(
 
 
 def _basis(rotor: FiniteElementRotor, modes: ModeBasis) -> OrthonormalBasis:
-    rigid = _rigid_motions(rotor, rotor.center_of_mass)
-    return OrthonormalBasis.of(rigid, modes, rotor.mass, rotor.stiffness)
+    return OrthonormalBasis.of(_rigid_motions(rotor), modes, rotor.mass, rotor.stiffness)
 
 
-def _rigid_motions(
-    rotor: FiniteElementRotor, center: np.ndarray
-) -> tuple[np.ndarray, tuple[ModeKind, ...]]:
+def _rigid_motions(rotor: FiniteElementRotor) -> tuple[np.ndarray, tuple[ModeKind, ...]]:
     """Return the rigid motions that the stiffness matrix leaves free, and what they are."""
-    rigid = rigid_columns(rotor.nodes, rotor.axis, center)
     if not rotor.grounded:
-        return rigid, RIGID_KINDS
+        return rigid_columns(rotor.nodes, rotor.axis, rotor.center_of_mass), RIGID_KINDS
     free = free_motions_of(rotor)
     return free, (ModeKind.FREE,) * free.shape[1]
 
@@ -197,17 +193,16 @@ def _with_turned_displacement(rotor: FiniteElementRotor, component: ModeBasis) -
     carried = rotor.carried_prestress
     if carried is None or carried.initial_displacement is None or carried.displacement is None:
         return component
-    center = rotor.center_of_mass
-    rigid, _ = _rigid_motions(rotor, center)
-    motions = np.hstack([translations(rotor.node_count), rotations(rotor.nodes, center)])
-    turns = np.linalg.lstsq(motions, rigid, rcond=None)[0][3:].T
+    turns = rotations(rotor.nodes, rotor.center_of_mass)
+    motions = np.hstack([translations(rotor.node_count), turns])
+    turns = np.linalg.lstsq(motions, _rigid_motions(rotor)[0], rcond=None)[0][3:].T
     turns = turns[np.linalg.norm(turns, axis=1) > _NO_TURN * np.abs(turns).max(initial=0.0)]
     if not len(turns):
         return component
     static = carried.displacement.reshape(-1, 3)
     columns = np.stack([np.cross(turn, static).ravel() for turn in turns], axis=1)
-    columns = columns / np.sqrt(np.einsum("ik,ik->k", columns, rotor.mass @ columns))
-    labels = tuple(f"static displacement turned {i + 1}" for i in range(len(turns)))
+    columns = unit_columns(rotor, columns)
+    labels = numbered("static displacement turned", columns.shape[1])
     stress = component.stress
     if stress is not None:
         stress = np.concatenate([stress, rotor.elements.nodal_stress(columns)], axis=2)
