@@ -218,7 +218,7 @@ def calls_of_warn(source: str, file: str) -> list[str]:
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
             function = node.name
         called = node.func if isinstance(node, ast.Call) else None
-        of_warnings = isinstance(called, ast.Attribute) and ast.unparse(called.value) == "warnings"
+        of_warnings = getattr(getattr(called, "value", None), "id", "") == "warnings"
         if (called.attr if of_warnings else getattr(called, "id", "")) in _CALLS:
             found.append(f"{file}:{function}")
         for child in ast.iter_child_nodes(node):
