@@ -54,7 +54,7 @@ margin = er.sensitivity(reduced, np.geomspace(10.0, 3e4, 60), supports=bearings,
 print(margin.table())
 assert set(margin.zones) == {"A"}
 
-LIFT, RAMP, HOLD = 0.1, 0.2, 0.15  # s: at rest, up to the critical speed, there; and up again
+LIFT, RAMP, HOLD = 0.1, 0.15, 0.12  # s: at rest, up to the critical speed, there; and up again
 ramps = (
     (LIFT, er.PrescribedMotion.run_up(0.0, critical, RAMP)),
     (LIFT + RAMP + HOLD, er.PrescribedMotion.run_up(0.0, critical, RAMP)),

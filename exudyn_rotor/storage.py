@@ -23,6 +23,7 @@ from exudyn_rotor import checks
 _PACKAGE = "exudyn_rotor"
 _VERSION = 2  # of the file format
 _KINDS = "biufcU"  # flags, numbers, text
+_CHECKSUM = "sha256"  # in files of development versions before 0.2.0
 
 
 def write_arrays(path: str | PathLike, kind: str, data: Mapping[str, object]) -> None:
@@ -102,6 +103,7 @@ def read_arrays(path: str | PathLike, kind: str) -> dict[str, np.ndarray]:
         ) from error
     _check_format(source, data, kind)
     del data["format"]
+    data.pop(_CHECKSUM, None)
     for array in data.values():
         array.flags.writeable = False
     return data

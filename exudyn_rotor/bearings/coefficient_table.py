@@ -21,6 +21,7 @@ _KINDS = {"k": "stiffness", "c": "damping", "d": "damping", "m": "mass"}
 _AXES = dict.fromkeys(("speed", "speeds", "rpm", "w", "omega"), "speeds")
 _AXES |= dict.fromkeys(("frequency", "frequencies", "freq", "whirl"), "frequencies")
 _TO_RADIANS = {"rad/s": 1.0, "rpm": np.pi / 30.0, "hz": 2.0 * np.pi}
+_ROUNDING = 1e-6  # of the largest speed of a table
 _LETTERS = "xyzabc"  # displacement along n1, n2, e, then rotation about them
 
 
@@ -105,6 +106,20 @@ class CoefficientTable:
         axis = 0 if self.speeds is None else 1
         values = _smooth(self.frequencies, np.moveaxis(self.values, axis, 0))(frequency)
         return values if self.speeds is None else CoefficientTable(self.speeds, None, values)
+
+
+def outside(speeds: np.ndarray, speed: float) -> str:
+    """Return what is wrong with a speed beyond the ends of a table, but for rounding, or nothing.
+
+    Differences by the speed leave the end by a little.
+    """
+    slack = _ROUNDING * np.abs(speeds).max()
+    if speeds[0] - slack <= speed <= speeds[-1] + slack:
+        return ""
+    return (
+        f"holds {speeds[0]:g} to {speeds[-1]:g} rad/s, not {speed:g} rad/s: give more of it, or "
+        "extrapolate=True to keep the value at its end"
+    )
 
 
 def rows_of(shapes: Sequence[tuple[int, ...]]) -> str:

@@ -11,14 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.coefficient_table import CoefficientTable, read_columns, rows_of
+from exudyn_rotor.bearings.coefficient_table import CoefficientTable, outside, read_columns, rows_of
 from exudyn_rotor.theory.rotating_axes import FRAMES
 
 COEFFICIENTS = ("stiffness", "damping", "tilt_stiffness", "tilt_damping")
 _GIVEN = (*COEFFICIENTS, "mass")
 _SHAPES = ((), (2, 2), (3, 3))
 _WITH_TILTS = (*_SHAPES, (6, 6))  # of displacement and rotation
-_ROUNDING = 1e-6  # of the largest speed of a table: differences by the speed leave its end
 SpeedTable = tuple[ArrayLike, ArrayLike]
 Coefficient = float | ArrayLike | SpeedTable | CoefficientTable | Callable[[float], ArrayLike]
 
@@ -308,14 +307,10 @@ class Support:
             if check is not None:
                 check(speed)
             speeds = value.speeds if isinstance(value, CoefficientTable) else None
-            if speeds is None:
-                continue
-            slack = _ROUNDING * np.abs(speeds).max()
-            if not speeds[0] - slack <= speed <= speeds[-1] + slack:
+            wrong = "" if speeds is None else outside(speeds, speed)
+            if wrong:
                 raise OutsideTableError(
-                    f"support at {self.interface!r}: the table of its {name} holds "
-                    f"{speeds[0]:g} to {speeds[-1]:g} rad/s, not {speed:g} rad/s: give more of "
-                    "it, or extrapolate=True to keep the value at its end"
+                    f"support at {self.interface!r}: the table of its {name} {wrong}"
                 )
 
     def _matrix(self, name: str, speed: float, frequency: float) -> np.ndarray:

@@ -22,8 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-
-_ROUNDING = 1e-6  # of the largest speed of a table: differences by the speed leave its end
+from exudyn_rotor.bearings.coefficient_table import outside
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,12 +109,8 @@ class TorqueCurve(Drive):
         if callable(self.curve):
             return checks.number(self.curve(speed, time), "curve: its torque", "N m")
         speeds, torques = self.curve
-        slack = _ROUNDING * max(abs(speeds[0]), abs(speeds[-1]))
-        if not self.extrapolate and not speeds[0] - slack <= speed <= speeds[-1] + slack:
-            raise ValueError(
-                f"curve: its table holds {speeds[0]:g} to {speeds[-1]:g} rad/s, not {speed:g} "
-                "rad/s: give more of it, or extrapolate=True to keep the value at its end"
-            )
+        if not self.extrapolate and (wrong := outside(speeds, speed)):
+            raise ValueError(f"curve: its table {wrong}")
         return float(np.interp(speed, speeds, torques))
 
 

@@ -28,7 +28,7 @@ from exudyn_rotor.multibody.supports.connector import (
     check_body,
 )
 from exudyn_rotor.multibody.supports.ends import Base, BaseEnd, GroundEnd, RotorEnd, Seat
-from exudyn_rotor.multibody.supports.native import symbolic_function
+from exudyn_rotor.multibody.supports.native import set_symbolic_force
 from exudyn_rotor.solid.places import off_place
 from exudyn_rotor.theory.formulation import ConstantSpeed
 
@@ -173,9 +173,9 @@ def _on_the_spin(body: Body, drive: Drive) -> SceneDrive:
     def force(mbs, t, item, u, v, stiffness, damping, offset):
         return -law(v, t)
 
-    if drive.is_formula:
-        force = symbolic_function(mbs, force, item, "springForceUserFunction")
     item.springForceUserFunction = force
+    if drive.is_formula:
+        set_symbolic_force(mbs, item, force)
     told = (SYMBOLIC if drive.is_formula else PYTHON,)
     return SceneDrive(body, (mbs.AddObject(item),), told, None, drive, None)
 

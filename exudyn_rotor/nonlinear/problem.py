@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.rolling import RollingBearing, depth_under
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
+from exudyn_rotor.calls import kept
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
@@ -34,7 +35,6 @@ _SAME_PASS = 1e-9  # relative distance of ball pass frequencies that is rounding
 _MORE_UNBALANCE = 2.0 ** np.arange(6.0, -0.5, -0.5)
 _ROUGH = 1e-3
 _ANY_SIZE = 1e-12  # m, of motions without a clearance
-_RESTS = 4  # speeds
 _NOT_ACROSS = (ModeKind.AXIAL.value, ModeKind.SPIN.value)
 
 
@@ -95,7 +95,6 @@ class Problem:
     static: Mapping[int, np.ndarray]  # harmonics of θ, both signs, of gravity and constant forces
     unbalance: Mapping[int, np.ndarray]  # per Ω²
     revolutions: int = 1
-    _rests: dict = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(
@@ -173,13 +172,10 @@ class Problem:
         rest = Rest(self._unloaded(speed), rates, self.revolutions, loads)
         return Balance(self.laws, rest, reach)
 
+    @kept
     def _unloaded(self, speed: float) -> Unloaded:
-        """Return the rest at a speed, the last few of which are kept."""
-        if speed not in self._rests:
-            while len(self._rests) >= _RESTS:
-                self._rests.pop(next(iter(self._rests)))
-            self._rests[speed] = Unloaded(self.model, self.laws.names, speed, self.standing)
-        return self._rests[speed]
+        """Return the rest at a speed."""
+        return Unloaded(self.model, self.laws.names, speed, self.standing)
 
     # ------------------------------------------------------------ where a search begins
 

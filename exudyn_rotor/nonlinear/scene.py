@@ -41,20 +41,19 @@ class Listed(NamedTuple):
 
 
 def as_lists(target: Target, body: RotorBody | Sequence[RotorBody] | None, *given: Any) -> Listed:
-    """Return what is given by lists, in the order of :class:`Listed`; of a scene, what it has."""
-    if isinstance(target, exudyn.MainSystem):
-        if any(np.any(each) if isinstance(each, np.ndarray) else each for each in given[:4]):
-            raise ValueError(
-                "supports, foundation, gravity, loads: a scene has its own; leave these out"
-            )
-        return listed(target, body)
-    if body is not None:
-        raise TypeError("body: is only for an exudyn.MainSystem, not for the rotor itself")
-    return Listed(target, *given)
+    """Return what is given by lists, in the order of :class:`Listed`; of a scene, what it has.
 
-
-def listed(mbs: exudyn.MainSystem, body: RotorBody | Sequence[RotorBody]) -> Listed:
-    """Return what an assembled scene consists of, with constant speeds in place of its drives."""
+    With constant speeds in place of the drives of a scene.
+    """
+    if not isinstance(target, exudyn.MainSystem):
+        if body is not None:
+            raise TypeError("body: is only for an exudyn.MainSystem, not for the rotor itself")
+        return Listed(target, *given)
+    if any(np.any(each) if isinstance(each, np.ndarray) else each for each in given[:4]):
+        raise ValueError(
+            "supports, foundation, gravity, loads: a scene has its own; leave these out"
+        )
+    mbs = target
     if isinstance(body, list | tuple):
         target, level = scene_train(mbs, body)
         bodies, base, supports, foundation = list(body), None, (), None

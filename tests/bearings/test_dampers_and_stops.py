@@ -95,8 +95,7 @@ def leaning(supports, spin, excess=0.0):
     return mbs, body
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.2])
-@pytest.mark.parametrize("angle", [0.0, 0.7])
+@pytest.mark.parametrize(("friction", "angle"), [(0.0, 0.0), (0.2, 0.7)])
 def test_rotor_at_rest_lies_in_its_stops(friction, angle):
     """At c + W/(2k) below the centre, whatever the friction, of balanced and of uneven rotors."""
     k, c = 1e7, 1e-5

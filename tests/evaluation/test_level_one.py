@@ -23,7 +23,7 @@ def seal(q: float) -> Support:
     return Support("disc", [[0.0, q], [-q, 0.0]])
 
 
-@pytest.mark.parametrize("damping", [50.0, 500.0, 2e3, 1e4])
+@pytest.mark.parametrize("damping", [50.0, 2e3, 1e4])
 @pytest.mark.parametrize("ratio", [1.0, 3.0])
 def test_the_mode_followed_is_the_one_that_turns_unstable(rotor, damping, ratio):
     """Bearings from light to heavy damping, in which others are overdamped."""

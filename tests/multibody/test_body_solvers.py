@@ -74,10 +74,8 @@ def final_state(reduced, solver, options, steps=400, end_time=4e-3):
 
 CASES = {
     "free spin": {"initial_speed": 300.0},
-    "free spin, in-plane": {"translation": "in-plane", "initial_speed": 300.0},
     "free spin, no translation": {"translation": "none", "initial_speed": 300.0},
     "constant speed": {"spin": 300.0},
-    "constant speed, no translation": {"spin": 300.0, "translation": "none"},
     "run-up": {"spin": RUN_UP},
     "shaken": {"spin": 300.0, "translation": SHAKE},
 }

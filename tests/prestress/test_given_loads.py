@@ -52,7 +52,7 @@ def unloaded() -> er.ReducedRotor:
     return shaft().reduce(modes())
 
 
-@pytest.mark.parametrize("share", [-0.8, -0.4, 1.0])
+@pytest.mark.parametrize("share", [-0.8, 1.0])
 def test_a_beam_column_between_two_bearings(share):
     """``ω² = ω₀² + N (π/L)²/(ρA)``; ω₀ is the mesh's own, 0.8 % above a beam's here."""
     loaded = shaft().reduce(modes(), prestress=thrust(share * EULER))

@@ -226,17 +226,8 @@ def base_response(
 class _ShakenRotor:
     """Equations of first order, the record along (n1, n2, e), and what is looked at.
 
-    Attributes
-    ----------
-    speed : float
-        Ω [rad/s].
-    A : mapping of int to ndarray, shape (2k, 2k)
-        Fourier terms of the rates per state.
-    loads : mapping of int to ndarray, shape (2k, 3)
-        Fourier terms of the rates per acceleration of the ground.
-    seen : sequence of mapping of int to ndarray, shape (6, 2k)
-        Fourier terms of the motion of each place per state, axes that stand still.
-    record : BaseRecord
+    Fourier terms of the rates per state, A (2k, 2k), of the rates per acceleration of the ground,
+    `loads` (2k, 3), and of the motion of each place per state in axes that stand still (6, 2k).
     """
 
     speed: float

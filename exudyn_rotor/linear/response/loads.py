@@ -10,12 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.calls import kept
 from exudyn_rotor.linear.equations import Terms, turned
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -30,19 +30,10 @@ _BALANCED = 1e-13  # rounding leaves this much of the unbalance of a perfectly b
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """A point of a model.
+    """A point of a model: an interface, or a mesh node 'node 12', which has no rotation.
 
-    Attributes
-    ----------
-    label : str
-        Name of the interface, or 'node 12'.
-    seen : mapping of int to ndarray, shape (6, k)
-        Fourier terms of displacement and rotation along (n1, n2, e) per coordinate, in axes that
-        stand still.
-    is_node : bool
-        True for a mesh node, which has no rotation: those rows are zero.
-    ratio : float
-        Speed of the body over the speed of the analysis; 0 of a foundation.
+    Displacement and rotation along (n1, n2, e) per coordinate, `seen` in axes that stand still, are
+    Fourier terms (6, k). The `ratio` is the speed of the body over the speed of the analysis.
     """
 
     label: str
@@ -56,7 +47,8 @@ class Place:
         In axes that stand still, or in axes that turn with the speed of the analysis.
         """
         seen = self.seen if frame == "inertial" else turned(self.seen, -1)
-        return _sum({m + n: x @ U.T} for m, U in seen.items() for n, x in coordinates.items())
+        pairs = product(seen.items(), coordinates.items())
+        return _sum({m + n: x @ U.T} for (m, U), (n, x) in pairs)
 
     def pulled(self, wrench: np.ndarray, frame: str, speed: float) -> Harmonics:
         """Return the generalised force, as harmonics (k,), of a force and moment (6,).
@@ -68,7 +60,7 @@ class Place:
         ValueError
             For what turns with a rotor of another speed than that of the analysis [rad/s].
         """
-        acting = {0: wrench}
+        turning = {0: np.eye(6)}
         if frame == "rotor" and self.ratio not in (0.0, 1.0):
             owner, _, _ = self.label.partition(":")
             raise ValueError(
@@ -76,10 +68,9 @@ class Place:
                 f"give train.relative_to({owner!r}), over the speed of that rotor"
             )
         if frame == "rotor" and speed:
-            acting = {n: R @ wrench for n, R in turning_harmonics(6).items()}
-        return _sum(
-            {m + n: U.T @ force} for m, U in self.seen.items() for n, force in acting.items()
-        )
+            turning = turning_harmonics(6)
+        pairs = product(self.seen.items(), turning.items())
+        return _sum({m + n: U.T @ (R @ wrench)} for (m, U), (n, R) in pairs)
 
 
 def place(model: LinearModel, at: At, speed: float = 1.0) -> Place:
@@ -212,12 +203,12 @@ class Unbalance:
         amount = checks.number(self.amount, f"{where}: amount", "kg m")
         if amount <= 0.0:
             raise ValueError(
-                f"{where}: amount needs a positive number [kg m], got {self.amount!r}; turn it by "
-                "its angle, leave it out if there is none"
+                f"{where}: amount needs a positive number [kg m], got {amount!r}; turn it by its "
+                "angle, leave it out if there is none"
             )
-        object.__setattr__(self, "amount", amount)
         angle = checks.number(self.angle, f"{where}: angle", "rad")
-        object.__setattr__(self, "angle", angle)
+        for name, value in (("amount", amount), ("angle", angle)):
+            object.__setattr__(self, name, value)
 
     @classmethod
     def from_grade(
@@ -435,22 +426,18 @@ def in_words(model: LinearModel, unbalances: Sequence[Unbalance], own: bool) -> 
     return found
 
 
-@kept
 def _static_unbalance(rotor: ReducedRotor) -> np.ndarray:
     """Return mass times eccentricity (3,) [kg m]."""
     off = rotor.center_of_mass - rotor.axis.project(rotor.center_of_mass)
     return rotor.invariants.mass * off
 
 
-@kept
 def _is_balanced(rotor: ReducedRotor) -> bool:
     """Return whether centre of mass and principal axis are on the spin axis but for rounding."""
-    inv, e = rotor.invariants, rotor.axis.direction
-    static, couple = _static_unbalance(rotor), inv.J @ e
-    couple = couple - e * (e @ couple)
-    second = np.trace(inv.J)
-    arm = np.sqrt(second / inv.mass)
-    return bool(np.linalg.norm(static) * arm + np.linalg.norm(couple) <= _BALANCED * second)
+    mass, J, e = rotor.invariants.mass, rotor.invariants.J, rotor.axis.direction
+    couple, second = np.cross(e, J @ e), np.trace(J)
+    static = np.linalg.norm(_static_unbalance(rotor)) * np.sqrt(second / mass)
+    return bool(static + np.linalg.norm(couple) <= _BALANCED * second)
 
 
 def _vector(value: ArrayLike, name: str, unit: str) -> np.ndarray:

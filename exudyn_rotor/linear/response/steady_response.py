@@ -222,21 +222,9 @@ def _check(frame: str, tolerance: float, refine: bool, accuracy: float | None) -
 class _Sweep:
     """Steady motions of a model at places, over speeds or frequencies.
 
-    Attributes
-    ----------
-    model : LinearModel
-    at : sequence or None
-        Places to look at.
-    frame : str
-        Axes of the motions.
-    tolerance : float
-        Share of the largest motion below which a harmonic does not matter.
-    told : list of float
-        Where there are no equations, as a warning tells.
-    speed : float
-        Spin speed at which places are looked at, or any but 0 [rad/s].
-    unit : str
-        Of speeds or frequencies in warnings.
+    Places are looked at in the axes of the `frame`, at a spin `speed` or any but 0 [rad/s].
+    Harmonics that matter are larger than the `tolerance`, a share of the largest. Where there are
+    no equations, as a warning has `told`, motions are NaN.
     """
 
     model: LinearModel

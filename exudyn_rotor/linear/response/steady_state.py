@@ -12,6 +12,8 @@ from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState, spin_at_start
 
+_TOLD = 1e-5  # share of the motion in higher harmonics that a warning tells
+
 
 @dataclass(frozen=True, eq=False)
 class SteadyState:
@@ -138,7 +140,7 @@ def steady_state(
     tolerance : float, optional
         Largest change in the last iteration, relative to the motion, and largest share of its
         highest harmonics; a contact that opens in every revolution is found to 1e-3, with a
-        warning that tells the share.
+        warning that tells a share above 1e-5.
     start : SteadyState or StartState, optional
         Motion of this scene near which the search begins, at this speed or another one: where
         there are several steady motions, it finds the one beside it. A StartState counts as a
@@ -207,11 +209,11 @@ def steady_state(
     speed = spin_at_start(body)[1] if speed is None else checks.number(speed, "speed", "rad/s")
     begin = None if start is None else _begin(scene, start)
     found = SteadyState(scene, speed, *scene.steady_motion(speed, tolerance, begin))
-    if speed and found.left_out > tolerance:
+    if speed and found.left_out > max(tolerance, _TOLD):
         warnings.warn(
-            f"rotor {body.name!r}: a contact that opens or closes in every revolution leaves "
-            f"{found.left_out:.0e} of the motion to higher harmonics; a run from this state "
-            "begins with as much of a transient",
+            f"rotor {body.name!r}: {found.left_out:.0e} of the motion is left to higher harmonics, "
+            "as by a contact or an edge of an oil film that moves in every revolution; a run from "
+            "this state begins with as much of a transient",
             UserWarning,
             stacklevel=2,
         )

@@ -71,7 +71,7 @@ def forced_motions(
     if system.is_constant:
         mean = system.matrices()
         return {
-            n: _solved(*_stiffness(system, mean, rates, n), F[..., None], driven)[..., 0] + 0j
+            n: _solved(*_stiffness(system, mean, rates, [n]), F[..., None], driven)[..., 0] + 0j
             for n, F in acting.items()
         }
     if not np.any(rates):  # only the real part of all harmonics together is a load
@@ -83,9 +83,7 @@ def forced_motions(
     found = {}
     for first in {n % system.step for n in acting}:  # harmonics that are coupled
         together = {n: F for n, F in acting.items() if n % system.step == first}
-        # a single harmonic feeds its neighbours, which are as large on bearings that are unlike
-        more = 1 if len(together) > 1 else 2
-        found |= _coupled(system, together, rates, driven, tolerance, more)
+        found |= _coupled(system, together, rates, driven, tolerance)
     return found
 
 
@@ -96,18 +94,18 @@ def _rate(rates: np.ndarray, order: int, speed: np.ndarray) -> np.ndarray:
 
 
 def _stiffness(
-    system: PeriodicSystem, mean: tuple[np.ndarray, ...], rates: np.ndarray, order: int
+    system: PeriodicSystem, mean: tuple[np.ndarray, ...], rates: np.ndarray, orders: Sequence[int]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the dynamic stiffnesses (s, k, k) of one harmonic, and its frequencies (s,)."""
+    """Return the dynamic stiffnesses (h s, k, k) of harmonics, and their frequencies (h s,)."""
     M, D, K = mean
-    nu = _rate(rates, order, system.speed)
-    w = nu[:, None, None]
+    nu = np.array([_rate(rates, n, system.speed) for n in orders])
+    w = nu[..., None, None]
     Z = K - w**2 * M
     if np.any(nu):
         Z = Z + 1j * (w * D)
     for n, H in system.H:
-        Z = Z + 1j * np.sign(_rate(nu, -n, system.speed))[:, None, None] * H
-    return Z, nu
+        Z = Z + 1j * np.sign(_rate(nu, -n, system.speed))[..., None, None] * H
+    return Z.reshape(-1, *Z.shape[2:]), nu.ravel()
 
 
 def _solved(Z: np.ndarray, nu: np.ndarray, F: np.ndarray, driven: np.ndarray | None) -> np.ndarray:
@@ -209,7 +207,7 @@ def _coupled(
     rates: np.ndarray,
     driven: np.ndarray | None,
     tolerance: float,
-    more: int,
+    more: int = 2,
 ) -> dict[int, np.ndarray]:
     """Return the harmonics of periodic equations, as many as the tolerance needs.
 
@@ -251,15 +249,17 @@ def _chain(
     from the motions of all harmonics.
     """
     s, h, B = len(rates), len(orders), _acting(system)
-    r = B.shape[1]
-    mean, alone = (system.M, system.D[0].real, system.K[0].real), {}
-    for n in sorted(orders, key=lambda n: (abs(n), n < 0)):
-        if n < 0 and -n in alone and not np.any(rates):  # frequencies ±nΩ, loads are conjugate
-            alone[n] = alone[-n].conj()
-            continue
-        F = np.zeros((s, system.size, 1 + r), dtype=complex)
-        F[..., 0], F[..., 1:] = loads.get(n, 0.0), B
-        alone[n] = _solved(*_stiffness(system, mean, rates, n), F, driven)
+    r, standing = B.shape[1], not np.any(rates)
+    # at frequencies ±nΩ, under conjugate loads, motions are conjugate
+    solved = [n for n in orders if n >= 0 or not standing or -n not in orders]
+    F = np.zeros((len(solved), s, system.size, 1 + r), dtype=complex)
+    F[..., 1:] = B
+    for place, n in enumerate(solved):
+        F[place, ..., 0] = loads.get(n, 0.0)
+    mean = system.M, system.D[0].real, system.K[0].real
+    X = _solved(*_stiffness(system, mean, rates, solved), F.reshape(-1, *F.shape[2:]), driven)
+    alone = dict(zip(solved, X.reshape(F.shape), strict=True))
+    alone |= {n: alone[-n].conj() for n in orders if n not in alone}
     each = np.stack([alone[n] for n in orders], axis=1)  # (s, h, k, 1 + r)
     seen = B.T @ each
     forces = np.zeros((s, h, r, h, r), dtype=complex)

@@ -26,9 +26,8 @@ from exudyn_rotor.solid.rotor import Interface
 class FullRotorBody(SceneBody):
     """A full fixed-axis rotor inside an ``mbs``; :func:`exudyn_rotor.add_rotor` makes it.
 
-    The attributes are those of :class:`~exudyn_rotor.multibody.rotor.rotor_items.RotorItems`, with
-    the displacements of all nodes, in the rotor frame and mesh axes, in the place of modal
-    coordinates; and these:
+    The attributes are those of :class:`exudyn_rotor.RotorBody`, with the displacements of all
+    nodes, in the rotor frame and mesh axes, in the place of modal coordinates; and these:
 
     Attributes
     ----------

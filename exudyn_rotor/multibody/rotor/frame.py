@@ -227,27 +227,33 @@ class Layout:
         return full
 
 
+def held(
+    mbs: exudyn.MainSystem,
+    ground: exudyn.NodeIndex,
+    node: exudyn.NodeIndex,
+    index: int,
+    **motion: Any,
+) -> exudyn.ObjectIndex:
+    """Add a constraint of one coordinate of a node; explicit solvers eliminate it."""
+    ends = [
+        mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=number, coordinate=coordinate))
+        for number, coordinate in ((ground, 0), (node, index))
+    ]
+    hidden = VCoordinateConstraint(show=False)
+    return mbs.AddObject(CoordinateConstraint(markerNumbers=ends, visualization=hidden, **motion))
+
+
 def add_constraints(
     mbs: exudyn.MainSystem, locks: Locks, node: exudyn.NodeIndex
 ) -> dict[str, exudyn.ObjectIndex]:
     """Hold the locked coordinates of the frame's node by constraints; return them by name."""
     ground = mbs.AddNode(NodePointGround())
-
-    def one(index: int, **motion: Any) -> exudyn.ObjectIndex:
-        ends = [
-            mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=number, coordinate=coordinate))
-            for number, coordinate in ((ground, 0), (node, index))
-        ]
-        hidden = VCoordinateConstraint(show=False)
-        item = CoordinateConstraint(markerNumbers=ends, visualization=hidden, **motion)
-        return mbs.AddObject(item)
-
     if locks.stand_still:
-        return {locks.names[index]: one(index) for index in locks.fixed}
+        return {locks.names[index]: held(mbs, ground, node, index) for index in locks.fixed}
     ends = [mbs.AddMarker(MarkerNodeCoordinates(nodeNumber=number)) for number in (ground, node)]
     rows, rates = locks.rows
     # at velocity level: drift is round-off, and a constant speed needs no function of time
-    held = ObjectConnectorCoordinateVector(
+    item = ObjectConnectorCoordinateVector(
         markerNumbers=ends,
         scalingMarker0=np.zeros((len(rates), 0)),
         scalingMarker1=rows,
@@ -255,10 +261,13 @@ def add_constraints(
         velocityLevel=True,
         visualization={"show": False},
     )
-    constraints = {LOCKS: mbs.AddObject(held)}
+    constraints = {LOCKS: mbs.AddObject(item)}
     for index, motion in locks.varying.items():
         # index-2 solvers need the velocity beside the position
-        constraints[locks.names[index]] = one(
+        constraints[locks.names[index]] = held(
+            mbs,
+            ground,
+            node,
             index,
             offsetUserFunction=lambda mbs, t, item, offset, motion=motion: motion.value(t),
             offsetUserFunction_t=lambda mbs, t, item, offset, motion=motion: motion.rate(t),

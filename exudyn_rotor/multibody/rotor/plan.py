@@ -176,22 +176,8 @@ def check_free_names(mbs: exudyn.MainSystem, setup: Setup) -> None:
 class Plan(Setup):
     """A new rotor body, laid out: a reduced one, or a full one with nodal displacements for modes.
 
-    The attributes are those of :class:`Setup`, with the start values of all modal coordinates, and
-    these:
-
-    Attributes
-    ----------
-    selection : Selection or NodalFields
-        The component modes in use; ``selection.labels`` names the modal coordinates.
-    frame : BodyFrame
-        Where mesh, flexible body and scene stand to each other.
-    locks : Locks
-        What happens to the six rigid coordinates of the flexible body.
-    layout : Layout
-        Where the unknowns stand among the coordinates of the nodes.
-    motion : Motion or FullMotion
-        Equations of motion, inertial and mesh axes. In a plane of rotation that is skew to the
-        inertial axes they have three translations, and a constraint holds the plane.
+    The start values of :class:`Setup` are those of all modal coordinates here. Attributes are
+    described at :class:`exudyn_rotor.RotorBody`.
     """
 
     selection: Selection

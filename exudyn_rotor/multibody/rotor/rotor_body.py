@@ -218,10 +218,7 @@ def _settings_of(body: RotorItems, options: Mapping[str, Any]) -> dict[str, Any]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SceneBody(RotorItems, ABC):
-    """A rotor body in a scene, reduced or full.
-
-    The attributes are those of :class:`~exudyn_rotor.multibody.rotor.rotor_items.RotorItems`.
-    """
+    """A rotor body in a scene, reduced or full."""
 
     def __repr__(self) -> str:
         """Return one line; :meth:`report` says more."""
@@ -449,7 +446,42 @@ class SceneBody(RotorItems, ABC):
 class RotorBody(SceneBody):
     """A fixed-axis rotor inside an ``mbs``; made by :func:`exudyn_rotor.add_rotor`.
 
-    The attributes are those of :class:`~exudyn_rotor.multibody.rotor.rotor_items.RotorItems`.
+    Attributes
+    ----------
+    mbs : exudyn.MainSystem
+    name : str or None
+    formulation : Formulation
+        Which coordinates the rotor has.
+    stiffening : str
+        Level of the centrifugal stiffening.
+    gravity : ndarray, shape (3,)
+        As it was asked for, inertial axes [m/s²].
+    selection : Selection
+        The component modes in use; ``selection.labels`` names the modal coordinates.
+    motion : Motion
+        Equations of motion, inertial and mesh axes. In a plane of rotation that is skew to the
+        inertial axes they have three translations, and a constraint holds the plane.
+    frame, locks, layout
+        Where mesh, flexible body and scene stand to each other; what happens to the six rigid
+        coordinates of the flexible body; where the unknowns stand among the nodes' coordinates.
+    nodes : mapping of str
+        ``'rigid'`` (frame), and ``'modes'`` (modal coordinates) or ``'fields'`` (displacements).
+    objects : mapping of str
+        ``'physics'`` (the equations) and ``'marker_body'`` (markers, sensors, drawing).
+    constraints : mapping of str
+        Locking constraints, where ``locking='constraints'``: ``'locks'`` holds what stands still
+        or turns at a constant speed; motions that vary with time have one each.
+    gravity_load : LoadIndex or None
+        None without gravity, and where it is part of the equations (``motion.gravity``): for a free
+        spin without translation.
+    mesh_node_count : int
+        Mesh nodes that native sensors can be put at.
+    markers : dict of str
+        Marker number of every interface.
+    supports : list
+        What :func:`exudyn_rotor.add_supports` added.
+    drives : list
+        What :func:`exudyn_rotor.add_drive` added.
 
     Examples
     --------

@@ -248,32 +248,7 @@ class ScriptMarkers:
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class RotorItems(Plan):
-    """A rotor's items in an ``mbs``.
-
-    The attributes are those of :class:`~exudyn_rotor.multibody.rotor.plan.Plan`, and these:
-
-    Attributes
-    ----------
-    mbs : exudyn.MainSystem
-    nodes : mapping of str
-        ``'rigid'`` (frame), and ``'modes'`` (modal coordinates) or ``'fields'`` (displacements).
-    objects : mapping of str
-        ``'physics'`` (the equations) and ``'marker_body'`` (markers, sensors, drawing).
-    constraints : mapping of str
-        Locking constraints, where ``locking='constraints'``: ``'locks'`` holds what stands still
-        or turns at a constant speed; motions that vary with time have one each.
-    gravity_load : LoadIndex or None
-        None without gravity, and where it is part of the equations (``motion.gravity``): for a free
-        spin without translation.
-    mesh_node_count : int
-        Mesh nodes that native sensors can be put at.
-    markers : dict of str
-        Marker number of every interface.
-    supports : list
-        What :func:`exudyn_rotor.add_supports` added.
-    drives : list
-        What :func:`exudyn_rotor.add_drive` added.
-    """
+    """A rotor's items in an ``mbs``; attributes as of :class:`exudyn_rotor.RotorBody`."""
 
     mbs: exudyn.MainSystem
     nodes: Mapping[str, exudyn.NodeIndex]

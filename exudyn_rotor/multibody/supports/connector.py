@@ -362,6 +362,9 @@ class MagneticConnector(Connector):
         return Force(np.array([fx, fy, 0.0, 0.0, *own]), J, L, K, D)
 
 
+_SPEED_STEP = 1e-6  # of the speed, or of 1 rad/s: differences of friction by it
+
+
 class BearingConnector(Connector):
     """A bearing across the axis, or the films of pads, whose tilts are own coordinates.
 
@@ -452,8 +455,9 @@ class BearingConnector(Connector):
     def tangent(self, t: float, cage: float | None = None) -> Force:
         """Return the force, its tangent, and rows: across the axis, of the spin, and of pads.
 
-        Cages of rolling bearings stand as at the spin angle `cage`, if it is given. How forces
-        change with the spin speed is left out: within a step it hardly changes.
+        Linear analyses give the spin angle `cage`, at which cages of rolling bearings stand, and
+        leave out how forces change with the spin speed. A step needs that where friction begins
+        to slide.
         """
         count = 3 + self.own
         force, (K, D) = np.zeros(count), np.zeros((2, count, count))
@@ -462,6 +466,10 @@ class BearingConnector(Connector):
             if cage is not None:
                 motion = *motion[:4], cage, motion[5]
             values, (k, d) = np.array(law(*motion)), part.slopes(*motion)
+            by_speed = np.zeros(len(values))
+            if self.brakes and cage is None:
+                step = _SPEED_STEP * max(abs(motion[5]), 1.0)
+                by_speed = (values - law(*motion[:5], motion[5] + step)) / step
             if self.feels:
                 k = k + self.base.speed * d @ np.array([[0.0, 1.0], [-1.0, 0.0]])
                 if self._turn is not None:
@@ -474,6 +482,7 @@ class BearingConnector(Connector):
             force += values @ S
             K += S[:2].T @ k @ S[:2]
             D += S[:2].T @ d @ S[:2]
+            D[:, 2] += by_speed @ S
         J, L = np.zeros((2, count, self.size))
         J[:3], L[:3] = self.rows()[[0, 1, 5]], self.rate_rows()[[0, 1, 5]]
         J[3:, self._second :] = np.eye(self.own)

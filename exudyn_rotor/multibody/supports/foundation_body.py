@@ -12,14 +12,11 @@ from dataclasses import dataclass, field
 import exudyn
 import numpy as np
 from exudyn.itemInterface import (
-    CoordinateConstraint,
-    MarkerNodeCoordinate,
     NodePointGround,
     NodeRigidBodyRxyz,
     ObjectFFRFreducedOrder,
     ObjectGenericODE2,
     SensorMarker,
-    VCoordinateConstraint,
     VNodeRigidBodyRxyz,
     VObjectFFRFreducedOrder,
     VObjectGenericODE2,
@@ -28,6 +25,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.foundations.foundation import Foundation
+from exudyn_rotor.multibody.rotor.frame import held
 from exudyn_rotor.multibody.rotor.plan import generic_node, main_system
 from exudyn_rotor.multibody.rotor.rotor_items import Carrier, add_weight
 
@@ -188,23 +186,14 @@ def add_foundation(
             visualization=VObjectFFRFreducedOrder(show=False),
         )
     )
-    _hold(mbs, frame)
-    load = add_weight(mbs, body, g)
-    objects = checks.read_only_mapping({"physics": physics, "marker_body": body})
-    return SceneFoundation(mbs, placed, coordinates, objects, load)
-
-
-def _hold(mbs: exudyn.MainSystem, frame: exudyn.NodeIndex) -> None:
-    """Hold the coordinates of a frame's node.
-
-    They get an inertia, which moves nothing: explicit solvers solve with the whole mass matrix.
-    """
+    # an inertia, which moves nothing: explicit solvers solve with the whole mass matrix
     hidden = VObjectGenericODE2(show=False)
     mbs.AddObject(
         ObjectGenericODE2(nodeNumbers=[frame], massMatrix=np.eye(6), visualization=hidden)
     )
-    origin = MarkerNodeCoordinate(nodeNumber=mbs.AddNode(NodePointGround()), coordinate=0)
-    ground, hidden = mbs.AddMarker(origin), VCoordinateConstraint(show=False)
-    for coordinate in range(6):
-        marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=frame, coordinate=coordinate))
-        mbs.AddObject(CoordinateConstraint(markerNumbers=[ground, marker], visualization=hidden))
+    ground = mbs.AddNode(NodePointGround())
+    for index in range(6):
+        held(mbs, ground, frame, index)
+    load = add_weight(mbs, body, g)
+    objects = checks.read_only_mapping({"physics": physics, "marker_body": body})
+    return SceneFoundation(mbs, placed, coordinates, objects, load)

@@ -66,7 +66,7 @@ def _displacement_connector(
         pairs = zip(_times(K, u), _times(D, v), strict=True)
         return exudyn.symbolic.Vector([a + b for a, b in pairs])
 
-    item.springForceUserFunction = symbolic_function(mbs, force, item, "springForceUserFunction")
+    set_symbolic_force(mbs, item, force)
     return mbs.AddObject(item), SYMBOLIC
 
 
@@ -96,11 +96,8 @@ def _times(matrix: np.ndarray, vector: list) -> list:
     ]
 
 
-def symbolic_function(
-    mbs: exudyn.MainSystem, function: Callable, item: object, name: str
-) -> object:
-    """Return a function as Exudyn's symbolic one, kept alive by the system."""
-    kind = type(item).__name__
-    made = CreateSymbolicUserFunction(mbs, function, name, itemTypeName=kind)
-    entry(mbs).setdefault(_FUNCTIONS, []).append(made)
-    return made
+def set_symbolic_force(mbs: exudyn.MainSystem, item: object, force: Callable) -> None:
+    """Give a connector its force as a symbolic function of Exudyn, kept alive by the system."""
+    kind, name = type(item).__name__, "springForceUserFunction"
+    item.springForceUserFunction = CreateSymbolicUserFunction(mbs, force, name, itemTypeName=kind)
+    entry(mbs).setdefault(_FUNCTIONS, []).append(item.springForceUserFunction)

@@ -22,6 +22,7 @@ NOISE = 1e-10  # share of the largest entry below which a Fourier term is round-
 FAR = 10.0  # lengths of the rotor that only round-off keeps it from leaving
 SMALLEST = 1e-5  # m: the tolerance of smaller motions, for Exudyn rounds positions of order 1 m
 _ROUNDING = 1e-13  # of the largest stiffness: what turning by a skew axis leaves of none
+_SINGULAR = 1e-12  # reciprocal condition of a stiffness that leaves a motion free
 BALANCED = 1e-8  # m/s² that may be left where a contact resists with the square of its depth,
 _FEW_ITERATIONS, _MOST_ITERATIONS = 10, 60  # after these
 _FIRST_REACH, _FURTHER = 1e-6, 4.0  # m of what nothing holds, and its growth in every step
@@ -130,6 +131,14 @@ def solved(K: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     # a row of round-off is not blown up to the size of the others
     scale = 1.0 / np.sqrt(np.maximum(rows, NOISE * rows.max()))
     scaled = scale[:, None] * among * scale
-    solution = scipy.linalg.lstsq(scaled, scale * load[held], cond=1e-12, lapack_driver="gelsy")
-    answer[held] = scale * solution[0]
+    answer[held] = scale * _least_squares(scaled, scale * load[held])
     return answer, load - K @ answer
+
+
+def _least_squares(A: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Return the solution, of a singular matrix the smallest one that leaves least."""
+    factor, condition, solve = scipy.linalg.get_lapack_funcs(("getrf", "gecon", "getrs"), (A, b))
+    lu, pivots, info = factor(A)
+    if info == 0 and condition(lu, np.abs(A).sum(axis=0).max())[0] > _SINGULAR:
+        return solve(lu, pivots, b)[0]
+    return scipy.linalg.lstsq(A, b, cond=_SINGULAR, lapack_driver="gelsy")[0]

@@ -117,7 +117,7 @@ class Probe:
         whole = np.zeros((len(self.scene.rest),) * 2)
         for one in self.laws:
             if one.connector.has_mass:
-                whole[np.ix_(one.places, one.places)] += one.connector.inertia()[0]
+                whole[one.places[:, None], one.places] += one.connector.inertia()[0]
         return self._of_free(whole)
 
     def mass_beside(self) -> np.ndarray:
@@ -158,7 +158,7 @@ class Probe:
 
     def force(self, theta: float, x: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Return the forces of all but the rotor's own equations, free coordinates."""
-        return self._exudyn(theta, x, v) + self._laws(theta, x, v).values
+        return self._exudyn(theta, x, v) + self._laws(theta, x, v, has_slopes=False).values
 
     def forces(self, theta: float, x: np.ndarray, v: np.ndarray) -> Forces:
         """Return the forces of all but the rotor's own equations, with their derivatives."""
@@ -189,7 +189,8 @@ class Probe:
         for one in self.laws:
             one.read(q, q_t)
 
-    def _laws(self, theta: float, x: np.ndarray, v: np.ndarray) -> Forces:
+    def _laws(self, theta: float, x: np.ndarray, v: np.ndarray, has_slopes: bool = True) -> Forces:
+        """Return the forces of the laws; without slopes their derivatives are zero."""
         q, q_t = self._state(theta, x, v)
         size = len(self.scene.rest)
         force, (K, D) = np.zeros(size), np.zeros((2, size, size))
@@ -197,13 +198,13 @@ class Probe:
             one.read(q, q_t)
             found, places = one.force(self._time(theta)), one.places
             force[places] += found.values @ found.J
-            slopes = found.slopes()
+            parts = [found.slopes()] if has_slopes else []
             if one.connector.has_mass:
                 _, turning, *more = one.connector.inertia()
                 force[places] += turning
-                slopes = [X + Y for X, Y in zip(slopes, more, strict=True)]
-            for total, block in zip((K, D), slopes, strict=True):
-                total[np.ix_(places, places)] += block
+                parts += [more] if has_slopes else []
+            for total, *blocks in zip((K, D), *parts, strict=True) if parts else ():
+                total[places[:, None], places] += sum(blocks)
         return Forces(force[self.scene.free], self._of_free(K), self._of_free(D))
 
     # ------------------------------------------------------------------ states

@@ -27,9 +27,10 @@ _ROUGH_SAMPLES = 48  # from which on the harmonics of a contact count as enough:
 _ROUGH = 1e-3  # share of the motion that the highest may have,
 _SLOWLY = 0.01  # where twice the samples leave more of them than this share
 _SOLVED = 0.01  # of what the harmonics leave out, beyond which more iterations are of no use
-_MOST_ITERATIONS = 30
+_MOST_ITERATIONS = 24
 _FEW_ITERATIONS = 4  # after which what is balanced to rounding is found, with free motions by it
 _MOST_HALVINGS = 9  # of a step
+_STALLED, _LESS = 6, 0.998  # iterations in a row that leave not even this share less unbalanced
 
 
 def steady_motion(
@@ -103,18 +104,22 @@ class _Search:
             more = (len(self.orders) - len(start)) // 2
             Y = np.pad(start, ((more, more), (0, 0)))
         metres = 1.0 / self.scene.metre(self.probe.masses)
+        least, stalled = np.inf, 0
         for iteration in range(_MOST_ITERATIONS):
             points = [linearised(self.probe, *at) for at in self._motion(Y)]
             if iteration == 0:
                 self._check_own_spin(np.mean([point.K for point in points], axis=0))
             residual = self._residual([point.residual for point in points])
             K = hill_stiffness(points, self.orders, self.probe.speed)
-            change, left = (X.reshape(Y.shape) for X in solved(K, -residual.ravel()))
+            change, left = (_complex(X, Y.shape) for X in solved(_real(K), -_parts(residual)))
             if np.abs(left / metres).max() > UNHELD * self.scene.mass:
                 raise self._lost(UnconvergedError if iteration else _UnheldError)
-            Y = self._ahead(Y, change, np.linalg.norm(residual / metres), metres)
+            most = np.linalg.norm(residual / metres)
+            stalled = stalled + 1 if most > _LESS * least else 0
+            least = min(least, most)
+            Y = self._ahead(Y, change, most, metres)
             sizes = np.abs(Y * metres).max(axis=1)
-            if sizes.max() > FAR * self.scene.length:
+            if sizes.max() > FAR * self.scene.length or stalled == _STALLED:
                 break
             tail = sizes[[0, 1, -2, -1]].max()  # as much as the harmonics leave out
             counts = max(sizes.max(), SMALLEST)
@@ -124,7 +129,7 @@ class _Search:
             is_last = np.abs(change * metres).max() < goal
             if is_last or (balanced and iteration > _FEW_ITERATIONS):
                 return Y, float(tail / counts)
-        raise self._lost(UnconvergedError)
+        raise self._lost(UnconvergedError, change)
 
     def _ahead(
         self, Y: np.ndarray, change: np.ndarray, most: float, metres: np.ndarray
@@ -138,14 +143,23 @@ class _Search:
                 break
         return tried
 
-    def _lost(self, kind: type[UnconvergedError]) -> UnconvergedError:
+    def _lost(
+        self, kind: type[UnconvergedError], change: np.ndarray | None = None
+    ) -> UnconvergedError:
+        """Return the error, with the support whose journal an iteration last changed most."""
+        where = ""
+        names = sorted({one.support.interface for one in self.scene.body.supports})
+        if change is not None and names:
+            rows = (self.scene.interface_motion(name)[:2] for name in names)
+            moved = [np.abs(U @ change.T).max() for U in rows]
+            where = f", the motion at {names[int(np.argmax(moved))]!r} does not settle"
         return kind(
-            f"linear scene at {self.probe.speed:g} rad/s: no steady motion found; is there a load "
-            "that nothing holds, a resonance without damping, a stop or a bearing with clearance "
-            "that the rotor leaves and hits, or an oil film that unbalance all but closes, or that "
-            "whirls at half the speed? A run shows what the rotor does there: a damped one from "
-            "rest, or one from the steady_state with less unbalance; periodic_response "
-            "shows its motion on rolling bearings"
+            f"linear scene at {self.probe.speed:g} rad/s: no steady motion found{where}; is there "
+            "a load that nothing holds, a resonance without damping, a stop or a bearing with "
+            "clearance that the rotor leaves and hits, or an oil film that unbalance all but "
+            "closes, or that whirls at half the speed? A run shows what the rotor does there: a "
+            "damped one from rest, or one from the steady_state with less unbalance; "
+            "periodic_response shows its motion on rolling bearings"
         )
 
     def _residual(self, left: list[np.ndarray]) -> np.ndarray:
@@ -175,7 +189,7 @@ class _Search:
 
 
 def hill_stiffness(points: Sequence[LinearPoint], orders: np.ndarray, speed: float) -> np.ndarray:
-    """Return ``K + iΩmD − Ω²m²M`` between harmonics m, (h k, h k), as the sampled angles see it.
+    """Return ``K + iΩmD − Ω²m²M`` between harmonics m, (h, k, h, k), as the sampled angles see it.
 
     The Fourier terms n and n + samples are the same there.
     """
@@ -186,4 +200,30 @@ def hill_stiffness(points: Sequence[LinearPoint], orders: np.ndarray, speed: flo
     for power, samples in zip((2, 1, 0), zip(*points, strict=True), strict=False):
         spectrum = np.fft.fft(np.array(samples), axis=0) / count
         total += np.einsum("abij,b->aibj", spectrum[apart], rates**power)
-    return total.reshape(h * k, h * k)
+    return total
+
+
+def _parts(harmonics: np.ndarray) -> np.ndarray:
+    """Return real parts of harmonics (h, k) n ≥ 0, then imaginary ones n > 0, of a real motion."""
+    zero = len(harmonics) // 2
+    return np.concatenate([harmonics[zero:].real, harmonics[zero + 1 :].imag], axis=None)
+
+
+def _complex(parts: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
+    """Return harmonics (h, k) of their parts."""
+    zero = shape[0] // 2
+    parts = parts.reshape(shape)
+    upper = parts[: zero + 1].astype(complex)
+    upper[1:] += 1j * parts[zero + 1 :]
+    return np.concatenate([upper[:0:-1].conj(), upper])
+
+
+def _real(K: np.ndarray) -> np.ndarray:
+    """Return the stiffness between the parts of harmonics, of that between harmonics."""
+    h, k = K.shape[:2]
+    zero = h // 2
+    rows, mirrored = K[zero:, :, zero:], K[zero:, :, zero::-1]
+    even, odd = (rows + mirrored).reshape(-1, (zero + 1) * k), (rows - mirrored)[:, :, 1:]
+    even[:, :k] *= 0.5  # the mean has no mirror image
+    odd = odd.reshape(-1, zero * k)
+    return np.block([[even.real, -odd.imag], [even.imag[k:], odd.real[k:]]])
