@@ -112,10 +112,9 @@ def add(
 
 def turned(motion: Terms, turns: int) -> dict[int, np.ndarray]:
     """Return the Fourier terms of ``R(turns·θ) U(θ)`` for a motion U of whole triples of rows."""
-    result: dict[int, np.ndarray] = {}
     if turns == 0:
-        add(result, motion)
-        return result
+        return dict(motion)
+    result: dict[int, np.ndarray] = {}
     for m, U in motion.items():
         for n, R in turning_harmonics(len(U)).items():
             add(result, {m + turns * n: R @ U})
@@ -146,10 +145,8 @@ def stacked(motions: Sequence[Terms]) -> dict[int, np.ndarray]:
 
 def difference(one: Terms, other: Terms) -> dict[int, np.ndarray]:
     """Return the Fourier terms of one motion less another."""
-    result: dict[int, np.ndarray] = {}
-    add(result, one)
-    add(result, other, -1.0)
-    return result
+    orders = sorted({*one, *other})
+    return {n: one.get(n, 0.0) - other.get(n, 0.0) for n in orders}
 
 
 def congruent(U: Terms, X: np.ndarray, V: Terms | None = None) -> dict[int, np.ndarray]:

@@ -146,6 +146,17 @@ def test_load_that_varies_by_itself_is_refused(reduced):
         steady_state(body)
 
 
+def test_a_search_that_fails_names_the_bearing(reduced, monkeypatch):
+    """One iteration is too few for a motion that is large at the softer bearing."""
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, reduced, spin=40.0, translation="none", gravity=[0.0, -GRAVITY, 0.0])
+    add_supports(body, [Support("left", STIFFNESS), Support("right", 100.0 * STIFFNESS)])
+    mbs.Assemble()
+    monkeypatch.setattr(search, "_MOST_ITERATIONS", 1)
+    with pytest.raises(UnconvergedError, match="the motion at 'left' does not settle"):
+        steady_state(body)
+
+
 @pytest.mark.parametrize("held", [[], ["left"]])
 def test_load_that_nothing_holds_is_refused(reduced, held, monkeypatch):
     """Without smaller and smaller shares of it: at 12 angles, three times, and at 48, twice."""

@@ -238,13 +238,13 @@ class SceneModel(LinearModel):
         """The model: another scene may have any forces."""
         return (id(self),)
 
-    def coefficients(self, speed: float) -> list | PeriodicSystem:
-        """Return what :meth:`at_points` needs: the equations where more than laws is in them."""
-        return super().coefficients(speed) if self._is_list else self.at(speed)
+    def coefficients(self, speed: float) -> PeriodicSystem:
+        """Return what :meth:`at_points` needs: the equations."""
+        return self.at(speed)
 
     def at_points(self, speeds: np.ndarray, coefficients: Sequence) -> PeriodicSystem:
         """Return equations at speeds as one stack."""
-        return super().at_points(speeds, coefficients) if self._is_list else joined(coefficients)
+        return joined(coefficients)
 
     # ------------------------------------------------------------------ equilibrium
 
