@@ -10,9 +10,11 @@ import copyreg
 import operator
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import MISSING, Field, field, fields
+from functools import cache
 from pathlib import Path
-from types import MappingProxyType
-from typing import Any, TypeVar
+from types import MappingProxyType, NoneType, UnionType
+from typing import Any, TypeVar, get_args, get_type_hints
 
 import numpy as np
 import scipy.sparse as sp
@@ -488,3 +490,142 @@ def place(value: str | int | Sequence[float], name: str) -> str | int | tuple[fl
             f"{name}: needs the name of an interface, a node number or a position of three finite "
             f"numbers [m], got {shown(value)}"
         ) from error
+
+
+# ------------------------------------------------------------------ fields of dataclasses
+
+_LONGEST = 60  # characters of one value in a repr
+
+
+def numbers(
+    *shape: int | str,
+    dtype: type = float,
+    finite: bool = True,
+    least: float | None = None,
+    most: float | None = None,
+    optional: bool = False,
+) -> Any:
+    """Describe an array of a result, for the body of its class.
+
+    Parameters
+    ----------
+    *shape : int or str
+        Sizes; the same word is the same size in all arrays and rows of words of a result.
+    dtype : type, optional
+        float, complex, int or bool.
+    finite : bool, optional
+        False where NaN or infinity mean something.
+    least, most : float, optional
+        Limits of every value.
+    optional : bool, optional
+        True for an array that may be None, and is by default.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from dataclasses import dataclass
+    >>> from exudyn_rotor import Result
+    >>> from exudyn_rotor.checks import numbers
+    >>> @dataclass(frozen=True, eq=False)
+    ... class Track(Result):
+    ...     time: np.ndarray = numbers("steps")
+    ...     place: np.ndarray = numbers("steps", 3)
+    >>> Track([0.0, 1.0], np.zeros((2, 3)))
+    Track(time=array(2,), place=array(2, 3))
+    """
+    told = {"shape": shape, "dtype": dtype, "finite": finite, "least": least, "most": most}
+    return field(metadata=told, **({"default": None, "kw_only": True} if optional else {}))
+
+
+def words(size: int | str, default: Any = MISSING, kw_only: bool = False) -> Any:
+    """Describe a row of words of a result by its size, see :func:`numbers`."""
+    return field(default=default, kw_only=kw_only, metadata={"shape": (size,)})
+
+
+class Checked:
+    """Base of dataclasses whose fields are checked, by their types and :func:`numbers`."""
+
+    def __init_subclass__(cls, **options) -> None:
+        """Keep the dataclass decorator from making a repr that prints whole arrays."""
+        super().__init_subclass__(**options)
+        if "__repr__" not in cls.__dict__:
+            cls.__repr__ = Checked.__repr__
+
+    def __post_init__(self) -> None:
+        sizes: dict[str, int] = {}
+        types = field_types(type(self))
+        for item in fields(self):
+            value = getattr(self, item.name)
+            if value is None and item.default is None:
+                continue
+            if types[item.name] is np.ndarray:
+                value = _array(value, item)
+            else:
+                value = FIELD_CHECKS[types[item.name]](value, item.name)
+            _check_shape(np.shape(value), item, sizes)
+            object.__setattr__(self, item.name, value)
+
+    def __repr__(self) -> str:
+        """Return the fields in one line: arrays by their shape, long words and tuples cut."""
+        in_order = sorted(fields(self), key=lambda item: item.kw_only)  # as the constructor
+        parts = [f"{f.name}={_short(getattr(self, f.name))}" for f in in_order]
+        return f"{type(self).__name__}({', '.join(parts)})"
+
+
+@cache
+def field_types(cls: type) -> dict[str, Any]:
+    """Return the types of a result's fields; ``X | None`` counts as X."""
+    hints = get_type_hints(cls)
+    return {item.name: _without_none(hints[item.name]) for item in fields(cls)}
+
+
+def _without_none(hint: Any) -> Any:
+    given = [kind for kind in get_args(hint) if kind is not NoneType]
+    return given[0] if isinstance(hint, UnionType) and len(given) == 1 else hint
+
+
+def _array(value: object, item: Field) -> np.ndarray:
+    """Return a read-only array of the described type, its values within the limits."""
+    told = item.metadata
+    if not told:
+        kind = getattr(value, "dtype", np.dtype(float)).kind
+        return array(value, item.name, finite=False, dtype=_DTYPES.get(kind, float))
+    result = array(value, item.name, finite=told["finite"], dtype=told["dtype"])
+    low, high = told["least"], told["most"]
+    if (low is not None and np.any(result < low)) or (high is not None and np.any(result > high)):
+        limits = [f"≥ {low}"] * (low is not None) + [f"≤ {high}"] * (high is not None)
+        raise ValueError(f"{item.name}: needs values {' and '.join(limits)}")
+    return result
+
+
+def _check_shape(shape: tuple[int, ...], item: Field, sizes: dict[str, int]) -> None:
+    """Compare a shape with the described one; learn sizes from it."""
+    told = item.metadata.get("shape")
+    if told is None:
+        return
+    if len(shape) == len(told):
+        for word, size in zip(told, shape, strict=True):
+            if isinstance(word, str):
+                sizes.setdefault(word, size)
+    wanted = tuple(sizes.get(size, size) for size in told)
+    if shape != wanted:
+        raise ValueError(f"{item.name}: needs the shape {wanted}, got {shape}")
+
+
+_DTYPES = {"b": bool, "i": int, "u": int, "c": complex}
+FIELD_CHECKS: dict[Any, Any] = {
+    np.ndarray: _array,
+    float: number,
+    int: whole_number,
+    bool: flag,
+    str: label,
+    tuple[str, ...]: labels,
+}
+
+
+def _short(value: object) -> str:
+    """Return an array's shape, or what `repr` says of a small value."""
+    if isinstance(value, np.ndarray):
+        return f"array{value.shape}"
+    text = repr(value)
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"

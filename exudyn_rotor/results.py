@@ -10,66 +10,23 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping
-from dataclasses import MISSING, Field, field, fields, is_dataclass
-from functools import cache
+from dataclasses import Field, fields, is_dataclass
 from os import PathLike
-from types import NoneType, UnionType
-from typing import Any, TypeVar, get_args, get_type_hints
+from typing import Any, TypeVar
 
 import numpy as np
 
 from exudyn_rotor import checks, export
+from exudyn_rotor.checks import FIELD_CHECKS, Checked, field_types
+from exudyn_rotor.checks import numbers as numbers
+from exudyn_rotor.checks import words as words
 from exudyn_rotor.storage import read_arrays, write_arrays
 
-_LONGEST = 60  # characters of one value in a repr
 _KIND = "result"
 _REGISTERED: dict[str, type[Result]] = {}
 
 Class = TypeVar("Class", bound=type)
 Kind = TypeVar("Kind", bound="Result")
-
-
-def numbers(
-    *shape: int | str,
-    dtype: type = float,
-    finite: bool = True,
-    least: float | None = None,
-    most: float | None = None,
-    optional: bool = False,
-) -> Any:
-    """Describe an array of a result, for the body of its class.
-
-    Parameters
-    ----------
-    *shape : int or str
-        Sizes; the same word is the same size in all arrays and rows of words of a result.
-    dtype : type, optional
-        float, complex, int or bool.
-    finite : bool, optional
-        False where NaN or infinity mean something.
-    least, most : float, optional
-        Limits of every value.
-    optional : bool, optional
-        True for an array that may be None, and is by default.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from dataclasses import dataclass
-    >>> @dataclass(frozen=True, eq=False)
-    ... class Track(Result):
-    ...     time: np.ndarray = numbers("steps")
-    ...     place: np.ndarray = numbers("steps", 3)
-    >>> Track([0.0, 1.0], np.zeros((2, 3)))
-    Track(time=array(2,), place=array(2, 3))
-    """
-    told = {"shape": shape, "dtype": dtype, "finite": finite, "least": least, "most": most}
-    return field(metadata=told, **({"default": None, "kw_only": True} if optional else {}))
-
-
-def words(size: int | str, default: Any = MISSING, kw_only: bool = False) -> Any:
-    """Describe a row of words of a result by its size, see :func:`numbers`."""
-    return field(default=default, kw_only=kw_only, metadata={"shape": (size,)})
 
 
 def storable(cls: Class) -> Class:
@@ -86,44 +43,14 @@ def storable(cls: Class) -> Class:
     """
     if not is_dataclass(cls) or not issubclass(cls, Result):
         raise TypeError(f"{cls.__name__}: only a dataclass with the base Result can be stored")
-    for name, hint in _types(cls).items():
-        if hint not in _CHECKS:
+    for name, hint in field_types(cls).items():
+        if hint not in FIELD_CHECKS:
             raise TypeError(f"{cls.__name__}.{name}: a {hint} cannot be stored")
     known = _REGISTERED.setdefault(cls.__name__, cls)
     if known.__module__ != cls.__module__:
         raise TypeError(f"a result class of the name {cls.__name__} is registered already")
     _REGISTERED[cls.__name__] = cls
     return cls
-
-
-class Checked:
-    """Base of dataclasses whose fields are checked, by their types and :func:`numbers`."""
-
-    def __init_subclass__(cls, **options) -> None:
-        """Keep the dataclass decorator from making a repr that prints whole arrays."""
-        super().__init_subclass__(**options)
-        if "__repr__" not in cls.__dict__:
-            cls.__repr__ = Checked.__repr__
-
-    def __post_init__(self) -> None:
-        sizes: dict[str, int] = {}
-        types = _types(type(self))
-        for item in fields(self):
-            value = getattr(self, item.name)
-            if value is None and item.default is None:
-                continue
-            if types[item.name] is np.ndarray:
-                value = _array(value, item)
-            else:
-                value = _CHECKS[types[item.name]](value, item.name)
-            _check_shape(np.shape(value), item, sizes)
-            object.__setattr__(self, item.name, value)
-
-    def __repr__(self) -> str:
-        """Return the fields in one line: arrays by their shape, long words and tuples cut."""
-        in_order = sorted(fields(self), key=lambda item: item.kw_only)  # as the constructor
-        parts = [f"{f.name}={_short(getattr(self, f.name))}" for f in in_order]
-        return f"{type(self).__name__}({', '.join(parts)})"
 
 
 class Result(Checked):
@@ -216,57 +143,6 @@ class Result(Checked):
         return result
 
 
-@cache
-def _types(cls: type) -> dict[str, Any]:
-    """Return the types of a result's fields; ``X | None`` counts as X."""
-    hints = get_type_hints(cls)
-    return {item.name: _without_none(hints[item.name]) for item in fields(cls)}
-
-
-def _without_none(hint: Any) -> Any:
-    given = [kind for kind in get_args(hint) if kind is not NoneType]
-    return given[0] if isinstance(hint, UnionType) and len(given) == 1 else hint
-
-
-def _array(value: object, item: Field) -> np.ndarray:
-    """Return a read-only array of the described type, its values within the limits."""
-    told = item.metadata
-    if not told:
-        kind = getattr(value, "dtype", np.dtype(float)).kind
-        return checks.array(value, item.name, finite=False, dtype=_DTYPES.get(kind, float))
-    result = checks.array(value, item.name, finite=told["finite"], dtype=told["dtype"])
-    low, high = told["least"], told["most"]
-    if (low is not None and np.any(result < low)) or (high is not None and np.any(result > high)):
-        limits = [f"≥ {low}"] * (low is not None) + [f"≤ {high}"] * (high is not None)
-        raise ValueError(f"{item.name}: needs values {' and '.join(limits)}")
-    return result
-
-
-def _check_shape(shape: tuple[int, ...], item: Field, sizes: dict[str, int]) -> None:
-    """Compare a shape with the described one; learn sizes from it."""
-    told = item.metadata.get("shape")
-    if told is None:
-        return
-    if len(shape) == len(told):
-        for word, size in zip(told, shape, strict=True):
-            if isinstance(word, str):
-                sizes.setdefault(word, size)
-    wanted = tuple(sizes.get(size, size) for size in told)
-    if shape != wanted:
-        raise ValueError(f"{item.name}: needs the shape {wanted}, got {shape}")
-
-
-_DTYPES = {"b": bool, "i": int, "u": int, "c": complex}
-_CHECKS: dict[Any, Any] = {
-    np.ndarray: _array,
-    float: checks.number,
-    int: checks.whole_number,
-    bool: checks.flag,
-    str: checks.label,
-    tuple[str, ...]: checks.labels,
-}
-
-
 def text_table(columns: Mapping[str, np.ndarray]) -> list[str]:
     """Return columns of a table as lines of text, the first of names.
 
@@ -295,14 +171,6 @@ def text_table(columns: Mapping[str, np.ndarray]) -> list[str]:
         width = max(map(len, [name, *cells]))
         shown.append([f"{cell:{'<' if kind == 'U' else '>'}{width}}" for cell in [name, *cells]])
     return ["  ".join(row).rstrip() for row in zip(*shown, strict=True)]
-
-
-def _short(value: object) -> str:
-    """Return an array's shape, or what `repr` says of a small value."""
-    if isinstance(value, np.ndarray):
-        return f"array{value.shape}"
-    text = repr(value)
-    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
 
 
 def load_result(path: str | PathLike) -> Result:
@@ -359,7 +227,7 @@ def _arguments(cls: type[Result], data: Mapping[str, np.ndarray]) -> dict[str, o
     for key, item in keys.items():
         if key not in data and item.default is not None:
             raise ValueError(f"the entry {item.name!r} is missing")
-    types = _types(cls)
+    types = field_types(cls)
     return {
         item.name: _decoded(data[key], types[item.name], item)
         for key, item in keys.items()

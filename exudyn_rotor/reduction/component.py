@@ -13,8 +13,8 @@ from exudyn.FEM import FEMinterface
 
 from exudyn_rotor import checks
 from exudyn_rotor.calls import user_level
+from exudyn_rotor.checks import Checked, numbers, words
 from exudyn_rotor.reduction.reduced_rotor import ModeKind, rigid_names
-from exudyn_rotor.results import Checked, numbers, words
 from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers import modes as eigen

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.checks import Checked, numbers
 from exudyn_rotor.reduction.reduced_file import load_reduced, save_reduced
-from exudyn_rotor.results import Checked, numbers
 from exudyn_rotor.solid.matrices import as_triangles
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 from scipy.sparse.linalg import spsolve
 
 from exudyn_rotor import checks
-from exudyn_rotor.results import Checked, numbers
+from exudyn_rotor.checks import Checked, numbers
 from exudyn_rotor.solid.matrices import as_node_numbers, in_all_directions
 from exudyn_rotor.theory.axis import SpinAxis, rotations, translations
 

@@ -117,3 +117,16 @@ def test_the_jacobian_of_every_law_is_its_derivative(law, base):
         scale = 1.0 / np.sqrt(np.maximum(np.abs(expected).max(axis=1), 1e-6))
         error = np.abs((found - expected) * np.outer(scale, scale)).max()
         assert error < (3e-5 if base != "Rxyz" else 3e-2)
+
+
+def test_friction_has_its_slope_by_a_free_spin():
+    """Where it begins to slide."""
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rings(TO_X), initial_speed=0.0)
+    stop = {"radius": 0.05, "clearance": 1e-7, "stiffness": 1e6, "friction": 0.3}
+    add_supports(body, [ClearanceStop(interface="left", **stop)])
+    mbs.Assemble()
+    places = np.asarray(mbs.systemData.GetNodeLTGODE2(body.nodes["rigid"]))
+    found, expected = (pair[1] for pair in jacobians(mbs, places[4:]))
+    found, expected = found[:, 3], expected[:, 3]  # by the spin speed
+    assert np.abs(found - expected).max() < 1e-4 * np.abs(expected).max()
