@@ -7,7 +7,7 @@ Elements", SSRN 4830498: prints Eqs. (116–129) and draws Fig. 2.
 import numpy as np
 
 from exudyn_rotor import SolidRotor, campbell, plotting
-from exudyn_rotor.theory.axis import block_diagonal, tilde, tilde_basis, translations
+from exudyn_rotor.theory.axis import block_diagonal, skew, translations
 
 nodes = [[1.0, 0.0, 0.0], [1.75, 0.0, 0.0]]
 mass = np.eye(6)
@@ -31,7 +31,7 @@ assert np.array_equal(rotor.stiffness @ modes, rotor.mass @ modes * np.square(fr
 at_rest, at_300 = campbell(rotor, [0.0, 300.0], frame="rotor").frequencies_rotor
 printed = {
     "x (116)": rotor.nodes.ravel(),
-    "x̃ (117)": tilde(rotor.nodes),
+    "x̃ (117)": np.vstack([skew(x) for x in rotor.nodes]),
     "e (118)": rotor.axis.direction,
     "ẽ (119)": rotor.axis.skew,
     "ẽ_bd (120)": block_diagonal(rotor.axis.skew, 2).toarray(),
@@ -40,7 +40,7 @@ printed = {
     "K (123)": rotor.stiffness.toarray(),
     "Ψ (124)": modes,
     "ν at rest (125)": at_rest,
-    "Ψ̃ (126)": tilde_basis(modes),
+    "Ψ̃ (126)": sum(np.kron(modes[i::3], skew(e)) for i, e in enumerate(np.eye(3))),
     "(I_ζ ⊗ e)ᵀ (127)": along.T,
     "Φ (128)": translations(2),
     "ν at 300 rad/s (129)": at_300,
