@@ -162,3 +162,20 @@ def test_decays_that_are_over_at_once_are_not_told_as_lost(damping, stiffness, l
     found = motions_of(joined([system]), "hill")
     assert np.count_nonzero(np.isnan(found.values)) == 1
     assert tuple(found.lost) == lost
+
+
+def test_fast_motions_that_harmonics_lose_leave_the_others():
+    """The second motion is stable, and needs more harmonics than there are."""
+    wave = np.diag([0.0, 4e3]).astype(complex)
+    none, K = np.zeros((2, 2)), np.diag([0.3, 1e4])
+    system = joined([PeriodicSystem(1.0, np.eye(2), {0: none}, {0: K, 1: wave, -1: wave})])
+    found, by_hill = (motions_of(system, way, least_stable=True) for way in ("auto", "hill"))
+    assert np.array_equal(found.values, by_hill.values, equal_nan=True)
+    assert np.nanmin(np.abs(found.values)) == pytest.approx(np.sqrt(0.3), rel=1e-9)
+
+
+def test_floquets_method_takes_shorter_steps_on_stiff_supports():
+    supports = [Support(name, np.diag([1e10, 3e10])) for name in ("left", "right")]
+    with pytest.warns(UserWarning, match="do not converge for all motions"):
+        result = stability(asymmetric_shaft(), [1.0], supports=supports, method="floquet")
+    assert np.all(result.stable)

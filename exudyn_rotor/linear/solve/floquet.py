@@ -43,25 +43,34 @@ def _followed(system: PeriodicSystem, made: States, steps: int) -> list[np.ndarr
         for at in angles.T
     )  # fmt: skip
     followed = [np.eye(len(made.A[0]))]
-    exponents = magnus_exponent(first, second)
-    for step in la.expm(exponents) if np.all(np.isfinite(exponents)) else np.nan * exponents:
-        followed.append(step @ followed[-1])
+    with np.errstate(over="ignore", invalid="ignore"):
+        exponents = magnus_exponent(first, second)
+        for step in la.expm(exponents) if np.all(np.isfinite(exponents)) else np.nan * exponents:
+            followed.append(step @ followed[-1])
     return followed
 
 
 def floquet_motions(system: PeriodicSystem, made: States) -> Exponents:
     """Return the motions of a system."""
-    before = _with_steps(system, made, _STEPS[0])[0]
-    for steps in _STEPS[1:]:
-        values, states, orders, upper = _with_steps(system, made, steps)
+    before, still = np.zeros(0, dtype=complex), None
+    for steps in _STEPS:
+        try:
+            values, states, orders, upper = _with_steps(system, made, steps)
+        except np.linalg.LinAlgError:  # steps that are too long for stiff supports overflow
+            continue
         # a negative multiplier has ± Im λ alike, and rounding chooses
         away = np.abs(values[:, None] - np.r_[before, before.conj()])
         least = np.maximum(np.abs(values), abs(system.speed))
         still = np.fmin.reduce(away, axis=1, initial=np.inf) <= _STILL * least
         still[upper + 1] = still[upper]
-        if np.all(still | np.isnan(values) | (np.abs(values) > _SLOW * abs(system.speed))):
+        fast = np.isnan(values) | (np.abs(values) > _SLOW * abs(system.speed))
+        if before.size and np.all(still | fast):
             break
         before = values
+    if still is None:
+        k = system.size
+        none = np.full(k, np.nan + 0j), np.zeros((1, 2 * k, k), dtype=complex)
+        return Exponents(*none, np.array([0]), np.zeros(1, dtype=complex))
     found, lost = np.flatnonzero(still), np.flatnonzero(~still)
     chosen = found[one_of_each_family(values[found], states[:, :, found], orders, system, made)]
     chosen = np.r_[chosen, lost][: system.size]

@@ -35,7 +35,7 @@ class Exponents(NamedTuple):
         Harmonics of the state.
     orders : ndarray of int, shape (h,)
     lost : ndarray, shape (l,)
-        Growth [1/s] of motions that did not converge, about; of decays that are over at once none.
+        Exponents of motions that did not converge, about; of decays that are over at once none.
     """
 
     values: np.ndarray
@@ -81,9 +81,9 @@ def hill_motions(
 
 
 def lost_of(values: np.ndarray, system: PeriodicSystem) -> np.ndarray:
-    """Return the growth of those exponents that an engineer looks at."""
+    """Return those exponents that an engineer looks at."""
     looked_at = -values.real <= np.maximum(_OVER * abs(system.speed), np.abs(values.imag))
-    return values.real[looked_at]
+    return values[looked_at]
 
 
 def shares(states: np.ndarray) -> np.ndarray:

@@ -26,6 +26,7 @@ from exudyn_rotor.linear.solve.hill import Exponents, hill_motions
 METHODS = ("auto", "hill", "floquet")
 _ROUNDING = 100.0 * EPSILON  # of the size of a state matrix: what a real part may be off by
 _PERIODIC = 10.0  # times that of periodic equations, which have many harmonics
+_SLOW = 3.0  # |λ| over Ω up to which a motion is slow
 REAL = 1e-9  # share of |λ|: a frequency that is rounding
 _AT_ONCE = 2_000_000  # entries of matrices that are solved at once
 
@@ -186,9 +187,13 @@ def _periodic(
         else:
             neutral = bound if least_stable else None
             exponents, size = hill_motions(system, made, tolerance, size, neutral)
-            most = np.nanmax(exponents.values.real, initial=-np.inf)
-            if method == "auto" and np.any(exponents.lost > most):  # that may be the one that grows
-                exponents = floquet_motions(system, made)
+            most = max(np.nanmax(exponents.values.real, initial=-np.inf), bound)
+            # a slow motion that Hill's method has lost may be the one that grows
+            slow = exponents.lost[np.abs(exponents.lost) <= _SLOW * abs(system.speed)]
+            if method == "auto" and np.any(slow.real > most):
+                other = floquet_motions(system, made)
+                if np.nanmax(other.values.real, initial=-np.inf) > most:
+                    exponents = other
         parts.append((places, _ascending(system.speed, exponents, made, bound)))
         if told is not None:
             told(1)
