@@ -1,11 +1,13 @@
 """Motion of a rotor over time while a record shakes the ground.
 
 The equations are ``ż = A(θ) z + B Σ L_n exp(inθ) a(t)`` with the load ``f = −Sᵀ a`` (109). In each
-step the record is the straight line with its mean and first moment, both exact. A step is followed
-by matrix exponentials of the state beside the line, of mean rates in its first and its second half:
-exact where the equations are constant, whatever decays or swings fast, else of fourth order. What a
-step does is periodic in its first angle, and so known by a few Fourier terms. Source: Blanes, Moan,
-Fourth- and sixth-order commutator-free Magnus integrators, Appl. Numer. Math. 56 (2006), Sect. 3.
+step the record is the straight line with its mean and first moment, both exact.
+
+- Constant equations are followed exactly, whatever decays or swings fast: one matrix exponential of
+  the state beside the line of the load, which turns with exp(inθ).
+- Periodic equations take steps of Radau's method with three stages. It is of fifth order, and what
+  decays within a step decays. What a step does is periodic in its first angle, and so known by a
+  few Fourier terms. Source: Hairer, Wanner, Solving Ordinary Differential Equations II, Sect. IV.5.
 
 Steps are halved until the motion no longer changes, and straight lines between them follow it: a
 rotor may swing faster than its record.
@@ -13,7 +15,7 @@ rotor may swing faster than its record.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -24,7 +26,7 @@ import scipy.linalg
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.foundations.record import BaseRecord
-from exudyn_rotor.linear.equations import Terms, UnconvergedError, states_of
+from exudyn_rotor.linear.equations import Terms, UnconvergedError, at_angle, states_of
 from exudyn_rotor.linear.model.build import (
     Target,
     linear_model,
@@ -45,12 +47,21 @@ if TYPE_CHECKING:
 _PER_TURN, _IN_ALL = 24, 200  # least numbers of steps in a revolution and in a record
 _MOST_STEPS = 2_000_000
 _ANGLES = 64  # of a revolution, at which a step is computed
+_AT_ONCE = 512  # steps whose matrices are made together
+_HALVED = 16.0  # a halved step of fifth order errs by a sixteenth of the change, at most
 _TAIL = 1e-12  # share of a step by Fourier terms that are left out
 _SMALL = 1e-2  # share of a motion across the axis that counts along it
 _ROUNDS = 1e-9  # share of a motion along the axis that is rounding across it
 _BETWEEN = 0.01  # of the largest motion: how far straight lines between the times may be off
-_GAUSS = 0.5 - np.sqrt(3.0) / 6.0, 0.5 + np.sqrt(3.0) / 6.0  # places in a step
-_PARTS = 0.25 + np.sqrt(3.0) / 6.0, 0.25 - np.sqrt(3.0) / 6.0  # of both rates in its first half
+_S = np.sqrt(6.0)
+_STAGES = np.array([(4.0 - _S) / 10.0, (4.0 + _S) / 10.0, 1.0])  # of Radau's method
+_RADAU = np.array(
+    [
+        [(88.0 - 7.0 * _S) / 360.0, (296.0 - 169.0 * _S) / 1800.0, (-2.0 + 3.0 * _S) / 225.0],
+        [(296.0 + 169.0 * _S) / 1800.0, (88.0 + 7.0 * _S) / 360.0, (-2.0 - 3.0 * _S) / 225.0],
+        [(16.0 - _S) / 36.0, (16.0 + _S) / 36.0, 1.0 / 9.0],
+    ]
+)
 
 
 @storable
@@ -226,8 +237,17 @@ def base_response(
 class _ShakenRotor:
     """Equations of first order, the record along (n1, n2, e), and what is looked at.
 
-    Fourier terms of the rates per state, A (2k, 2k), of the rates per acceleration of the ground,
-    `loads` (2k, 3), and of the motion of each place per state in axes that stand still (6, 2k).
+    Attributes
+    ----------
+    speed : float
+        Ω [rad/s].
+    A : mapping of int to ndarray, shape (2k, 2k)
+        Fourier terms of the rates per state.
+    loads : mapping of int to ndarray, shape (2k, 3)
+        Fourier terms of the rates per acceleration of the ground.
+    seen : sequence of mapping of int to ndarray, shape (6, 2k)
+        Fourier terms of the motion of each place per state, axes that stand still.
+    record : BaseRecord
     """
 
     speed: float
@@ -254,8 +274,8 @@ class _ShakenRotor:
 
     @property
     def is_constant(self) -> bool:
-        """Whether all steps are alike."""
-        return self.speed == 0.0 or len(self.A) == len(self.loads) == 1
+        """Whether the rates per state do not change in time."""
+        return self.speed == 0.0 or len(self.A) == 1
 
     @one_thread()
     def converged(self, end: float, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
@@ -276,7 +296,8 @@ class _ShakenRotor:
             sizes = np.where(sizes > 0.0, sizes, 1.0)
             if last is not None:
                 change = np.abs(motion[: 2 * len(last) : 2] - last[: len(motion[::2])])[..., :3]
-                if (change / sizes).max() <= tolerance and _follow(motion[..., :3] / sizes):
+                is_settled = (change / sizes).max() <= _HALVED * tolerance
+                if is_settled and _follow(motion[..., :3] / sizes):
                     return time[::2], motion[::2]
             step, last = 0.5 * step, motion
         raise UnconvergedError(
@@ -297,27 +318,24 @@ class _ShakenRotor:
         count = max(1, int(np.floor(length / step + 1e-9)))
         after = step * np.arange(count + 1)
         times, angles = self.record.times[0] + after, self.speed * after
-        turn = count
+        lines = self._lines(times, step)
+        turn = int(np.ceil(np.sqrt(count)))  # of constant equations any number of steps
         if not self.is_constant:
-            turn = min(count, round(2.0 * np.pi / abs(self.speed) / step))
+            turn = min(round(2.0 * np.pi / abs(self.speed) / step), count)
         with np.errstate(over="ignore", invalid="ignore"):  # told by who asked
-            states = self._states(self._steps(step, angles[:turn]), self._lines(times, step))
+            if self.is_constant:
+                by_state, added = self._exact(step, angles[:-1], lines)
+            else:
+                by_state, by_line = self._radau(step)
+                added = np.zeros((count, len(self.A[0])))
+                for n, X in enumerate(_matrices(by_line, angles[:turn])):
+                    added[n::turn] = lines[n::turn] @ X.T
+            states = _followed(by_state, angles[:turn], added)
             motion = np.zeros((count + 1, len(self.seen), 6))
             for place, seen in enumerate(self.seen):
                 for n, U in seen.items():
                     motion[:, place] += (np.exp(1j * n * angles)[:, None] * (states @ U.T)).real
         return times, motion
-
-    def _states(self, steps: np.ndarray, lines: np.ndarray) -> np.ndarray:
-        """Return the states (t + 1, 2k) from rest, by steps of a turn and all lines (t, 6)."""
-        size, turn = len(self.A[0]), len(steps)
-        states = np.zeros((len(lines) + 1, size))
-        for n, step in enumerate(steps):
-            states[n + 1 :: turn] = lines[n::turn] @ step[:, size:].T
-        by_state = steps[:, :, :size]
-        for n in range(len(lines)):
-            states[n + 1] += by_state[n % turn] @ states[n]
-        return states
 
     def _lines(self, times: np.ndarray, step: float) -> np.ndarray:
         """Return first value and slope (t, 6) of the line in every step.
@@ -330,35 +348,72 @@ class _ShakenRotor:
         slope = 12.0 * moment / step**3
         return np.concatenate([mean - 0.5 * step * slope, slope], axis=1)
 
-    def _steps(self, step: float, angles: np.ndarray) -> np.ndarray:
-        """Return what steps that begin at angles (n,) do with state and line, (n, 2k, 2k + 6).
+    def _exact(
+        self, step: float, angles: np.ndarray, lines: np.ndarray
+    ) -> tuple[Terms, np.ndarray]:
+        """Return what a step does with the state (2k, 2k), and what lines (t, 6) add, (t, 2k)."""
+        A = at_angle(self.A, 0.0)
+        size, added = len(A), 0.0
+        for n, load in self.loads.items():
+            generator = np.zeros((size + 6, size + 6), dtype=complex)
+            generator[:size, :size], generator[:size, size : size + 3] = A, load
+            generator[size : size + 3, size + 3 :] = np.eye(3)
+            generator[size:, size:] += 1j * n * self.speed * np.eye(6)
+            by_line = scipy.linalg.expm(step * generator)[:size, size:]
+            added = added + (np.exp(1j * n * angles)[:, None] * (lines @ by_line.T)).real
+        return {0: scipy.linalg.expm(step * A)}, added
 
-        One for all where they are alike.
-        """
-        size, count = len(self.A[0]), 1 if self.is_constant else _ANGLES
-        first = 2.0 * np.pi * np.arange(count) / count
-        early, late = (self._rates(first + self.speed * step * place) for place in _GAUSS)
-        one, other = (
-            scipy.linalg.expm(step * (a * early + b * late)) for a, b in (_PARTS, _PARTS[::-1])
-        )
-        steps = (other @ one)[:, :size]
-        if self.is_constant:
-            return steps
-        spectrum = np.fft.fft(steps, axis=0) / count
+    def _radau(self, step: float) -> tuple[Terms, Terms]:
+        """Return Fourier terms of what a step does with state (2k, 2k) and line (2k, 6)."""
+        size, first = len(self.A[0]), 2.0 * np.pi * np.arange(_ANGLES) / _ANGLES
+        stages = np.add.outer(first, self.speed * step * _STAGES)
+        rates, loads = (_at_angles(each, stages) for each in (self.A, self.loads))
+        loads = np.concatenate([loads, (step * _STAGES)[:, None, None] * loads], axis=3)
+        left = -step * np.einsum("ij,njab->niajb", _RADAU, rates).reshape(_ANGLES, 3 * size, -1)
+        right = step * np.einsum("ij,njab->niab", _RADAU, loads).reshape(_ANGLES, 3 * size, 6)
+        begun = np.broadcast_to(np.tile(np.eye(size), (3, 1)), (_ANGLES, 3 * size, size))
+        right = np.concatenate([begun, right], axis=2)
+        after = np.linalg.solve(left + np.eye(3 * size), right)[:, 2 * size :]
+        spectrum = np.fft.fft(after, axis=0) / _ANGLES
         sizes = np.abs(spectrum).max(axis=1)  # the lines act on states of another size
         sizes = (sizes / np.maximum(sizes.max(axis=0), 1e-300)).max(axis=1)
-        orders = [n for n in range(-(count // 4), count // 4 + 1) if sizes[n] > _TAIL]
-        return np.tensordot(np.exp(1j * np.outer(angles, orders)), spectrum[orders], 1).real
+        known = [n for n in range(-_ANGLES // 4, _ANGLES // 4 + 1) if sizes[n] > _TAIL]
+        parts = slice(size), slice(size, None)
+        return tuple({n: spectrum[n][:, part] for n in known} for part in parts)
 
-    def _rates(self, angles: np.ndarray) -> np.ndarray:
-        """Return the rates of state, value and slope of the line per each, at angles (n,)."""
-        size = len(self.A[0])
-        rates = np.zeros((len(angles), size + 6, size + 6))
-        for terms, columns in ((self.A, slice(size)), (self.loads, slice(size, size + 3))):
-            for n, X in terms.items():
-                rates[:, :size, columns] += np.multiply.outer(np.exp(1j * n * angles), X).real
-        rates[:, size : size + 3, size + 3 :] = np.eye(3)
-        return rates
+
+def _at_angles(terms: Terms, angles: np.ndarray) -> np.ndarray:
+    """Return matrices at spin angles [rad], stacked."""
+    return sum(np.multiply.outer(np.exp(1j * n * angles), X) for n, X in terms.items()).real
+
+
+def _matrices(terms: Terms, angles: np.ndarray) -> Iterator[np.ndarray]:
+    """Give the matrices at spin angles [rad], one after the other."""
+    for first in range(0, len(angles), _AT_ONCE):
+        yield from _at_angles(terms, angles[first : first + _AT_ONCE])
+
+
+def _followed(by_state: Terms, angles: np.ndarray, added: np.ndarray) -> np.ndarray:
+    """Return ``z_{n+1} = E_n z_n + g_n`` from rest, (t + 1, 2k), given (t, 2k).
+
+    E_n comes back after the steps of a turn, which begin at the `angles`. All turns are followed
+    together: from rest, which tells where each begins, and from there.
+    """
+    (count, size), turn = added.shape, len(angles)
+    turns = -(-count // turn)
+    added = np.concatenate([added, np.zeros((turns * turn - count, size))])
+    added = added.reshape(turns, turn, size).swapaxes(0, 1)
+    states, whole = np.zeros((turn + 1, turns, size)), np.eye(size)
+    for n, E in enumerate(_matrices(by_state, angles)):
+        states[n + 1] = states[n] @ E.T + added[n]
+        whole = E @ whole
+    if turns > 1:
+        for n in range(1, turns):
+            states[0, n] = whole @ states[0, n - 1] + states[turn, n - 1]
+        for n, E in enumerate(_matrices(by_state, angles)):
+            states[n + 1] = states[n] @ E.T + added[n]
+    states = np.concatenate([states[:turn].swapaxes(0, 1).reshape(-1, size), states[turn, -1:]])
+    return states[: count + 1]
 
 
 def _follow(moved: np.ndarray) -> bool:
