@@ -35,6 +35,7 @@ from exudyn_rotor.linear.modal.whirl import Content
 from exudyn_rotor.linear.model.assembly import rotors_of
 from exudyn_rotor.linear.model.body import EVEN
 from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.solve.hill import real_waves
 from exudyn_rotor.solvers.factor import one_thread
 
 NO_EQUATIONS = NoCoefficientsError, UnconvergedError
@@ -245,6 +246,12 @@ class Search:
     def _bracketed(self, multiples: np.ndarray) -> list[Pair]:
         """Return where H is singular, by its eigenvalues over the grid, and null vectors."""
         stack, found = dynamic_stiffness(self.grid, multiples), []
+        h, basis = len(multiples), np.eye(stack.shape[-1])
+        if (
+            h > 1 and h % 2 and np.array_equal(multiples, -multiples[::-1])
+        ):  # real in cosines, sines
+            basis = np.kron(real_waves(h), np.eye(len(basis) // h))
+            stack = (basis.conj().T @ stack @ basis).real
         lost, signs = np.array(list(self.refused)), _eigenvalues(stack) < 0.0
         for row, (low, high) in enumerate(pairwise(self.grid.speed.tolist())):
             if np.any((low < lost) & (lost < high)):
@@ -253,7 +260,8 @@ class Search:
             for j in np.flatnonzero(signs[row] != signs[row + 1]):
                 at = brentq(_between, 0.0, 1.0, args=(A, B, j), xtol=_FINE)
                 at = np.round(at, _DIGITS)  # of zeros that are one, orthogonal vectors
-                guess = low + (high - low) * at, np.linalg.eigh((1.0 - at) * A + at * B)[1][:, j]
+                vectors = np.linalg.eigh((1.0 - at) * A + at * B)[1]
+                guess = low + (high - low) * at, basis @ vectors[:, j]
                 exact, slack = self._exact(guess, multiples), _BEYOND * (high - low)
                 if low - slack < exact[0] < high + slack:
                     found.append(exact)
