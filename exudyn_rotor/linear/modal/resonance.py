@@ -247,9 +247,8 @@ class Search:
         """Return where H is singular, by its eigenvalues over the grid, and null vectors."""
         stack, found = dynamic_stiffness(self.grid, multiples), []
         h, basis = len(multiples), np.eye(stack.shape[-1])
-        if (
-            h > 1 and h % 2 and np.array_equal(multiples, -multiples[::-1])
-        ):  # real in cosines, sines
+        is_even = h > 1 and h % 2 and np.array_equal(multiples, -multiples[::-1])
+        if is_even:  # H is real in cosines and sines
             basis = np.kron(real_waves(h), np.eye(len(basis) // h))
             stack = (basis.conj().T @ stack @ basis).real
         lost, signs = np.array(list(self.refused)), _eigenvalues(stack) < 0.0
