@@ -3,7 +3,7 @@
 import exudyn as exu
 import numpy as np
 import pytest
-from exudyn.itemInterface import MarkerBodyRigid
+from exudyn.itemInterface import MarkerBodyRigid, MarkerNodeRigid, SensorMarker
 from point_rotors import SKEW_AXIS
 from rings import rings, run
 from scipy.spatial.transform import Rotation
@@ -78,3 +78,25 @@ def test_a_foundation_takes_seats_of_a_mesh():
         with pytest.raises(ValueError, match=r"foundation: its point 'left' is .* m off"):
             add_supports(body, supports, base=base)
         assert before == (mbs.systemData.NumberOfMarkers(), mbs.systemData.NumberOfObjects())
+
+
+@pytest.mark.parametrize("shift", [np.zeros(3), [4.0, -3.0, 9.0]])
+def test_a_joint_without_a_position_holds_the_mesh_origin_of_an_unbalanced_rotor(shift):
+    """The node stands beside the centre of mass, 10 mm off; a joint there would make it jump."""
+    mbs, rotor = exu.SystemContainer().AddSystem(), rings([0.0, 0.0, 1.0])
+    rotor = rotor.add_point_mass([0.1, 0.0, 0.0], 0.1 * rotor.mass[::3, ::3].sum())
+    turn = Rotation.from_rotvec([0.3, -0.8, 1.1]).as_matrix()
+    body = add_rotor(mbs, rotor.reduce(0), rotation=turn, position=shift, gravity=[0, 0, -9.81])
+    node = mbs.AddMarker(MarkerNodeRigid(nodeNumber=body.nodes["rigid"]))
+    mbs.CreateGenericJoint(itemNumbers=[mbs.CreateGround(), node])
+    joint = mbs.AddSensor(
+        SensorMarker(
+            markerNumber=node,
+            outputVariableType=exu.OutputVariableType.Displacement,
+            storeInternal=True,
+            writeToFile=False,
+        )
+    )
+    run(mbs, 0.01, 10)
+    moved = mbs.GetSensorStoredData(joint)[1:, 1:]
+    assert np.abs(moved).max() < 1e-9

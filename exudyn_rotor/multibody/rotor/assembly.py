@@ -14,7 +14,8 @@ Before a scene is assembled:
   Exudyn's body, which are modes here, so the three nodes take the offset.
 - Where the axes of the flexible body are not those of the mesh, rigid markers get the latter.
 - What a script attaches to rigid and position markers at the node of the frame is pointed at
-  markers that move as the node of Exudyn's body; see :func:`mean_motion`.
+  markers that move as the node of Exudyn's body; see :func:`mean_motion`. Seats that a call has put
+  where the node stands go to the mesh origin, where the node of Exudyn's body is.
 
 Afterwards one warning names what a rotor cannot carry.
 """
@@ -49,6 +50,7 @@ _NEEDED = {"SuperElementPosition": 1, "SuperElementRigid": 3}  # nodes of a cond
 _DENSE = (exudyn.LinearSolverType.EXUdense, exudyn.LinearSolverType.EigenDense)
 _DENSE_MOST = 400  # coordinates whose dense factor costs less than a tenth of a second
 _UNIT_SUM = 1e-12  # error of a sum of weights that is one
+_THERE = 1e-6  # share of the distance of node and mesh origin: a marker that a call has put there
 
 
 def prepare(mbs: exudyn.MainSystem) -> None:
@@ -186,6 +188,7 @@ def _carry(body: RotorItems) -> None:
 
     for is_load, number, _, markers in list(attached(mbs)) if own else ():
         if not own.keys().isdisjoint(markers):
+            _place_at_origin(body, markers)
             carried = list(map(carrier, markers))
             if is_load:
                 mbs.SetLoadParameter(number, "markerNumber", carried[0])
@@ -195,6 +198,28 @@ def _carry(body: RotorItems) -> None:
         sensor = mbs.GetSensor(number)
         if sensor["sensorType"] == "Marker" and int(sensor["markerNumber"]) in own:
             mbs.SetSensorParameter(number, "markerNumber", carrier(int(sensor["markerNumber"])))
+
+
+def _place_at_origin(body: RotorItems, markers: list[int]) -> None:
+    """Move rigid markers of other bodies from the place of the frame's node to the mesh origin.
+
+    Calls that get no position take the node's, which is beside the centre of mass, and the node of
+    Exudyn's body is in the mesh origin.
+    """
+    mbs, kinds = body.mbs, exudyn.OutputVariableType
+    beside = body.placement.position - body.frame.position
+    for number in markers:
+        marker = mbs.GetMarker(number)
+        if marker["markerType"] != "BodyRigid":
+            continue
+        place, turn = (
+            mbs.GetMarkerOutput(number, kind, exudyn.ConfigurationType.Reference)
+            for kind in (kinds.Position, kinds.RotationMatrix)
+        )
+        if np.linalg.norm(place - body.frame.position) <= _THERE * np.linalg.norm(beside):
+            local = np.array(marker["localHT"], dtype=float)
+            local[:3, 3] += local[:3, :3] @ turn.reshape(3, 3).T @ beside
+            mbs.SetMarkerParameter(number, "localHT", local)
 
 
 def _add_node_marker(body: RotorItems, given: dict) -> exudyn.MarkerIndex:
