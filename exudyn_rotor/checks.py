@@ -28,6 +28,7 @@ MOST = 2**31 - 1  # nodes, modes or points: more than any machine holds
 _SIGNS = {">": operator.gt, "≥": operator.ge, "<": operator.lt, "≤": operator.le}
 _SYMMETRY = 1e-8  # of the largest entry: above the rounding of sums, far below a wrong matrix
 _LONGEST = 80  # characters of a value in a message
+_LONGEST_FIELD = 60  # of one value in a repr
 
 
 # ------------------------------------------------------------------ messages
@@ -45,11 +46,15 @@ def shown(value: object) -> str:
     except Exception:
         return f"a value of type {type(value).__name__}"
     text = " ".join(text.split())
-    text = text[: _LONGEST - 1] + "…" if len(text) > _LONGEST else text
+    text = _cut(text, _LONGEST)
     return text if isinstance(value, _PLAIN) else f"{text} ({type(value).__name__})"
 
 
 _PLAIN = (str, bool, int, float, complex, type(None), list, tuple, np.ndarray, np.number)
+
+
+def _cut(text: str, longest: int) -> str:
+    return text if len(text) <= longest else f"{text[: longest - 1]}…"
 
 
 def told(name: str, needed: str, value: object) -> str:
@@ -494,8 +499,6 @@ def place(value: str | int | Sequence[float], name: str) -> str | int | tuple[fl
 
 # ------------------------------------------------------------------ fields of dataclasses
 
-_LONGEST = 60  # characters of one value in a repr
-
 
 def numbers(
     *shape: int | str,
@@ -627,5 +630,4 @@ def _short(value: object) -> str:
     """Return an array's shape, or what `repr` says of a small value."""
     if isinstance(value, np.ndarray):
         return f"array{value.shape}"
-    text = repr(value)
-    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
+    return _cut(repr(value), _LONGEST_FIELD)

@@ -20,6 +20,7 @@ from exudyn_rotor.drives.drive import Drive
 from exudyn_rotor.multibody.supports.connector import (
     CURRENT,
     PYTHON,
+    SPEED_STEP,
     SYMBOLIC,
     Body,
     Connector,
@@ -33,7 +34,6 @@ from exudyn_rotor.solid.places import off_place
 from exudyn_rotor.theory.formulation import ConstantSpeed
 
 _KINDS = exudyn.OutputVariableType
-_STEP = 1e-6  # of the speed, or of 1 rad/s
 _SAME_SPEED = 1e-9  # share of a speed by which constant ones may differ
 
 
@@ -198,7 +198,7 @@ class DriveConnector(Connector):
 
     def tangent(self, t: float) -> Force:
         """Return the torque, its derivative by the speed, and the row (1, size)."""
-        torque, step = self._law(self.speed, t), _STEP * max(abs(self.speed), 1.0)
+        torque, step = self._law(self.speed, t), SPEED_STEP * max(abs(self.speed), 1.0)
         damping = np.array([[(torque - self._law(self.speed + step, t)) / step]])
         rows = self.rows()[5:], self.rate_rows()[5:]
         return Force(np.array([torque]), *rows, 0.0 * damping, damping)

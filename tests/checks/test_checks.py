@@ -133,3 +133,9 @@ def test_ascending():
             checks.ascending(values, "speeds")
     with pytest.raises(TypeError, match=r"^speeds: needs"):
         checks.ascending("12", "speeds")
+
+
+def test_messages_show_eighty_characters_of_a_value():
+    with pytest.raises(TypeError) as refused:
+        checks.number("x" * 100, "speed")
+    assert str(refused.value).endswith("'" + "x" * 78 + "…")

@@ -362,7 +362,7 @@ class MagneticConnector(Connector):
         return Force(np.array([fx, fy, 0.0, 0.0, *own]), J, L, K, D)
 
 
-_SPEED_STEP = 1e-6  # of the speed, or of 1 rad/s: differences of friction by it
+SPEED_STEP = 1e-6  # of the speed, or of 1 rad/s: differences of torques by it
 
 
 class BearingConnector(Connector):
@@ -468,7 +468,7 @@ class BearingConnector(Connector):
             values, (k, d) = np.array(law(*motion)), part.slopes(*motion)
             by_speed = np.zeros(len(values))
             if self.brakes and cage is None:
-                step = _SPEED_STEP * max(abs(motion[5]), 1.0)
+                step = SPEED_STEP * max(abs(motion[5]), 1.0)
                 by_speed = (values - law(*motion[:5], motion[5] + step)) / step
             if self.feels:
                 k = k + self.base.speed * d @ np.array([[0.0, 1.0], [-1.0, 0.0]])

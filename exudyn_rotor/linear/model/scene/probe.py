@@ -2,7 +2,6 @@
 
 Linear equations have a prescribed spin, and leave out moments of a static force F₀ by small motions
 u: that it turns with what carries the bearing, and that friction on this changes, by about F₀ u.
-Films that conserve mass have the force and the tangent of slow motions.
 """
 
 from __future__ import annotations

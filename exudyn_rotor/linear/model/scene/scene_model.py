@@ -250,8 +250,7 @@ class SceneModel(LinearModel):
 
     def in_scene(self, assembly: Assembly) -> Iterator[tuple[np.ndarray, slice, Terms]]:
         """Yield rows of the unknowns y, places of the coordinates, and y(θ) by these, terms."""
-        scene, pairs = self.scene, zip(self.scene.body.supports, self.supports[""], strict=True)
-        with_own = (one for one, given in pairs if linear_supports([given])[1])
+        scene, with_own = self.scene, iter(self._with_own)
         for body, place in zip(assembly.bodies, assembly.slices, strict=True):
             if isinstance(body, RotorBody):
                 yield np.flatnonzero(scene.touching), place, _of_rotor(scene, body)
