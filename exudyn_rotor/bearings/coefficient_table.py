@@ -82,12 +82,15 @@ class CoefficientTable:
             )
         return cls(*axes, kept)
 
-    def at(self, speed: float, frequency: float) -> float | np.ndarray:
-        """Return the value at a spin speed and the frequency of a motion [rad/s]."""
+    def at(self, speed: ArrayLike, frequency: ArrayLike) -> float | np.ndarray:
+        """Return the value at a spin speed and the frequency of a motion [rad/s], or at pairs."""
         if self.frequencies is None:
             return self._first(speed)
         if self.speeds is None:
             return self._first(frequency)
+        if np.ndim(speed):
+            pairs = zip(speed.tolist(), frequency.tolist(), strict=True)
+            return np.array([self.at(*pair) for pair in pairs])
         known = self._last[-1:]  # one speed is asked for at many frequencies
         if not known or known[0][0] != speed:
             known = [(speed, _smooth(self.frequencies, self._first(speed)))]
@@ -131,9 +134,9 @@ def rows_of(shapes: Sequence[tuple[int, ...]]) -> str:
 def _smooth(points: np.ndarray, values: np.ndarray) -> Callable[[float], np.ndarray]:
     """Return the interpolation along the first axis, constant beyond the ends."""
     if len(points) == 1:
-        return lambda _: values[0]
+        return lambda at: np.broadcast_to(values[0], (*np.shape(at), *values.shape[1:]))
     curve, low, high = PchipInterpolator(points, values, axis=0), *points[[0, -1]].tolist()
-    return lambda at: curve(min(max(at, low), high))
+    return lambda at: curve(np.clip(at, low, high))
 
 
 def read_columns(source: str | Path | Any) -> dict[str, np.ndarray | None]:

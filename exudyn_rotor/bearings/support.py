@@ -209,22 +209,23 @@ class Support:
         return replace(self, **parts)
 
     def matrices(
-        self, speed: float, frequency: float | None = None
+        self, speed: ArrayLike, frequency: ArrayLike | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return stiffness and damping at a spin speed and a frequency [rad/s], each (6, 6).
 
-        Rows: displacement along n1, n2, e, then rotation about them. A table keeps its last value
-        beyond its end. The frequency is the size of the spin speed by default.
+        At speeds (s,), with frequencies (s,), it returns stacks (s, 6, 6). Rows: displacement along
+        n1, n2, e, then rotation about them. A table keeps its last value beyond its end. The
+        frequency is the size of the spin speed by default.
         """
         pair = _pair(speed, frequency)
         found = []
         for name, tilts in (("stiffness", "tilt_stiffness"), ("damping", "tilt_damping")):
             found.append(self._matrix(name, *pair))
             if acts(getattr(self, tilts)):
-                found[-1][3:, 3:] += self._matrix(tilts, *pair)[:3, :3]
+                found[-1][..., 3:, 3:] += self._matrix(tilts, *pair)[..., :3, :3]
         return found[0], found[1]
 
-    def mass_matrix(self, speed: float, frequency: float | None = None) -> np.ndarray:
+    def mass_matrix(self, speed: ArrayLike, frequency: ArrayLike | None = None) -> np.ndarray:
         """Return the mass that goes with the interface, (6, 6), as :meth:`matrices` does."""
         return self._matrix("mass", *_pair(speed, frequency))
 
@@ -313,21 +314,30 @@ class Support:
                     f"support at {self.interface!r}: the table of its {name} {wrong}"
                 )
 
-    def _matrix(self, name: str, speed: float, frequency: float) -> np.ndarray:
+    def _matrix(self, name: str, speed: ArrayLike, frequency: ArrayLike) -> np.ndarray:
         """Return one coefficient as a 6 × 6 matrix; rotations of tilts stand in its first block."""
         value = getattr(self, name)
+        if callable(value) and np.ndim(speed):
+            return np.array([self._matrix(name, each, 0.0) for each in speed.tolist()])
         if callable(value):
             where = f"support at {self.interface!r}: {name} at {speed:g} rad/s"
             value = _coefficient(value(speed), where, shapes=_SHAPES)
         elif isinstance(value, CoefficientTable):
             value = value.at(speed, frequency)
-        full, size = np.zeros((6, 6)), len(value) if np.ndim(value) else 2
-        full[:size, :size] = value if np.ndim(value) else value * np.eye(2)
-        return 0.5 * (full + full.T) if self._symmetric else full
+        full = np.zeros((*np.shape(speed), 6, 6))
+        if np.ndim(value) > np.ndim(speed):
+            size = np.shape(value)[-1]
+            full[..., :size, :size] = value
+        else:
+            full[..., 0, 0] = full[..., 1, 1] = value
+        return 0.5 * (full + np.swapaxes(full, -1, -2)) if self._symmetric else full
 
 
-def _pair(speed: float, frequency: float | None) -> tuple[float, float]:
-    """Return a spin speed and a frequency, by default that of unbalance, checked."""
+def _pair(speed: ArrayLike, frequency: ArrayLike | None) -> tuple[Any, Any]:
+    """Return spin speeds and frequencies, by default those of unbalance, checked."""
+    if np.ndim(speed):
+        speed = checks.array(speed, "speed")
+        return speed, np.abs(speed) if frequency is None else checks.array(frequency, "frequency")
     checks.number(speed, "speed", "rad/s")
     if frequency is None:
         return speed, abs(speed)

@@ -13,6 +13,7 @@ from functools import cached_property, partial
 
 import numpy as np
 import scipy.linalg as la
+from numpy.typing import ArrayLike
 
 from exudyn_rotor.bearings.controlled_support import ControlledSupport
 from exudyn_rotor.bearings.given import Controlled, linear_supports
@@ -56,7 +57,8 @@ class Element:
         Bodies and their interfaces.
     matrices : callable
         Takes the speed Ω, and the frequency of the motion, that of Ω without it [rad/s]; gives
-        stiffness and damping, each (p, p), p a multiple of 3.
+        stiffness and damping, each (p, p), p a multiple of 3. Where the law is a Support it takes
+        speeds (s,), too, and gives stacks.
     motion : callable
         Takes a function that gives the motion (6, k) of an end, gives u as Fourier terms (p, k).
     turns : float
@@ -103,13 +105,18 @@ class Element:
         """Whether a mass goes with u, in axes that stand."""
         return isinstance(self.law, Support) and acts(self.law.mass)
 
-    def mass(self, speed: float, frequency: float | None = None) -> np.ndarray:
+    def mass(self, speed: ArrayLike, frequency: ArrayLike | None = None) -> np.ndarray:
         """Return the mass (p, p) that goes with u [kg]."""
         rate = self.rate * speed
         return self.law.mass_matrix(rate, abs(speed) if frequency is None else frequency)
 
-    def coefficients(self, speed: float, frequency: float | None = None) -> tuple[np.ndarray, ...]:
-        """Return stiffness, damping and, where there is one, the mass."""
+    def coefficients(
+        self, speed: ArrayLike, frequency: ArrayLike | None = None
+    ) -> tuple[np.ndarray, ...]:
+        """Return stiffness, damping and, where there is one, the mass; of speeds (s,) stacks."""
+        if np.ndim(speed) and not isinstance(self.law, Support):
+            [found] = stacked_coefficients([[self.matrices(one)] for one in speed.tolist()])
+            return found
         found = self.matrices(speed, frequency)
         return (*found, self.mass(speed, frequency)) if self.has_mass else found
 
@@ -226,8 +233,11 @@ def support_element(
     Its tables are over `rate` times Ω; one in the rotor's frame turns with `ratio` times Ω.
     """
 
-    def matrices(speed: float, frequency: float | None = None) -> tuple[np.ndarray, np.ndarray]:
-        support.check_range(rate * speed)
+    def matrices(
+        speed: ArrayLike, frequency: ArrayLike | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        for each in np.ravel(rate * speed).tolist():
+            support.check_range(each)
         return support.matrices(rate * speed, abs(speed) if frequency is None else frequency)
 
     return Element(
@@ -437,6 +447,11 @@ class Assembly:
         Speeds at which there are none are left out of the stack. Frequencies of motions (s,) are
         those of the speeds by default.
         """
+        try:
+            given = [one.coefficients(speeds, frequencies) for one in self._varying]
+            return self._system(speeds, given), {}
+        except NO_EQUATIONS:
+            pass  # one by one, then
         found, refused = [], {}
         rates = [None] * len(speeds) if frequencies is None else frequencies.tolist()
         for place, pair in enumerate(zip(speeds.tolist(), rates, strict=True)):
