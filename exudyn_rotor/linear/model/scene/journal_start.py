@@ -15,7 +15,7 @@ from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.linear.model.turning import interface_motion
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, spin_at_start
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.theory.rotating_axes import into_rotor_frame, parts_across
 
 _SOFT = 1e-8  # of the stiffest mode: resistance of free motions, which are preferred
@@ -67,7 +67,7 @@ def _tilts(scene: SceneCoordinates, speed: float) -> np.ndarray:
 def journal_places(body: RotorBody, speed: float) -> dict[str, np.ndarray]:
     """Return the equilibria of journals by interface, (2,) [m]; none of those in their centres."""
     loads = static_loads(body).items()
-    places, cage = {}, spin_at_start(body)[0]
+    places, cage = {}, body.placement.angle
     for bearing, load in loads:
         if np.any(load) and isinstance(bearing, RollingBearing):
             places[bearing.interface] = bearing.equilibrium(speed, load, cage)

@@ -30,7 +30,7 @@ from exudyn_rotor.linear.model.scene.probe import probing
 from exudyn_rotor.linear.model.scene.scene_checks import check_period, check_scene
 from exudyn_rotor.linear.model.scene.scene_coordinates import Motion, SceneCoordinates, nullspace
 from exudyn_rotor.linear.model.scene.steady_motion import steady_motion
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, spin_at_start
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 from exudyn_rotor.multibody.supports.ends import BaseEnd
 from exudyn_rotor.reduction.reduced_rotor import ModeKind
@@ -151,7 +151,7 @@ class LinearScene(SceneCoordinates):
         with probing(self, checks.number(speed, "speed", "rad/s")) as probe:
             check_period(self, probe)
             if speed == 0.0 and ModeKind.SPIN not in self.body.selection.kinds:
-                return motion_at_rest(self, probe, tolerance, spin_at_start(self.body)[0], start)
+                return motion_at_rest(self, probe, tolerance, self.body.placement.angle, start)
             return steady_motion(self, probe, tolerance, start)
 
 

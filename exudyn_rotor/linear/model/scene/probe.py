@@ -17,7 +17,6 @@ import numpy as np
 
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating, without_forces
-from exudyn_rotor.multibody.rotor.rotor_body import spin_at_start
 from exudyn_rotor.multibody.supports.connector import BearingConnector, Connector, Force
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
@@ -237,7 +236,7 @@ def probing(scene: SceneCoordinates, speed: float) -> Iterator[Probe]:
     Cages of rolling bearings stand where they are when the rotor starts.
     """
     body = scene.body
-    cage = spin_at_start(body)[0]
+    cage = body.placement.angle
     laws = [Attached(body.mbs, one.connector, cage) for one in body.supports]
     with (
         _muted(body.mbs, laws, scene.native),
