@@ -18,7 +18,7 @@ import numpy as np
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating, without_forces
 from exudyn_rotor.multibody.rotor.rotor_body import spin_at_start
-from exudyn_rotor.multibody.supports.connector import BearingConnector, Connector, Force
+from exudyn_rotor.multibody.supports.connector import Connector
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.stiffening import stiffening
@@ -27,31 +27,15 @@ _KEPT = 48  # angles whose terms of the rotor, and whose turned axes, are kept
 _LOADS = 2  # Exudyn's word for loads that depend on places and rates
 
 
-class Attached:
-    """A law that is attached to the rotor, at any state of a scene.
+class Attached(NamedTuple):
+    """A law that is attached to the rotor, and its coordinates among those of the scene."""
 
-    Attributes
-    ----------
-    connector : Connector
-    places : ndarray of int
-        Its coordinates among those of the scene.
-    """
-
-    def __init__(self, mbs: exudyn.MainSystem, connector: Connector, cage: float) -> None:
-        self.connector, self._cage = connector, cage
-        read = mbs.systemData.GetNodeLTGODE2
-        self.places = np.concatenate([read(node) for node in connector.nodes]).astype(int)
+    connector: Connector
+    places: np.ndarray
 
     def read(self, q: np.ndarray, q_t: np.ndarray) -> None:
         """Take the state of the scene."""
         self.connector.read(q[self.places].tolist(), q_t[self.places].tolist())
-
-    def force(self, t: float) -> Force:
-        """Return the law's forces on its ports where it has been read, and its tangent."""
-        made = self.connector
-        return (
-            made.tangent(t, self._cage) if isinstance(made, BearingConnector) else made.tangent(t)
-        )
 
 
 class Forces(NamedTuple):
@@ -116,7 +100,7 @@ class Probe:
         whole = np.zeros((len(self.scene.rest),) * 2)
         for one in self.laws:
             if one.connector.has_mass:
-                whole[one.places[:, None], one.places] += one.connector.inertia()[0]
+                whole[one.places[:, None], one.places] += one.connector.mass_matrix()
         return self._of_free(whole)
 
     def mass_beside(self) -> np.ndarray:
@@ -195,15 +179,10 @@ class Probe:
         force, (K, D) = np.zeros(size), np.zeros((2, size, size))
         for one in self.laws:
             one.read(q, q_t)
-            found, places = one.force(self._time(theta)), one.places
-            force[places] += found.values @ found.J
-            parts = [found.slopes()] if has_slopes else []
-            if one.connector.has_mass:
-                _, turning, *more = one.connector.inertia()
-                force[places] += turning
-                parts += [more] if has_slopes else []
-            for total, *blocks in zip((K, D), *parts, strict=True) if parts else ():
-                total[places[:, None], places] += sum(blocks)
+            force[one.places] += one.connector.forces(self._time(theta))
+            slopes = one.connector.slopes(self._time(theta)) if has_slopes else ()
+            for total, block in zip((K, D), slopes, strict=False):
+                total[one.places[:, None], one.places] += block
         return Forces(force[self.scene.free], self._of_free(K), self._of_free(D))
 
     # ------------------------------------------------------------------ states
@@ -238,9 +217,13 @@ def probing(scene: SceneCoordinates, speed: float) -> Iterator[Probe]:
     """
     body = scene.body
     cage = spin_at_start(body)[0]
-    laws = [Attached(body.mbs, one.connector, cage) for one in body.supports]
+    read = body.mbs.systemData.GetNodeLTGODE2
+    laws = [
+        Attached(made, np.concatenate([read(node) for node in made.nodes]).astype(int))
+        for made in (one.connector for one in body.supports)
+    ]
     with (
-        _muted(body.mbs, laws, scene.native),
+        _muted(body.mbs, laws, scene.native, cage),
         without_forces(body.mbs, body.objects["physics"]),
         evaluating(body.mbs) as solver,
     ):
@@ -249,21 +232,24 @@ def probing(scene: SceneCoordinates, speed: float) -> Iterator[Probe]:
 
 @contextmanager
 def _muted(
-    mbs: exudyn.MainSystem, laws: Sequence[Attached], native: Sequence[exudyn.ObjectIndex]
+    mbs: exudyn.MainSystem,
+    laws: Sequence[Attached],
+    native: Sequence[exudyn.ObjectIndex],
+    cage: float,
 ) -> Iterator[None]:
     """Let objects of the laws be without force, the `native` ones inactive."""
 
-    def let(muted: bool) -> None:
+    def let(probed: float | None) -> None:
         for one in laws:
-            one.connector.muted = muted
+            one.connector.probed = probed
         for number in native:
-            mbs.SetObjectParameter(number, "activeConnector", not muted)
+            mbs.SetObjectParameter(number, "activeConnector", probed is None)
 
-    let(True)
+    let(cage)
     try:
         yield
     finally:
-        let(False)
+        let(None)
 
 
 class LinearPoint(NamedTuple):

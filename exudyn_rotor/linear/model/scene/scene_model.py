@@ -119,7 +119,7 @@ class SceneModel(LinearModel):
         one = self.scene.body.supports[number]
         ends = {one.support.interface: one.connector.base}
         sensor = getattr(one.support, "sensor_interface", None)
-        return ends if sensor is None else ends | {sensor: one.connector.sensor_base}
+        return ends if sensor is None else ends | {sensor: one.connector.seen.base}
 
     @cached_property
     def _standing_bodies(self) -> list[StandingBody]:
@@ -385,7 +385,7 @@ def _under_load(given: Given, law: Attached, speed: float, least: float) -> Give
         return Support(given.interface, *given.coefficients_at(place, speed))
     if isinstance(given, ClearanceStop):
         return Support(given.interface, *given.slopes(*place, 0.0, 0.0, 0.0, speed))
-    load = -law.force(0.0).values[:2]
+    load = -np.array(law.connector.wrench(0.0)[:2])
     load[np.abs(load) <= least] = 0.0
     if np.abs(load - given.load).max() <= _SAME_LOAD * np.abs(load).max():
         return given  # it remembers its coefficients
