@@ -9,6 +9,7 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
+from exudyn_rotor.linear.model.scene.steady_motion import steady_motion
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState, spin_at_start
 from exudyn_rotor.theory.rotating_axes import axial_rotation
@@ -205,7 +206,7 @@ def steady_state(
     scene = LinearScene.of(body.mbs, body)
     speed = spin_at_start(body)[1] if speed is None else checks.number(speed, "speed", "rad/s")
     begin = None if start is None else _begin(scene, start)
-    found = SteadyState(scene, speed, *scene.steady_motion(speed, tolerance, begin))
+    found = SteadyState(scene, speed, *steady_motion(scene, speed, tolerance, begin))
     if speed and found.left_out > max(tolerance, _TOLD):
         warnings.warn(
             f"rotor {body.name!r}: {found.left_out:.0e} of the motion is left to higher harmonics, "
