@@ -292,7 +292,6 @@ CALLS = {
         "nodes": w.SolidRotor.nodes,
         "interfaces": {"left": [0, 1, 2, 3]},
     },
-    "ReducedRotor.stress_of": lambda w: {"coordinates": np.zeros(w.ReducedRotor.size)},
     "SolidRotor.from_mesh": lambda w: {
         "mesh": _cube(),
         "materials": STEEL,
