@@ -70,8 +70,8 @@ class Kernel:
     rows, columns : ndarray of int
         Places of the entries of the mass matrix that vary, on or above the diagonal or its mirror
         image; the inertia about the axis (85), if it is an unknown's, is the first.
-    has_modal_forces, has_forces : bool
-        Whether the constant part leaves out inertia forces on the modes, and any force at all.
+    has_modal_forces : bool
+        Whether the constant part leaves out inertia forces on the modes.
     """
 
     def __init__(self, motion: FloatingFrame, unknowns: Sequence[int], size: int) -> None:
@@ -92,7 +92,6 @@ class Kernel:
         self._spin = int(places[form.translation_count]) if form.has_spin else None
         self._varies = form.has_spin and not form.has_frozen_spin  # the spin's own inertia
         self.has_modal_forces = not form.is_constant_speed
-        self.has_forces = self.has_modal_forces or motion.is_coupled or motion.has_body_force
         self._force, self._jacobian = np.zeros(size), np.zeros((size, size))
         self._modal_force = self._force[self._first :]
         self._stack(motion)

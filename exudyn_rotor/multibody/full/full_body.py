@@ -154,13 +154,7 @@ class FullRotorBody(SceneBody):
 
 
 def reduced_body(body: object, how: str = "add_rotor returned it") -> RotorBody:
-    """Return a rotor body in component modes, which analyses of a scene need.
-
-    Raises
-    ------
-    TypeError
-        For a full body, or anything else.
-    """
+    """Return a rotor body in component modes, which analyses of a scene need."""
     if isinstance(body, FullRotorBody):
         raise TypeError(
             f"body: rotor {body.name!r} is a full body, whose displacements of all nodes this "
