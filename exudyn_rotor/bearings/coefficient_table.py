@@ -205,10 +205,10 @@ def _columns(source: str | Path | Any) -> dict[str, np.ndarray]:
         )
     columns = {}
     for name, values in source.items():
+        what = f"source: {str(name)!r}"
         try:
-            columns[str(name)] = np.asarray(values, dtype=float)
+            numbers = np.asarray(values, dtype=float)
         except (TypeError, ValueError):
-            raise ValueError(f"source: {str(name)!r}: needs numbers, got other text") from None
-        if not np.all(np.isfinite(columns[str(name)])):
-            raise ValueError(f"source: {str(name)!r}: needs finite numbers in every row")
+            raise ValueError(f"{what}: needs numbers, got other text") from None
+        columns[str(name)] = checks.vector(numbers, what, size=None)
     return columns
