@@ -176,7 +176,7 @@ class Balance:
         across = (k[:, None] - k) % A, (n[:, None] - n) % B
         if mean:
             spectrum[1:], spectrum[:, 1:] = 0.0, 0.0
-        G = _by_displacement(spectrum[across], self.nu).swapaxes(1, 2)
+        G = _by_displacement(spectrum[across], self.nu)
         J = np.eye(h * d) - self.answered(G).reshape(h * d, h * d)
         left = c - self.given - self.answered(self.harmonics(g))
         return left, J
@@ -207,7 +207,7 @@ class Balance:
 
     def holds(self, c: np.ndarray) -> bool:
         """Return whether laws and rest hold the mean place of a motion: not in a clearance."""
-        mean = _by_displacement(self.forces(c)[1].mean(axis=0), np.zeros(1))[0]
+        mean = _by_displacement(self.forces(c)[1].mean(axis=0), np.zeros(1))[:, 0]
         rows, _, H = self.receptances[0]
         H = H[list(rows).index(len(c) // 2)]
         return bool(np.linalg.norm(np.eye(len(mean)) - H @ mean, -2) > _FREE)
@@ -229,7 +229,7 @@ class Balance:
         A, B = self.points
         spectrum = np.where(out[:, None], self.spectrum(g)[k % A, n % B], 0.0)
         moved = np.where(out[:, None], beyond.answered(spectrum) + beyond.given, 0.0)
-        G = _by_displacement(slopes.mean(axis=0), beyond.nu)
+        G = _by_displacement(slopes.mean(axis=0), beyond.nu).swapaxes(0, 1)
         rows, _, H = beyond.receptances[0]
         J = np.eye(c.shape[1]) - H @ G[rows]
         moved = np.linalg.solve(J, moved[rows][..., None])[..., 0]
@@ -240,13 +240,13 @@ class Balance:
 
 
 def _by_displacement(slopes: np.ndarray, nu: np.ndarray) -> np.ndarray:
-    """Return derivatives (…, h, d, d) by harmonics of displacements, of slopes (…, h, b, 2, 4)."""
+    """Return derivatives (…, d, h, d) by harmonics of displacements, of slopes (…, h, b, 2, 4)."""
     each = slopes[..., :2] + 1j * nu[:, None, None, None] * slopes[..., 2:]
-    *rest, count, _, _ = each.shape
-    found = np.zeros((*rest, count, 2, count, 2), dtype=complex)
+    *rest, h, count, _, _ = each.shape
+    found = np.zeros((*rest, count, 2, h, count, 2), dtype=complex)
     for b in range(count):
-        found[..., b, :, b, :] = each[..., b, :, :]
-    return found.reshape(*rest, 2 * count, 2 * count)
+        found[..., b, :, :, b, :] = each[..., b, :, :].swapaxes(-3, -2)
+    return found.reshape(*rest, 2 * count, h, 2 * count)
 
 
 def orders_of(reach: tuple[int, int]) -> np.ndarray:

@@ -169,7 +169,8 @@ class Problem:
     def at_rest(self, speed: float) -> np.ndarray:
         """Return the mean place of the journals under static loads, c (1, d)."""
         balance = self.balance(speed, (0, 0), unbalance=0.0)
-        for c in (self._pressed(balance), np.zeros_like(balance.given), balance.given):
+        pressed = self._pressed(balance.given.real, speed) + 0j
+        for c in (pressed, np.zeros_like(balance.given), balance.given):
             try:
                 return balance.solved(c)
             except UnconvergedError as failed:
@@ -191,19 +192,21 @@ class Problem:
         except (UnconvergedError, np.linalg.LinAlgError):
             pass
         if self.unbalance:  # a rotor that unbalance alone presses: the whirl of a larger one
-            c = self._pressed(of(self.reach, _MORE_UNBALANCE[0]))
+            most = of(self.reach, _MORE_UNBALANCE[0])
+            c = most.harmonics(self._pressed(most.values(most.given), most.rest.speed))
             for more in _MORE_UNBALANCE:
                 c = of(self.reach, more).solved(c, _ROUGH)
             yield balance, c
 
-    def _pressed(self, balance: Balance) -> np.ndarray:
-        """Return harmonics of a motion in which each load is on one element, wherever it is."""
-        loads = self.laws.springs * balance.values(balance.given)
-        places = np.zeros((len(loads), len(self.laws.bearings), 2))
+    def _pressed(self, moved: np.ndarray, speed: float) -> np.ndarray:
+        """Return places (t, d) where the journals rest under what moves the springs (t, d)."""
+        loads = self.laws.springs * moved
+        places = np.zeros_like(loads)
         for b, (one, ratio) in enumerate(zip(self.laws.bearings, self.laws.ratios, strict=True)):
-            for place, load in zip(places[:, b], loads[:, 2 * b : 2 * b + 2], strict=True):
-                place[:] = _resting(one, ratio * balance.rest.speed, load)
-        return balance.harmonics(places.reshape(loads.shape))
+            pair = slice(2 * b, 2 * b + 2)
+            for place, load in zip(places[:, pair], loads[:, pair], strict=True):
+                place[:] = _resting(one, ratio * speed, load)
+        return places
 
 
 def _resting(one: Bearing, speed: float, load: np.ndarray) -> np.ndarray:
