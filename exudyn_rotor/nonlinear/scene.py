@@ -18,8 +18,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.model.build import Target
-from exudyn_rotor.linear.model.scene.scene_checks import check_scene
-from exudyn_rotor.linear.model.scene.scene_coordinates import known_objects
+from exudyn_rotor.linear.model.scene.linear_scene import check_scene, known_objects
 from exudyn_rotor.linear.model.scene.scene_train import scene_train
 from exudyn_rotor.linear.response.loads import HarmonicForce
 from exudyn_rotor.multibody.full.full_body import reduced_body
