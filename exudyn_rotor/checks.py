@@ -334,15 +334,13 @@ def vector(values: ArrayLike, name: str, unit: str = "", size: int | None = 3) -
     return array(values, name, unit, shape=(size,))
 
 
-def over_time(values: ArrayLike, name: str, unit: str, count: int) -> np.ndarray:
-    """Return a number for each of some times, given so or as one for all."""
-    result = array(values, name, unit)
-    if result.shape not in ((), (count,)):
-        raise ValueError(
-            f"{name}: needs one number, or one for each of the {count} times, got the shape "
-            f"{result.shape}"
-        )
-    return np.broadcast_to(result, count)
+def one_or_each(values: ArrayLike, name: str, unit: str, size: int, **bounds: float) -> np.ndarray:
+    """Return a vector (size,) of numbers within bounds, given as one for all or as many."""
+    given = array(values, name, unit)
+    found = np.full(size, given) if given.ndim == 0 else vector(values, name, unit, size)
+    for each in found.tolist() if bounds else ():
+        number(each, name, unit, **bounds)
+    return read_only(found)
 
 
 def whole_numbers(values: ArrayLike, name: str, *, least: int = 0, most: int = MOST) -> np.ndarray:

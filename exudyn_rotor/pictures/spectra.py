@@ -212,7 +212,7 @@ def spectra(
         raise ValueError(
             f"motion: needs the shape ({len(time)},) or ({len(time)}, 2), got {values.shape}"
         )
-    speeds, step = checks.over_time(speed, "speed", "rad/s", len(time)), _even_step(time)
+    speeds, step = checks.one_or_each(speed, "speed", "rad/s", len(time)), _even_step(time)
     length = checks.number(length, "length", "s", above=0.0)
     overlap = checks.number(overlap, "overlap", least=0.0, below=1.0)
     size = round(length / step)

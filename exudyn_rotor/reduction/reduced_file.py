@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import fields
 from functools import partial
 from os import PathLike
@@ -51,49 +50,44 @@ def _entries(rotor: Rotor) -> dict[str, object]:
     return data
 
 
-def load_reduced(
-    path: str | PathLike, make: Callable[..., Rotor], parts: Mapping[str, type]
-) -> Rotor:
-    """Read a rotor from `path`; `make` is the class :class:`ReducedRotor`.
-
-    `parts` are the classes of its kinds of modes, interfaces, shapes and static fields.
+def load_reduced(path: str | PathLike, classes: tuple[type, ...]) -> Rotor:
+    """Read a rotor from `path`; `classes` are its own and those of its parts.
 
     OSError when there is no such file; ValueError when it is damaged or describes no reduced rotor.
     """
     data = {name: plain(value) for name, value in read_arrays(path, _KIND).items()}
     try:
-        return make(**_fields(data, make, parts))
+        return _rotor(data, classes)
     except (KeyError, TypeError, ValueError) as error:
         raise ValueError(
             f"{path}: describes no reduced rotor, or was written by another version ({error})"
         ) from error
 
 
-def _fields(
-    data: dict[str, Any], make: Callable[..., Rotor], parts: Mapping[str, type]
-) -> dict[str, Any]:
-    """Return the constructor's arguments; the classes check what they are made of."""
+def _rotor(data: dict[str, Any], classes: tuple[type, ...]) -> Rotor:
+    """Return a rotor of all entries; the classes check what they are made of."""
+    make, mode_kind, interface, shapes, centrifugal = classes
     attached = _taken(data, _ATTACHED)
     found = {
         "axis": SpinAxis(*data.pop("axis")),
         "invariants": Invariants(**_taken(data, "invariants.")),
-        "rigid_kinds": tuple(parts["rigid_kinds"][name] for name in data.pop("rigid_kinds")),
+        "rigid_kinds": tuple(mode_kind[name] for name in data.pop("rigid_kinds")),
         "interfaces": {
-            name: parts["interfaces"](**_taken(data, f"interface{index}."))
+            name: interface(**_taken(data, f"interface{index}."))
             for index, name in enumerate(data.pop("interface_names"))
         },
     }
-    for name in ("shapes", "centrifugal"):
+    for name, kind in (("shapes", shapes), ("centrifugal", centrifugal)):
         values = _taken(data, f"{name}.")
-        found[name] = parts[name](**values) if values else None
+        found[name] = kind(**values) if values else None
     if attached:
-        finer = make(**_fields(attached, make, parts))
+        finer = _rotor(attached, classes)
         shape = finer.size, found["invariants"].size
         columns = checks.array(data.pop(_IN_ATTACHED), _IN_ATTACHED, shape=shape)
         if finer.interfaces.keys() != found["interfaces"].keys():
             raise ValueError("with_attachments: needs the interfaces of the rotor")
         found["attached"] = partial(tuple, (finer, columns))
-    return found | data
+    return make(**found, **data)
 
 
 def _taken(data: dict[str, Any], prefix: str) -> dict[str, Any]:

@@ -99,17 +99,12 @@ class StressField(Result):
                 f"selection: it is of another rotor, {selection.source!r}, than {reduced!r}; take "
                 "the one that was added to the scene, or select_modes(reduced, formulation)"
             )
-        if reduced.shapes is None or reduced.shapes.stress is None:
-            raise ValueError(
-                "reduced: the rotor was reduced without stress modes; use reduce(…, stress=True) "
-                "with a model from NGSolve, and keep the shapes"
-            )
-        columns = reduced.shapes.stress
+        rest = reduced.unshown_stress
         return cls(
             positions=reduced.shapes.nodes,
             triangles=reduced.shapes.triangles,
-            modes=columns @ selection.T,
-            rest=reduced.unshown_stress,
+            modes=reduced.shapes.stress @ selection.T,
+            rest=rest,
             has_static=getattr(reduced.centrifugal, "stress", None) is not None,
         )
 
@@ -149,7 +144,7 @@ class StressField(Result):
         """Return the stress of (s, m) coordinates at s speeds (s, n, 6) [Pa]; see :meth:`at`."""
         shape = (None, self.modes.shape[2])
         values = checks.array(modal_coordinates, "modal_coordinates", shape=shape)
-        speed = checks.over_time(speed, "speed", "rad/s", len(values))
+        speed = checks.one_or_each(speed, "speed", "rad/s", len(values))
         if not isinstance(nodes, slice):
             nodes = checks.whole_numbers(nodes, "nodes", most=len(self.positions) - 1)
         dynamic = np.einsum("nck,sk->snc", self.modes[nodes], values, optimize=True)

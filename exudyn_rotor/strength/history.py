@@ -171,7 +171,7 @@ def stress_history(
         raise ValueError("time: needs at least one instant, got none")
     shape = time.size, checks.instance(field, "field", StressField, how).modes.shape[2]
     coordinates = checks.array(modal_coordinates, "modal_coordinates", shape=shape)
-    speed = checks.over_time(speed, "speed", "rad/s", time.size)
+    speed = checks.one_or_each(speed, "speed", "rad/s", time.size)
     count = checks.count(count, "count", least=1)
     warn_without_static(field, speed)
     peak, when = _envelope(field, coordinates, speed)

@@ -190,7 +190,7 @@ ELSEWHERE = {
     "linear/model/build.py:warn_of_structural_damping": "campbell finds modes without it",
     "multibody/add_rotor.py:_add_reduced": "A scene runs without it",
     "solvers/factor.py:_tell_of_mkl": "exudyn-rotor\\[mkl\\]",
-    "solid/meshes/mesh_data.py:warn": "taken as",
+    "solid/meshes/mesh_model.py:import_model": "taken as",
     "theory/stiffening.py:warn_of_left_out": "beyond 'tilt' is left out",
     "ross.py:_check_held": "of shaft elements are left out",
     "bearings/tilting_pad.py:_of_pads": "carry nothing at",

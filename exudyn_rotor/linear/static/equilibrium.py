@@ -14,13 +14,13 @@ from typing import NamedTuple
 import numpy as np
 
 from exudyn_rotor.bearings.resting import (
+    HELD,
+    UNLOADED,
     Nonlinear,
     Resting,
     RigidBearing,
-    held,
     resting,
     starting_place,
-    unloaded,
 )
 from exudyn_rotor.linear.equations import UnconvergedError, others
 from exudyn_rotor.linear.solve.forced import static_motion
@@ -54,7 +54,7 @@ def equilibrium(
     basis = others(driven)
     K, load = basis.T @ K @ basis, basis.T @ load
     journals = [one._replace(U=one.U @ basis, U_s=one.U_s @ basis) for one in journals]
-    begin = [held() if one.bearing.carries else unloaded() for one in journals]
+    begin = [HELD if one.bearing.carries else UNLOADED for one in journals]
     y, R = _solved(K, load, journals, begin)
     if y is None or all(isinstance(one.bearing, RigidBearing) for one in journals):
         return (None if y is None else basis @ y), R
