@@ -246,11 +246,12 @@ class _Sweep:
         self._warn_of_missing(values, found)
         motions = self.joined(self._seen(observed, found), values)
         errors = basis_errors(model, accuracy, values, motions, self._at_places)
-        if errors is not None and np.any(np.isfinite(errors)):
-            at, place = np.unravel_index(np.nanargmax(errors), errors.shape)
-            where = f"{Units.of(self.unit).speeds(values[at]):.5g} {self.unit}"
-            what = f"the motion of {observed[place].label!r} at {where}"
-            warn(errors, what, model, accuracy)
+
+        def told(row: int, place: int) -> str:
+            where = f"{Units.of(self.unit).speeds(values[row]):.5g} {self.unit}"
+            return f"the motion of {observed[place].label!r} at {where}"
+
+        warn(errors, told, model, accuracy)
         orders, motion = _collected(motions, observed, self.tolerance, model.radius)
         return values, {
             "places": tuple(one.label for one in observed),
