@@ -334,6 +334,15 @@ def vector(values: ArrayLike, name: str, unit: str = "", size: int | None = 3) -
     return array(values, name, unit, shape=(size,))
 
 
+def one_or_each(values: ArrayLike, name: str, unit: str, size: int, **bounds: float) -> np.ndarray:
+    """Return a vector (size,) of numbers within bounds, given as one for all or as many."""
+    given = array(values, name, unit)
+    found = np.full(size, given) if given.ndim == 0 else vector(values, name, unit, size)
+    for each in found.tolist():
+        number(each, name, unit, **bounds)
+    return read_only(found)
+
+
 def whole_numbers(values: ArrayLike, name: str, *, least: int = 0, most: int = MOST) -> np.ndarray:
     """Return a read-only array (k,) of whole numbers within limits, both included."""
     result = array(values, name, shape=(None,), dtype=int)

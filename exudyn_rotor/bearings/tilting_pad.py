@@ -27,7 +27,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, Equilibria, Linearised
+from exudyn_rotor.bearings.bearing import Bearing, Equilibria, Force, Linearised, Pair
 from exudyn_rotor.bearings.controlled_support import ControlledSupport
 from exudyn_rotor.bearings.film.film import FilmState, OilFilm
 from exudyn_rotor.bearings.film.pads import direction
@@ -103,9 +103,7 @@ class TiltingPadBearing(Bearing):
         if self.film.pads[0].closed:
             raise ValueError(f"film: bearing at {self.interface!r}: needs pads with gaps between")
 
-    def law(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[float, float]:
+    def law(self, x: float, y: float, vx: float, vy: float, angle: float, speed: float) -> Force:
         """Refuse: the force depends on the pads' tilts, too."""
         raise ValueError(
             f"bearing at {self.interface!r}: tilting pads have no force by place and velocity "
@@ -143,7 +141,7 @@ class TiltingPadBearing(Bearing):
         """
         return -self._state(speed, self._static_load(load)).shifts / self.film.radius
 
-    def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _matrices(self, speed: float, load: np.ndarray) -> Pair:
         """Return stiffness and damping of (2), of pads with inertia by (1)."""
         Z = self._state(speed, load).impedance(abs(speed), self.pad_mass)
         return Z.real, Z.imag / abs(speed)

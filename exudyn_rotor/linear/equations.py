@@ -231,7 +231,10 @@ def states_of(system: PeriodicSystem) -> States:
     root = None
     if np.any(np.eye(k) != M):  # Lᵀx are mass-orthonormal coordinates
         root = _transposed(np.linalg.inv(np.linalg.cholesky(M)))
-    D, K = _terms(system, root)
+    D, K = system.D, system.K
+    if root is not None:
+        inverse = _transposed(root)
+        D, K = ({n: inverse @ X @ root for n, X in terms.items()} for terms in (D, K))
     symmetric = 0.5 * (K[0] + _transposed(K[0]))
     squares, V = np.linalg.eigh(symmetric)
     omega = np.sqrt(np.abs(squares))
@@ -256,58 +259,37 @@ def _transposed(X: np.ndarray) -> np.ndarray:
     return np.swapaxes(X, -1, -2)
 
 
-def _terms(system: PeriodicSystem, root: np.ndarray | None) -> tuple[dict, dict]:
-    """Return damping and stiffness per unit of mass; at rest the sum of all harmonics."""
-    D, K = system.D, system.K
-    if np.ndim(system.speed) == 0 and system.speed == 0.0:
-        _, D, K = system.matrices()
-        D, K = {0: D}, {0: K}
-    if root is None:
-        return dict(D), dict(K)
-    across = _transposed(root)
-    return tuple({n: across @ X @ root for n, X in terms.items()} for terms in (D, K))
-
-
 def free_directions(stack: PeriodicSystem) -> np.ndarray:
     """Return motions that neither stiffness nor damping resist at the first and last speed.
 
     Columns, mass-orthonormal, shape (k, f). Coordinates by themselves come as they are.
     """
-    k, M = stack.size, stack.M if stack.M.ndim == 2 else stack.M[0]
+    M = stack.M if stack.M.ndim == 2 else stack.M[0]
     ends = [0, -1] if len(stack.speed) > 1 else [0]
     matrices = [X[i] for terms in (stack.D, stack.K) for X in terms.values() for i in ends]
     parts = [part for X in matrices for part in (X.real, X.imag) if np.any(part)]
-    if not parts:
-        return _orthonormal(np.eye(k), M)
-    rows, columns = (np.max([np.abs(X).max(axis=axis) for X in parts], axis=0) for axis in (1, 0))
-    size = np.maximum(rows, columns)
-    alone = size <= _FREE * size.max()
-    scale = 1.0 / np.sqrt(np.where(alone, 1.0, size))
-    stack = np.vstack([(scale[:, None] * X * scale)[:, ~alone] for X in parts])
-    _, values, vectors = np.linalg.svd(stack, full_matrices=False)
-    free = np.zeros((k, int(alone.sum()) + int((values <= _FREE * values[0]).sum())))
-    free[np.flatnonzero(alone), np.arange(int(alone.sum()))] = 1.0
-    combined = vectors[values <= _FREE * values[0]].T
-    free[~alone, int(alone.sum()) :] = scale[~alone, None] * combined
-    return _orthonormal(free, M)
+    free = np.eye(stack.size)
+    if parts:
+        size = np.max([np.abs(X).max(axis=axis) for X in parts for axis in (0, 1)], axis=0)
+        alone = size <= _FREE * size.max()
+        scale = 1.0 / np.sqrt(np.where(alone, 1.0, size))
+        acting = np.where(alone, 0.0, scale)
+        rows = np.vstack([acting[:, None] * X * acting for X in parts])
+        free = scale[:, None] * others(np.linalg.qr(rows, mode="r").T, _FREE)
+    if not free.shape[1]:
+        return free
+    return la.solve_triangular(la.cholesky(free.T @ M @ free, lower=True), free.T, lower=True).T
 
 
-def _orthonormal(columns: np.ndarray, M: np.ndarray) -> np.ndarray:
-    if not columns.shape[1]:
-        return columns
-    return la.solve_triangular(
-        la.cholesky(columns.T @ M @ columns, lower=True), columns.T, lower=True
-    ).T
-
-
-def others(columns: np.ndarray) -> np.ndarray:
+def others(columns: np.ndarray, rounding: float | None = None) -> np.ndarray:
     """Return what is orthogonal to columns (k, f), orthonormal, as columns (k, k − f).
 
-    Coordinates that the columns do not touch stay as they are.
+    Coordinates that the columns do not touch stay as they are. Singular values of columns are zero
+    up to the share `rounding` of the largest.
     """
     size = np.abs(columns).max(axis=1, initial=0.0)
     touched = np.flatnonzero(size > 1e-12 * size.max(initial=0.0))
-    rest = la.null_space(columns[touched].T)
+    rest = la.null_space(columns[touched].T, rcond=rounding)
     untouched = np.setdiff1d(np.arange(len(columns)), touched)
     basis = np.zeros((len(columns), len(untouched) + rest.shape[1]))
     basis[untouched, np.arange(len(untouched))] = 1.0

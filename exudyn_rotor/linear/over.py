@@ -46,8 +46,16 @@ def motions_over(
     with tqdm(total=len(speeds), desc=label or None, disable=not progress) as bar:
         given = {"held": held, "least_stable": least_stable, "told": bar.update}
         found = motions_in(model, model.at_all(speeds), method, tolerance, **given)
-    if not model.over_frequency:
-        _warn_of_lost(found.lost)
+    if found.lost:
+        speeds = ", ".join(f"{speed:.4g}" for speed in found.lost[:5])
+        warnings.warn(
+            "the harmonics of an uneven rotor on uneven supports do not converge for all motions "
+            f"at {speeds}{' …' * (len(found.lost) > 5)} rad/s, which are NaN there: at a speed "
+            "that is small beside the difference of the frequencies in the rotor's two planes "
+            "they are too many",
+            UserWarning,
+            stacklevel=user_level(),
+        )
     return found
 
 
@@ -103,20 +111,6 @@ def forced_over(
         stack = model.at_all(np.full(len(rates), speed), rates)
         found |= forced_motions(stack, {n: load}, frequencies, **options)
     return found
-
-
-def _warn_of_lost(speeds: Sequence[float]) -> None:
-    """Warn of speeds at which motions of periodic equations were not found."""
-    if not speeds:
-        return
-    shown = ", ".join(f"{speed:.4g}" for speed in speeds[:5]) + (" …" if len(speeds) > 5 else "")
-    warnings.warn(
-        f"the harmonics of an uneven rotor on uneven supports do not converge for all motions at "
-        f"{shown} rad/s, which are NaN there: at a speed that is small beside the difference of "
-        "the frequencies in the rotor's two planes they are too many",
-        UserWarning,
-        stacklevel=user_level(),
-    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,7 @@ import warnings
 import numpy as np
 
 from exudyn_rotor.calls import user_level
-from exudyn_rotor.linear.equations import PeriodicSystem, joined
+from exudyn_rotor.linear.equations import PeriodicSystem
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.solve.motions import REAL, Motions, joined_motions, motions_of
 
@@ -66,7 +66,7 @@ def _at_speed(model: LinearModel, speed: float) -> Motions:
     wanted = np.unique([*ends, min(max(abs(speed), ends[0]), ends[1])])
     samples, parts = np.zeros(0), []
     for sweep in range(_MOST):
-        systems = joined([model.at(speed, float(each)) for each in wanted])
+        systems = model.at_all(np.full(len(wanted), speed), wanted)
         parts.append(motions_of(systems if basis is None else systems.projected(basis)))
         samples = np.concatenate([samples, wanted])
         values = np.concatenate([part.values for part in parts])

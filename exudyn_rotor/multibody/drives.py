@@ -24,8 +24,8 @@ from exudyn_rotor.multibody.supports.connector import (
     SYMBOLIC,
     Body,
     Connector,
-    Force,
     SceneLaw,
+    Tangent,
     check_body,
 )
 from exudyn_rotor.multibody.supports.ends import Base, BaseEnd, GroundEnd, RotorEnd, Seat
@@ -146,7 +146,7 @@ def add_drive(
         added = _on_the_spin(body, drive)
     else:
         check_turning_interface(body, at, "at")
-        made = DriveConnector(drive, RotorEnd(body, at), Seat.of(body, at, base).end(body.mbs))
+        made = DriveConnector(drive, RotorEnd(body, at), Seat.of(body, at, base).end)
         number = body.mbs.AddObject(made.item())
         added = SceneDrive(body, (number,), (PYTHON,), made, drive, at)
     body.drives.append(added)
@@ -196,12 +196,12 @@ class DriveConnector(Connector):
         """Return the torque on the rotor."""
         return 0.0, 0.0, 0.0, (0.0, 0.0, float(self._law(self.speed, t)))
 
-    def tangent(self, t: float) -> Force:
-        """Return the torque, its derivative by the speed, and the row (1, size)."""
+    def tangent(self, t: float) -> Tangent:
+        """Return the derivative of the torque by the speed, with the row (1, size)."""
         torque, step = self._law(self.speed, t), SPEED_STEP * max(abs(self.speed), 1.0)
         damping = np.array([[(torque - self._law(self.speed + step, t)) / step]])
         rows = self.rows()[5:], self.rate_rows()[5:]
-        return Force(np.array([torque]), *rows, 0.0 * damping, damping)
+        return *rows, 0.0 * damping, damping
 
 
 @dataclass(frozen=True, eq=False)
@@ -235,7 +235,7 @@ class SceneConnection(SceneLaw):
         """
         law, made = self.connection, self.connector
         made.read(*made.state(self.body.mbs, configuration))
-        x, x_t = made.motion()
+        x, x_t = made.motion
         return law.transmitted(x, x_t), law.energy(x), law.loss(x, x_t)
 
     def __str__(self) -> str:
@@ -366,6 +366,7 @@ class RotorConnector(Connector):
         self.end.read(q[:first], q_t[:first])
         self._other.read(q[first:], q_t[first:])
 
+    @property
     def motion(self) -> tuple[np.ndarray, np.ndarray]:
         """Return motion and rate of both ends, each (12,)."""
         pairs = zip(self.end.motion, self._other.motion, strict=True)
@@ -381,14 +382,12 @@ class RotorConnector(Connector):
 
     def wrench(self, t: float) -> tuple[np.ndarray]:
         """Return the forces on all coordinates."""
-        return (self._law.forces(*self.motion()) @ self.rows(),)
+        return (self._law.forces(*self.motion) @ self.rows(),)
 
     def pull(self, forces: np.ndarray) -> list[float]:
         """Return the forces on all coordinates as a list."""
         return forces.tolist()
 
-    def tangent(self, t: float) -> Force:
-        """Return the law's forces on both ends, its tangent, and rows (12, size)."""
-        x, x_t = self.motion()
-        rows = self.rows(), self.rate_rows()
-        return Force(self._law.forces(x, x_t), *rows, *self._law.tangent(x, x_t))
+    def tangent(self, t: float) -> Tangent:
+        """Return the law's tangent, with rows (12, size) of both ends."""
+        return self.rows(), self.rate_rows(), *self._law.tangent(*self.motion)

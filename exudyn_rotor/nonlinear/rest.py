@@ -44,7 +44,7 @@ def _journals(model: LinearModel, names: tuple[str, ...], moves: bool) -> Terms:
     speed, basis, found = float(moves), resisted(model), []
     for name in names:
         outer = ON_FOUNDATION.format(name)
-        against = model.seen(outer, speed) if outer in model.standing_interfaces else {}
+        against = model.seen(outer, speed) if outer in model.interfaces else {}
         moved = difference(model.seen(name, speed), against)
         moved.setdefault(0, np.zeros((6, model.size)))
         waves = moved if model.turns else [0]  # supports act on the mean motion

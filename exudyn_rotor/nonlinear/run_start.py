@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState
 from exudyn_rotor.nonlinear.scene import check_origin, foundation_below
 from exudyn_rotor.reduction.reduced_rotor import ModeKind
@@ -41,7 +41,7 @@ def state_in_scene(
             f"response {len(x) - beside} and {beside}; compute it with the reduced rotor and the "
             "foundation of the scene"
         )
-    scene = SceneCoordinates.of(body)
+    scene = LinearScene.of_rotor(body)
     rest = scene.rest.copy()
     rest[scene.free[: scene.count]] = 0.0
     (y, turn), (y_t, turn_t) = (in_body(body, each[:size]) for each in (x, x_t))

@@ -16,7 +16,7 @@ import numpy as np
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.model.build import Target
-from exudyn_rotor.linear.model.scene.scene_checks import check_scene
+from exudyn_rotor.linear.model.scene.linear_scene import check_scene
 from exudyn_rotor.linear.model.scene.scene_train import scene_train
 from exudyn_rotor.linear.response.loads import HarmonicForce
 from exudyn_rotor.multibody.full.full_body import reduced_body

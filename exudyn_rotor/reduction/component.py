@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import scipy.linalg
@@ -14,7 +15,7 @@ from exudyn.FEM import FEMinterface
 from exudyn_rotor import checks
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.checks import Checked, numbers, words
-from exudyn_rotor.reduction.reduced_rotor import ModeKind, rigid_names
+from exudyn_rotor.reduction.reduced_rotor import RIGID_KINDS, ModeKind, rigid_names
 from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers import modes as eigen
@@ -25,8 +26,6 @@ from exudyn_rotor.solvers.inertia_relief import (
 )
 from exudyn_rotor.theory.axis import SpinAxis, rotations, translations
 
-# of the median: beside stiffer springs dense eigenvalues of the rest lose digits
-_GRADED = 1e4
 # share of a column that is new, and length of a column, of the largest, that is rounding
 NEW, _NOTHING = 1e-7, 1e-12
 _APART = 2e-2  # relative distance of the frequencies of a pair, at most
@@ -125,18 +124,10 @@ def free_modes(rotor: FiniteElementRotor, count: int) -> ModeBasis:
     check_rotor(rotor)
     stiffness, mass = rotor.stiffness, rotor.mass
     rigid = free_motions_of(rotor)
-    size, rigid_count = rigid.shape
-    check_count(count, size - rigid_count, smallest=1)
-    graded = stiffness.diagonal().max() > _GRADED * np.median(stiffness.diagonal())
-
-    def solve(number: int) -> eigen.Modes:
-        if eigen.is_small(size, number) and not (graded and 4 * number <= size):
-            dense = stiffness.toarray(), mass.toarray()
-            return eigen.dense_modes(*dense, number, skip=rigid_count)
-        inverse = inertia_relief(rotor)
-        return eigen.lowest_modes(stiffness, mass, inverse, number)
-
-    values, modes = lowest_with_pairs(solve, count, size - rigid_count)
+    available = rigid.shape[0] - rigid.shape[1]
+    checks.count(count, "count", least=1, most=available)
+    solve = partial(eigen.lowest_modes, stiffness, mass, inertia_relief(rotor))
+    values, modes = lowest_with_pairs(solve, count, available)
     precision = relative_rounding(stiffness, rigid)
     eigen.check_modes(stiffness, mass, values, modes, precision=precision)
     modes = with_fixed_sign(modes)
@@ -241,15 +232,6 @@ def unit_columns(rotor: FiniteElementRotor, columns: np.ndarray) -> np.ndarray:
     return columns[:, sizes > 0.0] / sizes[sizes > 0.0]
 
 
-def check_count(count: int, available: int, *, smallest: int) -> None:
-    """Refuse a number of eigenmodes that the model cannot have."""
-    if not smallest <= checks.count(count, "count", least=smallest) <= available:
-        raise ValueError(
-            f"count: {count} eigenmodes asked for; this model has between {smallest} and "
-            f"{available}"
-        )
-
-
 def check_rotor(rotor: FiniteElementRotor) -> None:
     """Refuse anything that is not a solid rotor."""
     checks.instance(rotor, "rotor", FiniteElementRotor, "SolidRotor.from_ngsolve(…) makes one")
@@ -257,20 +239,11 @@ def check_rotor(rotor: FiniteElementRotor) -> None:
 
 @dataclass(frozen=True, eq=False)
 class OrthonormalBasis:
-    """Mass-orthonormal basis of a rotor.
+    """Mass-orthonormal basis of a rotor: the rigid motions first, then flexible columns.
 
-    Attributes
-    ----------
-    matrix, momenta : ndarray, shape (3n, k)
-        Displacement columns Q, mesh axes, and ``MQ``.
-    stiffness : ndarray, shape (k,)
-        Diagonal of ``QᵀKQ``, which has no other entries [1/s²]; zero for the rigid motions.
-    rigid_kinds : tuple of ModeKind
-        What the leading rigid columns are.
-    from_modes : ndarray, shape (r, k)
-        Share of every component mode in every column, zero for the rigid motions.
-    dropped : tuple of str
-        Component modes and rigid motions that added nothing to the basis.
+    Columns Q (3n, k), mesh axes, ``MQ``, the diagonal (k,) of ``QᵀKQ``, which has no other entries,
+    the share of every component mode in every column (r, k), zero for the rigid motions, and the
+    names of component modes and rigid motions that added nothing.
     """
 
     matrix: np.ndarray
@@ -281,25 +254,19 @@ class OrthonormalBasis:
     dropped: tuple[str, ...]
 
     @classmethod
-    def of(
-        cls,
-        rigid: tuple[np.ndarray, tuple[ModeKind, ...]],
-        modes: ModeBasis,
-        mass: sp.csr_array,
-        stiffness: sp.csr_array,
-    ) -> OrthonormalBasis:
-        """Return the basis of rigid motions (3n, r), with their kinds, and component modes.
+    def of(cls, rotor: FiniteElementRotor, modes: ModeBasis) -> OrthonormalBasis:
+        """Return the basis of a rotor's free rigid motions and component modes.
 
         A column is dropped when what is left of it, once the columns before it are taken out, is
         smaller than 1e-7 of its own norm. The flexible columns are turned so that M
         and K become diagonal on them, ascending in frequency.
         """
-        motions, kinds = rigid
+        motions, kinds = _rigid_motions(rotor)
         names = rigid_names(kinds) + modes.labels
-        matrix, momenta, used = gram_schmidt(np.hstack([motions, modes.matrix]), mass)
+        matrix, momenta, used = gram_schmidt(np.hstack([motions, modes.matrix]), rotor.mass)
         kept = tuple(kinds[i] for i in used if i < len(kinds))
         held, flexible = np.split(matrix, [len(kept)], axis=1)
-        values, turn = scipy.linalg.eigh(flexible.T @ (stiffness @ flexible))
+        values, turn = scipy.linalg.eigh(flexible.T @ (rotor.stiffness @ flexible))
         flexible, flexible_momenta = flexible @ turn, momenta[:, len(kept) :] @ turn
         # the flexible columns are G⁺ times what the modes have beside the rigid motions
         shares = np.linalg.pinv(flexible_momenta.T @ modes.matrix)
@@ -311,6 +278,14 @@ class OrthonormalBasis:
             from_modes=np.hstack([np.zeros((len(shares), len(kept))), shares]),
             dropped=tuple(name for i, name in enumerate(names) if i not in used),
         )
+
+
+def _rigid_motions(rotor: FiniteElementRotor) -> tuple[np.ndarray, tuple[ModeKind, ...]]:
+    """Return the rigid motions that the stiffness matrix leaves free, and what they are."""
+    if not rotor.grounded:
+        return rigid_columns(rotor.nodes, rotor.axis, rotor.center_of_mass), RIGID_KINDS
+    free = free_motions_of(rotor)
+    return free, (ModeKind.FREE,) * free.shape[1]
 
 
 def rigid_columns(nodes: np.ndarray, axis: SpinAxis, center: np.ndarray) -> np.ndarray:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import MISSING, fields
+from dataclasses import MISSING, fields, replace
 from functools import partial
 from os import PathLike
 from typing import Any, TypeVar
@@ -51,57 +50,48 @@ def _entries(rotor: Rotor) -> dict[str, object]:
     return data
 
 
-def load_reduced(
-    path: str | PathLike, make: Callable[..., Rotor], parts: Mapping[str, type]
-) -> Rotor:
-    """Read a rotor from `path`; `make` is the class :class:`ReducedRotor`.
-
-    `parts` are the classes of its kinds of modes, interfaces, shapes and static fields.
+def load_reduced(path: str | PathLike, classes: tuple[type, ...]) -> Rotor:
+    """Read a rotor from `path`; `classes` are its own and those of its parts.
 
     OSError when there is no such file; ValueError when it is damaged or describes no reduced rotor.
     """
     entries = Entries(read_arrays(path, _KIND))
     try:
-        rotor = make(**_fields(entries, make, parts))
-        entries.close()
+        return _rotor(entries, classes)
     except (KeyError, TypeError, ValueError) as error:
         raise ValueError(
             f"{path}: describes no reduced rotor, or was written by another version ({error})"
         ) from error
-    return rotor
 
 
-def _fields(
-    entries: Entries, make: Callable[..., Rotor], parts: Mapping[str, type]
-) -> dict[str, Any]:
-    """Return the constructor's arguments; it checks shapes and values."""
+def _rotor(entries: Entries, classes: tuple[type, ...]) -> Rotor:
+    """Return a rotor, which checks shapes and values, of all entries."""
+    make, mode_kind, interface, shapes, centrifugal = classes
     attached = entries.group(_ATTACHED)
-    found = {
-        "axis": SpinAxis(*entries.array("axis")),
-        "center_of_mass": entries.array("center_of_mass"),
-        "invariants": _made(Invariants, entries.group("invariants.")),
-        "rigid_kinds": tuple(
-            parts["rigid_kinds"][name] for name in entries.words("rigid_kinds", unique=False)
-        ),
-        "interfaces": {
-            name: _made(parts["interfaces"], entries.group(f"interface{index}."))
+    columns = entries.array(_IN_ATTACHED) if attached else None
+    rotor = make(
+        axis=SpinAxis(*entries.array("axis")),
+        center_of_mass=entries.array("center_of_mass"),
+        invariants=_made(Invariants, entries.group("invariants.")),
+        rigid_kinds=tuple(mode_kind[name] for name in entries.words("rigid_kinds", unique=False)),
+        interfaces={
+            name: _made(interface, entries.group(f"interface{index}."))
             for index, name in enumerate(entries.words("interface_names"))
         },
-        "mode_mass": entries.array("mode_mass"),
-        "dropped": entries.words("dropped", unique=False),
-        "grounded": entries.flag("grounded"),
-        "shapes": _made(parts["shapes"], entries.group("shapes."), True),
-        "centrifugal": _made(parts["centrifugal"], entries.group("centrifugal."), True),
-    }
-    if attached:
-        finer = make(**_fields(attached, make, parts))
-        shape = finer.size, found["invariants"].size
-        columns = checks.array(entries.array(_IN_ATTACHED), _IN_ATTACHED, shape=shape)
-        if finer.interfaces.keys() != found["interfaces"].keys():
-            raise ValueError("with_attachments: needs the interfaces of the rotor")
-        found["attached"] = partial(tuple, (finer, columns))
-    attached.close()
-    return found
+        mode_mass=entries.array("mode_mass"),
+        dropped=entries.words("dropped", unique=False),
+        grounded=entries.flag("grounded"),
+        shapes=_made(shapes, entries.group("shapes."), optional=True),
+        centrifugal=_made(centrifugal, entries.group("centrifugal."), optional=True),
+    )
+    entries.close()
+    if columns is None:
+        return rotor
+    finer = _rotor(attached, classes)
+    columns = checks.array(columns, _IN_ATTACHED, shape=(finer.size, rotor.size))
+    if finer.interfaces.keys() != rotor.interfaces.keys():
+        raise ValueError("with_attachments: needs the interfaces of the rotor")
+    return replace(rotor, attached=partial(tuple, (finer, columns)))
 
 
 def _made(kind: type, entries: Entries, optional: bool = False) -> Any:

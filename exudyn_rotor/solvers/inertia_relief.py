@@ -20,7 +20,7 @@ from exudyn_rotor.solvers.factor import (
     row_norm,
 )
 from exudyn_rotor.solvers.two_level import TwoLevel, conjugate_gradients
-from exudyn_rotor.theory.axis import rotations, translations
+from exudyn_rotor.theory.axis import coordinates, rigid_motions
 
 Rotor = Any  # a FiniteElementRotor, of the layer above
 SOLVERS = ("auto", "direct", "iterative")
@@ -80,11 +80,6 @@ def _check_memory(stiffness: sp.csr_array, iterative: bool) -> None:
         )
 
 
-def coordinates(nodes: np.ndarray) -> np.ndarray:
-    """Return the numbers of the coordinates of nodes."""
-    return (3 * np.asarray(nodes)[:, None] + np.arange(3)).ravel()
-
-
 def free_rigid_motions(
     nodes: np.ndarray, mass: sp.csr_array, stiffness: sp.csr_array, count: int
 ) -> np.ndarray:
@@ -94,7 +89,7 @@ def free_rigid_motions(
     counts, but displaces nothing and is not returned. ValueError if the stiffness resists one.
     """
     size = np.linalg.norm(np.ptp(nodes, axis=0)) or 1.0
-    motions = np.hstack([translations(len(nodes)), rotations(nodes, nodes.mean(axis=0)) / size])
+    motions = rigid_motions(nodes / size, nodes.mean(axis=0) / size)
     values, turn = np.linalg.eigh(motions.T @ (mass @ motions))
     seen = values > 1e-12 * values[-1]  # nodes on one line have no moment of inertia about it
     motions = motions @ (turn[:, seen] / np.sqrt(values[seen]))

@@ -99,17 +99,12 @@ class StressField(Result):
                 f"selection: it is of another rotor, {selection.source!r}, than {reduced!r}; take "
                 "the one that was added to the scene, or select_modes(reduced, formulation)"
             )
-        if reduced.shapes is None or reduced.shapes.stress is None:
-            raise ValueError(
-                "reduced: the rotor was reduced without stress modes; use reduce(…, stress=True) "
-                "with a model from NGSolve, and keep the shapes"
-            )
-        columns = reduced.shapes.stress
+        rest = reduced.unshown_stress
         return cls(
             positions=reduced.shapes.nodes,
             triangles=reduced.shapes.triangles,
-            modes=columns @ selection.T,
-            rest=reduced.unshown_stress,
+            modes=reduced.shapes.stress @ selection.T,
+            rest=rest,
             has_static=getattr(reduced.centrifugal, "stress", None) is not None,
         )
 

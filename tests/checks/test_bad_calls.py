@@ -46,7 +46,7 @@ LEFT_OUT = {
 OF_SCENES = (
     *("law", "law_with_torque", "law_along", "slopes", "clearance_along", "film_edge", "coupling"),
     *("solved", "beside", "reach_along", "coefficients_at", "body_acceleration", "unbalance"),
-    *("forces", "tangent", "transmitted", "energy", "loss", "check_places"),
+    *("springs", "forces", "tangent", "transmitted", "energy", "loss", "check_places"),
 )
 
 

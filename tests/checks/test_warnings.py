@@ -190,14 +190,14 @@ ELSEWHERE = {
     "linear/model/build.py:warn_of_structural_damping": "campbell finds modes without it",
     "multibody/add_rotor.py:_add_reduced": "A scene runs without it",
     "solvers/factor.py:_tell_of_mkl": "exudyn-rotor\\[mkl\\]",
-    "solid/meshes/mesh_data.py:warn": "taken as",
+    "solid/meshes/mesh_model.py:import_model": "taken as",
     "theory/stiffening.py:warn_of_left_out": "beyond 'tilt' is left out",
     "ross.py:_check_held": "of shaft elements are left out",
     "bearings/tilting_pad.py:_of_pads": "carry nothing at",
     "bearings/own_table.py:table_of": "speeds are left out",
     "linear/own_frequency.py:own_motions": "do not settle at their own frequency",
     "linear/model/linear_model.py:warn_beyond": "keeps its ends for motions of",
-    "linear/over.py:_warn_of_lost": "do not converge for all motions",
+    "linear/over.py:motions_over": "do not converge for all motions",
 }
 TEXTS = {place: text for place, (_, _, text) in PLACES.items()} | ELSEWHERE
 # places that several kinds of bodies reach

@@ -17,7 +17,7 @@ from exudyn_rotor import (
 )
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene import steady_motion as search
-from exudyn_rotor.linear.model.scene.probe import linearised
+from exudyn_rotor.linear.model.scene.probe import Probe
 
 RADIUS, LENGTH, MASS, ADDED = 0.1, 0.2, 8.0, 0.01
 TOTAL = MASS + 2 * ADDED  # kg
@@ -164,8 +164,9 @@ def test_load_that_nothing_holds_is_refused(reduced, held, monkeypatch):
     body = add_rotor(mbs, reduced, spin=40.0, translation="none", gravity=[0.0, -GRAVITY, 0.0])
     add_supports(body, [Support(name, STIFFNESS, DAMPING) for name in held])
     mbs.Assemble()
-    angles = []
-    monkeypatch.setattr(search, "linearised", lambda *at: angles.append(at[1]) or linearised(*at))
+    angles, linearised = [], Probe.linearised
+    counted = lambda *at: angles.append(at[1]) or linearised(*at)  # noqa: E731
+    monkeypatch.setattr(Probe, "linearised", counted)
     with pytest.raises(UnconvergedError, match="nothing holds"):
         steady_state(body)
     assert len(angles) <= 3 * 12 + 2 * 48

@@ -383,6 +383,10 @@ class Assembly:
         """Stiffness at rest of what does not vary, shape (k, k)."""
         return self._steady["K", 0, 0]
 
+    def body(self, name: str) -> Body:
+        """Return the body of a name."""
+        return next(body for body in self.bodies if body.name == name)
+
     def square(self, X: np.ndarray, place: slice) -> np.ndarray:
         """Return a matrix of one body as a matrix of all coordinates."""
         wide = np.zeros((self.size, self.size), dtype=X.dtype)
@@ -400,8 +404,8 @@ class Assembly:
     def _acted_on(self, end: End) -> dict[int, np.ndarray]:
         """Return the motion that an element acts on, seen from outside."""
         name, interface = end
-        place, body = next((i, body) for i, body in enumerate(self.bodies) if body.name == name)
-        return self.wide(body.supported(interface), self.slices[place])
+        body = self.body(name)
+        return self.wide(body.supported(interface), self.slices[self.bodies.index(body)])
 
     @cached_property
     def motions(self) -> list[Terms]:
@@ -430,38 +434,17 @@ class Assembly:
         }
 
     def system(
-        self, speed: float, frequency: float | None = None, more: Powers | None = None
+        self,
+        speed: float | np.ndarray,
+        frequency: float | np.ndarray | None = None,
+        more: Powers | None = None,
     ) -> PeriodicSystem:
-        """Return the equations at a spin speed, and a frequency of motions [rad/s].
+        """Return the equations at a spin speed, and a frequency of motions [rad/s]; stacks of (s,).
 
         With `more` forces that hold at this speed.
         """
-        given = [one.coefficients(speed, frequency) for one in self._varying]
-        return self._system(float(speed), given, more)
-
-    def systems(
-        self, speeds: np.ndarray, frequencies: np.ndarray | None = None
-    ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
-        """Return the equations at spin speeds (s,), stacked, and why there are none at some.
-
-        Speeds at which there are none are left out of the stack. Frequencies of motions (s,) are
-        those of the speeds by default.
-        """
-        try:
-            given = [one.coefficients(speeds, frequencies) for one in self._varying]
-            return self._system(speeds, given), {}
-        except NO_EQUATIONS:
-            pass  # one by one, then
-        found, refused = [], {}
-        rates = [None] * len(speeds) if frequencies is None else frequencies.tolist()
-        for place, pair in enumerate(zip(speeds.tolist(), rates, strict=True)):
-            try:
-                found.append([one.coefficients(*pair) for one in self._varying])
-            except NO_EQUATIONS as error:
-                refused[place] = error
-        if not found:
-            return None, refused
-        return self._system(np.delete(speeds, list(refused)), stacked_coefficients(found)), refused
+        given = [one.coefficients(speed, frequency) for one in self.elements if one.varies]
+        return self._system(speed, given, more)
 
     def at_points(self, speeds: np.ndarray, coefficients: Sequence) -> PeriodicSystem:
         """Return the equations at points, stacked, each with coefficients of its elements.
@@ -470,10 +453,6 @@ class Assembly:
         """
         varying = tuple(replace(element, varies=True) for element in self.elements)
         return replace(self, elements=varying)._system(speeds, coefficients)
-
-    @cached_property
-    def _varying(self) -> list[Element]:
-        return [element for element in self.elements if element.varies]
 
     def _system(
         self, speed: float | np.ndarray, coefficients: Sequence, more: Powers | None = None

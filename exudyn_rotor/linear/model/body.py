@@ -79,26 +79,17 @@ class RotorAlone:
         squares = np.linalg.eigvalsh(halves.T @ self.rotor.invariants.K @ halves)
         return float(np.sqrt(max(squares.min(), 0.0))) if squares.size else np.inf
 
-    @cached_property
-    def _uneven(self) -> float:
-        """Largest share of stiffness and centrifugal matrix that is not round, in slow motions."""
-        matrices = self.invariants.K, self.terms.C_hat
-        return max(self.turning.matrix_share(X) for X in matrices)
-
-    def unevenness(self, places: tuple[str, ...]) -> float:
-        """Return the unevenness of the rotor and of the places that something acts on."""
-        shares = [self._place_share(name) for name in places]
-        return max(self._uneven, *shares) if places else max(self._uneven, self.whole.halves_share)
-
     @kept
-    def _place_share(self, name: str) -> float:
-        whole = self.whole.halves_share_at(interface_motion(self.rotor, name))
-        return max(self.turning.place_share(self.motion(name)), whole)
+    def unevenness(self, places: tuple[str, ...]) -> float:
+        """Return the unevenness of the rotor and of the places that something acts on.
 
-    @cached_property
-    def bodies(self) -> dict[tuple, RotorBody]:
-        """What :func:`rotor_body` has made of it: maps and searches make many models of a rotor."""
-        return {}
+        Of slow motions: the largest share of stiffness, centrifugal matrix and flexibility.
+        """
+        shares = [self.turning.matrix_share(X) for X in (self.invariants.K, self.terms.C_hat)]
+        for name in places:
+            shares.append(self.turning.place_share(self.motion(name)))
+            shares.append(self.whole.halves_share_at(interface_motion(self.rotor, name)))
+        return max(shares) if places else max(*shares, self.whole.halves_share)
 
     @kept
     def motion(self, name: str) -> np.ndarray:
@@ -264,28 +255,15 @@ class RotorBody(Body):
     @cached_property
     def unbalance(self) -> dict[int, np.ndarray]:
         """Load of the own eccentricity per Ω² as harmonics of Ω, each (k,); h of Eq. (83)."""
-        return self.rotor_fixed(self.alone.invariants.h)
-
-    def rotor_fixed(self, load: np.ndarray) -> dict[int, np.ndarray]:
-        """Return a generalised force (k,) that is constant in the rotor's frame as harmonics."""
+        load = self.alone.invariants.h
         if not self.mean:
             return {0: load}
         return {-n: part for n, part in self.alone.turning.parts(load).items() if np.any(part)}
 
 
-def rotor_body(
-    name: str, alone: RotorAlone, ratio: float, turns: int, *, is_apart: bool = True
-) -> RotorBody:
+@kept  # maps and searches make many models of a rotor
+def rotor_body(alone: RotorAlone, name: str, ratio: float, turns: int, is_apart: bool) -> RotorBody:
     """Return a rotor in axes that turn with `turns` times Ω."""
-    key = name, ratio, turns, is_apart
-    if key not in alone.bodies:
-        alone.bodies[key] = _rotor_body(name, alone, ratio, turns, is_apart)
-    return alone.bodies[key]
-
-
-def _rotor_body(
-    name: str, alone: RotorAlone, ratio: float, turns: int, is_apart: bool
-) -> RotorBody:
     inv, terms, w = alone.invariants, alone.terms, ratio - turns
     spin = alone.spin
     if spin is not None and w != 0.0:
@@ -323,14 +301,9 @@ def _structural(turning: Turning, H: np.ndarray | None, w: float) -> tuple:
     """Return structural damping by waves: the wave n has the frequency ν − nwΩ in the rotor."""
     if H is None:
         return ()
-    within = turning.T.conj().T @ H @ turning.T
-    found = []
-    for wave in (-1, 0, 1):
-        mask = turning.waves == wave
-        part = turning.T * mask @ within @ (turning.T * mask).conj().T
-        if np.any(part):
-            found.append((wave * w, part))
-    return tuple(found)
+    on_wave = turning.parts(np.eye(len(H)))
+    parts = [(wave * w, P.conj().T @ H @ P) for wave, P in on_wave.items()]
+    return tuple((n, part) for n, part in parts if np.any(part))
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,6 +27,7 @@ from exudyn_rotor.calls import user_level
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import PeriodicSystem, add, others, spread
 from exudyn_rotor.linear.model.assembly import (
+    NO_EQUATIONS,
     Assembly,
     Element,
     End,
@@ -148,6 +149,11 @@ class LinearModel:
         """Elements and own coordinates, as for axes that stand still."""
         return self._elements_for(0)
 
+    @property
+    def _is_list(self) -> bool:
+        """Whether all is known by lists, without a look at a scene."""
+        return True
+
     def _elements_for(
         self, turns: int, kind: str = "", supports: Sequence | None = None
     ) -> tuple[list[Element], list]:
@@ -219,13 +225,12 @@ class LinearModel:
             whole = self.turns == 1 and ratio == 1.0
             alone = self._alone(name, whole)
             if at_rest:
-                bodies.append(rotor_body(name, alone, 0.0, 0, is_apart=False))
+                bodies.append(rotor_body(alone, name, 0.0, 0, False))
                 continue
             if ratio != turns and not whole:
                 self._check_round(name)
-            bodies.append(
-                rotor_body(name, alone, ratio, turns, is_apart=not self._holds_spin(name, alone))
-            )
+            is_apart = not self._holds_spin(name, alone)
+            bodies.append(rotor_body(alone, name, ratio, turns, is_apart))
         return bodies + self._standing_bodies
 
     @cached_property
@@ -281,7 +286,7 @@ class LinearModel:
         NoCoefficientsError
             For a speed beyond a table, or at which a film carries nothing.
         """
-        return self.assembly(speed).system(speed, frequency)
+        return self.assembly(speed).system(float(speed), frequency)
 
     def at_all(
         self, speeds: Sequence[float], frequencies: Sequence[float] | None = None
@@ -313,7 +318,21 @@ class LinearModel:
         self, speeds: np.ndarray, frequencies: np.ndarray | None
     ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
         """Return the stack at speeds (s,), all zero or none, and why there are none at some."""
-        return self.assembly(speeds[0]).systems(speeds, frequencies)
+        if self._is_list:
+            try:
+                return self.assembly(speeds[0]).system(speeds, frequencies), {}
+            except NO_EQUATIONS:
+                pass  # one by one, then
+        found, refused = [], {}
+        rates = [None] * len(speeds) if frequencies is None else frequencies.tolist()
+        for place, pair in enumerate(zip(speeds.tolist(), rates, strict=True)):
+            try:
+                found.append(self.coefficients(*pair))
+            except NO_EQUATIONS as error:
+                refused[place] = error
+        if not found:
+            return None, refused
+        return self.at_points(np.delete(speeds, list(refused)), found), refused
 
     @property
     def pattern(self) -> tuple:
@@ -328,15 +347,15 @@ class LinearModel:
         kind = self.largest_unevenness, self.is_undamped, self.is_richer, self.is_full
         return *given, *map(id, parts), *map(tuple, rest), kind
 
-    def coefficients(self, speed: float) -> list:
-        """Return what :meth:`at_points` needs of a model and a speed [rad/s].
+    def coefficients(self, speed: float, frequency: float | None = None) -> list:
+        """Return what :meth:`at_points` needs of a model at a speed, as :meth:`at` [rad/s].
 
         Raises
         ------
         NoCoefficientsError
             As :meth:`at`.
         """
-        return [element.coefficients(speed) for element in self._elements[0]]
+        return [element.coefficients(speed, frequency) for element in self._elements[0]]
 
     def at_points(self, speeds: np.ndarray, coefficients: Sequence) -> PeriodicSystem:
         """Return the equations of models of one :attr:`pattern` at points, as one stack.
@@ -525,40 +544,34 @@ class LinearModel:
         return max(radius_of_gyration(b.alone.invariants) for b in rotors_of(self.bodies))
 
     @cached_property
-    def interfaces(self) -> tuple[str, ...]:
-        """Names of what can be loaded and looked at, of foundations, too."""
+    def _named(self) -> dict[str, tuple[str, str]]:
+        """Bodies and the own names of their places, by the names of these in the model."""
         several = len(self._used) > 1
-        names = [
-            f"{owner}:{name}" if several or owner else name
+        found = {
+            f"{owner}:{name}" if several or owner else name: (owner, name)
             for owner, rotor in self._used.items()
             for name in rotor.interfaces
-        ]
-        return (*names, *self.standing_interfaces)
+        }
+        points = () if self.foundation is None else self.foundation.points
+        return found | {ON_FOUNDATION.format(name): ("foundation", name) for name in points}
 
     @property
-    def standing_interfaces(self) -> tuple[str, ...]:
-        """Names of the points of a foundation."""
-        points = () if self.foundation is None else self.foundation.points
-        return tuple(map(ON_FOUNDATION.format, points))
+    def interfaces(self) -> tuple[str, ...]:
+        """Names of what can be loaded and looked at, of foundations, too."""
+        return tuple(self._named)
 
     def owner(self, name: str) -> tuple[RotorBody | StandingBody, str]:
         """Return the body of an interface of this name, and its own name there."""
-        if name in self.standing_interfaces:
-            point = list(self.foundation.points)[self.standing_interfaces.index(name)]
-            return next(b for b in self.bodies if isinstance(b, StandingBody)), point
-        owner, colon, interface = name.partition(":")
-        if not (colon and owner in self._used):
-            owner, interface = next(iter(self._used)), name
-        return next(b for b in rotors_of(self.bodies) if b.name == owner), interface
+        owner, interface = self._named[name]
+        return self._running.body(owner), interface
 
     def seen(self, name: str, speed: float = 1.0) -> dict[int, np.ndarray]:
         """Return the motion of an interface in axes that stand still.
 
         Fourier terms (6, k): displacement and rotation along (n1, n2, e).
         """
-        assembly, (body, interface) = self.assembly(speed), self.owner(name)
-        place = [b.name for b in assembly.bodies].index(body.name)
-        return assembly.seen(assembly.bodies[place], interface)
+        assembly, (owner, interface) = self.assembly(speed), self._named[name]
+        return assembly.seen(assembly.body(owner), interface)
 
     def seen_at_node(self, number: int, speed: float = 1.0) -> dict[int, np.ndarray]:
         """Return the motion of a mesh node of the only rotor, as :meth:`seen` does; no rotation."""

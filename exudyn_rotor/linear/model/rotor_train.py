@@ -82,12 +82,7 @@ class Link:
         return _end(self.first, "first"), _end(self.second, "second")
 
     def _check_ratios(self, ratios: Mapping[str, float]) -> None:
-        """Refuse gears whose speeds are not in the ratio of their radii.
-
-        Raises
-        ------
-        ValueError
-        """
+        """Refuse gears whose speeds are not in the ratio of their radii."""
         if not isinstance(self.connection, GearMesh):
             return
         first, second = (ratios[rotor] for rotor, _ in self.ends)
@@ -180,15 +175,15 @@ class RotorTrain:
         rotors = _checked_rotors(self.rotors)
         ratios = _checked_ratios(self.ratios, rotors)
         supports = {}
-        for name, given in checks.mapping(self.supports, "supports", "sequence of Support").items():
-            _known(name, rotors, "supports")
+        given_for = checks.mapping(self.supports, "supports", "sequence of Support", rotors)
+        for name, given in given_for.items():
             supports[name] = given_supports(given)
             check_interfaces(supports[name], rotors[name].interfaces)
         links = checks.instances(self.links, "links", Link)
         for link in links:
             for name, interface in link.ends:
-                _known(name, rotors, "links")
-                _known(interface, rotors[name].interfaces, f"links: interfaces of {name!r}")
+                checks.choice(name, "links", rotors)
+                checks.choice(interface, f"links: interface of {name!r}", rotors[name].interfaces)
             link._check_ratios(ratios)
         driven = checks.labels(self.driven, "driven", rotors)
         uneven = checks.number(self.largest_unevenness, "largest_unevenness", least=0.0, most=1.0)
@@ -217,7 +212,7 @@ class RotorTrain:
         TypeError, ValueError
             For an unknown name.
         """
-        _known(checks.label(rotor, "rotor"), self.rotors, "rotor")
+        checks.choice(rotor, "rotor", self.rotors)
         unit = self.ratios[rotor]
         ratios = {name: 1.0 if name == rotor else r / unit for name, r in self.ratios.items()}
         return replace(self, ratios=ratios)
@@ -242,7 +237,7 @@ def _checked_ratios(
     ratios = checks.mapping(given, "ratios", "float")
     if set(ratios) != set(rotors):
         raise ValueError(
-            f"ratios: needs one for each of the rotors {_listed(rotors)}, got {_listed(ratios)}"
+            f"ratios: needs one for each of the rotors {list(rotors)}, got {list(ratios)}"
         )
     ratios = {name: checks.number(ratios[name], f"ratios[{name!r}]") for name in rotors}
     if not all(ratios.values()):
@@ -251,12 +246,3 @@ def _checked_ratios(
             "as a foundation"
         )
     return ratios
-
-
-def _listed(names: Mapping[str, object]) -> str:
-    return ", ".join(map(str, names)) or "none"
-
-
-def _known(name: str, known: Mapping[str, object], label: str) -> None:
-    if name not in known:
-        raise ValueError(f"{label}: {name!r} is unknown; known: {_listed(known)}")

@@ -24,7 +24,7 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor.calls import kept
-from exudyn_rotor.linear.equations import without_rounding
+from exudyn_rotor.linear.equations import add, without_rounding
 from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.rotating_axes import axes_of, turning_harmonics
@@ -235,13 +235,8 @@ class Turning:
         The term 0 is what a support that stands still sees.
         """
         terms: dict[int, np.ndarray] = {}
-        within = U @ self.T
-        for n, R in turning_harmonics(len(U)).items():
-            for wave in (-1, 0, 1):
-                seen = (R @ within) * (self.waves == wave)
-                term = seen @ self.T.conj().T
-                order = n - wave
-                terms[order] = terms.get(order, 0.0) + (term.real if order == 0 else term)
+        for wave, part in self.parts(U).items():
+            add(terms, {n - wave: R @ part for n, R in turning_harmonics(len(U)).items()})
         return without_rounding(terms)
 
     def parts(self, rows: np.ndarray) -> dict[int, np.ndarray]:

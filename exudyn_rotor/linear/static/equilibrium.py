@@ -1,12 +1,9 @@
 """Equilibrium of rotors on linear and nonlinear bearings under loads that stand still.
 
 With the stiffness K of rotors and linear supports, the loads f, and forces R of the other bearings
-on journals that move by ``u = U y``,
+on journals that move by ``u = U y``, Newton's method solves both equations together,
 
-    K y − Σ Uᵀ R = f,    A u + A_s u_s + B R = c,
-
-the second line of every bearing by itself (:mod:`exudyn_rotor.bearings.resting`). Newton's method
-solves both together, from the forces of bearings that hold their journals in the centre.
+    K y − Σ Uᵀ R = f,    A u + A_s u_s + B R = c  (:mod:`exudyn_rotor.bearings.resting`).
 """
 
 from __future__ import annotations
@@ -17,13 +14,13 @@ from typing import NamedTuple
 import numpy as np
 
 from exudyn_rotor.bearings.resting import (
+    HELD,
+    UNLOADED,
     Nonlinear,
     Resting,
     RigidBearing,
-    held,
     resting,
     starting_place,
-    unloaded,
 )
 from exudyn_rotor.linear.equations import UnconvergedError, others
 from exudyn_rotor.linear.solve.forced import static_motion
@@ -52,19 +49,12 @@ def equilibrium(
     """Return the coordinates (k,), and the forces of the journals' bearings on them (b, 2) [N].
 
     None for the coordinates where a load acts on a motion that nothing holds. Drives hold the spins
-    with the momenta `driven` (k, d).
-
-    Raises
-    ------
-    ValueError, ArithmeticError
-        Where a film does not carry.
-    UnconvergedError
-        Where there is no equilibrium.
+    with the momenta `driven` (k, d). The search begins with journals held in the centre.
     """
     basis = others(driven)
     K, load = basis.T @ K @ basis, basis.T @ load
     journals = [one._replace(U=one.U @ basis, U_s=one.U_s @ basis) for one in journals]
-    begin = [held() if one.bearing.carries else unloaded() for one in journals]
+    begin = [HELD if one.bearing.carries else UNLOADED for one in journals]
     y, R = _solved(K, load, journals, begin)
     if y is None or all(isinstance(one.bearing, RigidBearing) for one in journals):
         return (None if y is None else basis @ y), R

@@ -1,10 +1,8 @@
 """A rotor on its supports under loads that stand still: its equations, and what is seen of it.
 
 A constant force leaves a rotor that turns in the equilibrium ``K(Ω) y = f`` of the equations in
-axes in which the force stands still (:mod:`exudyn_rotor.linear.model.body`): the axes of the ground
-for weight, process forces and bearings, those of the rotor for what turns with it. With the speed
-comes the centrifugal load that stands still in these axes: in those of the ground the part that is
-alike around the axis, which pulls on supports along it by Poisson's contraction.
+axes in which the force stands still. With the speed comes the centrifugal load that stands still in
+these axes: in axes of the ground the part that is alike around the axis.
 """
 
 from __future__ import annotations
@@ -16,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from exudyn_rotor.bearings.given import Given, check_interfaces
-from exudyn_rotor.bearings.resting import Nonlinear
+from exudyn_rotor.bearings.resting import Nonlinear, RigidBearing
 from exudyn_rotor.bearings.series import FloatingRingBearing, SeriesSupport
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.equations import Terms, turned
@@ -31,22 +29,6 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_skew
 
 _ROUNDING = 1e-9  # share of a load that is none
-
-
-def with_supports(
-    target: LinearModel | ReducedRotor | RotorTrain, given: tuple[Given, ...], stiffening: str
-) -> LinearModel:
-    """Return a model with the supports that are given, bearings among them as they are."""
-    if isinstance(target, ReducedRotor):
-        check_interfaces(given, target.interfaces)
-        return replace(linear_model(target, stiffening=stiffening), supports={"": given})
-    model = linear_model(target, supports=given, stiffening=stiffening)
-    if type(model) is not LinearModel:
-        raise TypeError(
-            "target: needs a rotor, a train or a linear model of these; of a scene, "
-            "steady_state(body) finds the equilibrium"
-        )
-    return model
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,18 +46,30 @@ class Problem:
     frame: str
 
     @classmethod
-    def of(cls, model: LinearModel, speed: float, frame: str) -> Problem:
-        """Return the problem of a model whose supports are as they were given.
-
-        Raises
-        ------
-        ValueError
-            For bearings of a law of their own in axes that turn.
-        """
+    def of(
+        cls,
+        target: LinearModel | ReducedRotor | RotorTrain,
+        supports: tuple[Given | RigidBearing, ...],
+        stiffening: str,
+        speed: float,
+        frame: str,
+    ) -> Problem:
+        """Return the problem of a rotor on supports, or of a train or model with its own."""
+        if isinstance(target, ReducedRotor):
+            check_interfaces(supports, target.interfaces)
+            model = linear_model(target, stiffening=stiffening)
+            model = replace(model, supports={"": supports})
+        else:
+            model = linear_model(target, supports=supports, stiffening=stiffening)
+        if type(model) is not LinearModel:
+            raise TypeError(
+                "target: needs a rotor, a train or a linear model of these; of a scene, "
+                "steady_state(body) finds the equilibrium"
+            )
         acting, plain = [], {}
-        for name, supports in model.supports.items():
+        for name, given in model.supports.items():
             plain[name] = []
-            for one in supports:
+            for one in given:
                 if isinstance(one, SeriesSupport | FloatingRingBearing):
                     one = Support(one.interface, one.linearised().static_stiffness)
                 linear = isinstance(one, Support)
@@ -101,13 +95,7 @@ class Problem:
 
     @cached_property
     def stiffness(self) -> np.ndarray:
-        """K (k, k) in the axes of the loads.
-
-        Raises
-        ------
-        ValueError
-            Where it changes as the rotor turns.
-        """
+        """K (k, k) in the axes of the loads."""
         system = self.model.at(self.speed, 0.0)
         if not system.is_constant:
             raise ValueError(
@@ -129,13 +117,7 @@ class Problem:
         return turned(seen, -self._turns)[0].real
 
     def load(self, loads: Mapping[At, np.ndarray], gravity: np.ndarray) -> np.ndarray:
-        """Return the load (k,) of forces and moments (6,), of gravity (3,) and of the rotation.
-
-        Raises
-        ------
-        ValueError
-            For a moment at a node, and gravity across a rotor in axes that turn with it.
-        """
+        """Return the load (k,) of forces and moments (6,), of gravity (3,) and of the rotation."""
         model, axes = self.model, self.axes
         total = np.zeros(model.size)
         for body, place_of in zip(self._assembly.bodies, self._assembly.slices, strict=True):
@@ -181,28 +163,9 @@ class Problem:
         return found
 
     def solved(self, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the coordinates (k,) and the force on the rotor of each bearing (b, 2) [N].
-
-        Raises
-        ------
-        ValueError, ArithmeticError
-            Where something acts on a motion that nothing holds, a film does not carry, or the
-            rotor buckles.
-        """
-        journals = list(self.journals.values())
-        self._check_buckling(journals)
-        y, forces = equilibrium(self.stiffness, load, journals, self.model.free_spins)
-        if y is None:
-            free = " or ".join(self.model.free_motions) or "a combination of rigid motions"
-            raise ValueError(
-                f"loads: one acts on {free}, a motion that no support holds; give one that does (a "
-                "3 × 3 stiffness acts along the axis, too)"
-            )
-        return y, forces
-
-    def _check_buckling(self, journals: Sequence[Journal]) -> None:
-        """Refuse a rotor at rest whose supports do not hold it under the loads of its prestress."""
-        loaded = any(one.invariants.K0 is not None for one in self.model.rotors.values())
+        """Return the coordinates (k,) and the force on the rotor of each bearing (b, 2) [N]."""
+        model, journals = self.model, list(self.journals.values())
+        loaded = any(one.invariants.K0 is not None for one in model.rotors.values())
         if loaded and not self.speed and not journals:
             values = np.linalg.eigvalsh(0.5 * (self.stiffness + self.stiffness.T))
             if values[0] < -_ROUNDING * values[-1]:
@@ -210,6 +173,14 @@ class Problem:
                     "supports: the rotor buckles on them under the loads of its prestress; "
                     "rotor.prestress(loads=…, supports=…) with them finds the buckling load"
                 )
+        y, forces = equilibrium(self.stiffness, load, journals, model.free_spins)
+        if y is None:
+            free = " or ".join(model.free_motions) or "a combination of rigid motions"
+            raise ValueError(
+                f"loads: one acts on {free}, a motion that no support holds; give one that does (a "
+                "3 × 3 stiffness acts along the axis, too)"
+            )
+        return y, forces
 
     def seen(self, y: np.ndarray, forces: np.ndarray, at: Sequence[At] | None) -> dict[str, object]:
         """Return the fields of a result that are known of coordinates and forces of bearings."""
@@ -256,13 +227,7 @@ class Problem:
         return float(point @ rotor.axis.direction)
 
     def mesh(self, y: np.ndarray, stress: bool) -> dict[str, np.ndarray]:
-        """Return the fields of a result at the nodes of the only rotor, as far as they are known.
-
-        Raises
-        ------
-        ValueError
-            For the stress of several rotors, or of a rotor without stress modes.
-        """
+        """Return the known fields of a result at the nodes of the only rotor."""
         body = self._assembly.bodies[0]
         rotor, several = body.alone.rotor, len(self.model.rotors) > 1
         if stress and several:
@@ -271,10 +236,11 @@ class Problem:
             return {}
         columns = body.spin.about_axis(body.alone.Q) if body.is_apart else body.alone.Q
         x = columns @ y[: body.size]
+        rest = self.speed**2 * rotor.unshown_stress if stress else 0.0
         return {
             "nodes": rotor.shapes.nodes,
             "displacement": (rotor.shapes.matrix @ x).reshape(-1, 3),
-            "stress": rotor.stress_of(x, self.speed) if stress else None,
+            "stress": rotor.shapes.stress @ x + rest if stress else None,
         }
 
 

@@ -20,8 +20,6 @@ from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.series import FloatingRingBearing, SeriesSupport
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
-from exudyn_rotor.multibody.rotor.plan import generic_node
-from exudyn_rotor.multibody.rotor.rotor_items import carrying_rotor
 from exudyn_rotor.multibody.supports.connector import (
     CURRENT,
     PYTHON,
@@ -34,7 +32,7 @@ from exudyn_rotor.multibody.supports.connector import (
     has_torque,
     watch_clearance,
 )
-from exudyn_rotor.multibody.supports.ends import Base, FoundationEnd, RotorEnd, Seat
+from exudyn_rotor.multibody.supports.ends import Base, RotorEnd, Seat
 from exudyn_rotor.multibody.supports.native import native_parts
 
 _PARALLEL = 1e-9  # of the cosine between axes of two rotors
@@ -61,10 +59,9 @@ class SceneSupport(SceneLaw):
 
     def own_coordinates(self, mbs: exudyn.MainSystem) -> np.ndarray:
         """Return where coordinates of its own are in an assembled system, shape (p,); else none."""
-        if not self.connector.own:
-            return np.zeros(0, dtype=int)
-        places = mbs.systemData.GetObjectLTGODE2(self.objects[-1])
-        return np.asarray(places, dtype=int)[-self.connector.own :]
+        made = self.connector
+        places = mbs.systemData.GetNodeLTGODE2(made.nodes[-1]) if made.own else ()
+        return np.asarray(places, dtype=int)
 
     def values(
         self, configuration: exudyn.ConfigurationType = CURRENT
@@ -76,11 +73,8 @@ class SceneSupport(SceneLaw):
         self.body.check_assembled()
         made, mbs = self.connector, self.body.mbs
         made.read(*made.state(mbs, configuration))
-        place, rate = np.subtract(
-            [made.end.place, made.end.rate], [made.base.place, made.base.rate]
-        )
-        fx, fy, *rest = made.wrench(mbs.systemData.GetTime(configuration))
-        return place, rate, np.array([fx, fy, rest[0] if rest else 0.0])
+        place, rate = (each[:3] for each in made.motion)
+        return place, rate, np.array(made.wrench(mbs.systemData.GetTime(configuration))[:3])
 
     def __str__(self) -> str:
         """Return interface and who evaluates it."""
@@ -159,16 +153,15 @@ def add_supports(
     check_body(body, "body")
     supports = given_supports(supports)
     check_interfaces(supports, body.selection.source.interfaces)
-    places = []
+    seats = []
     for support in supports:
         _check_support(body, support)
-        seat = Seat.of(body, support.interface, base)
-        _check_on_rotor(body, support, seat)
         # the bearing's base carries the sensors of a magnetic bearing
         sensor = getattr(support, "sensor_interface", support.interface)
-        places.append((seat, Seat.of(body, sensor, seat.base)))
-    pairs = zip(supports, places, strict=True)
-    added = tuple(_added(body, support, *seats) for support, seats in pairs)
+        seats.append([Seat.of(body, name, base) for name in (support.interface, sensor)])
+        _check_on_rotor(body, support, seats[-1][0])
+    pairs = zip(supports, seats, strict=True)
+    added = tuple(_added(body, support, *places) for support, places in pairs)
     body.supports.extend(added)
     return added
 
@@ -221,7 +214,7 @@ def _about_the_axis(matrix: np.ndarray) -> bool:
 
 def _check_on_rotor(body: Body, support: Given, seat: Seat) -> None:
     """Refuse what another rotor cannot carry."""
-    rotor = carrying_rotor(body.mbs, seat.base)
+    rotor = seat.rotor
     if rotor is None:
         return
     linear = isinstance(support, Support)
@@ -248,34 +241,24 @@ def _check_on_rotor(body: Body, support: Given, seat: Seat) -> None:
 
 
 def _added(body: Body, support: Given, seat: Seat, sensed: Seat) -> SceneSupport:
-    mbs = body.mbs
-    end, base = RotorEnd(body, support.interface), seat.end(mbs)
+    mbs, end, base = body.mbs, RotorEnd(body, support.interface), seat.end
     if isinstance(support, Support):
         parts, left = native_parts(body, support, seat)
-        rotor = carrying_rotor(mbs, seat.base) is not None
-        made = SupportConnector(support, end, base, rotor)
+        made = SupportConnector(support, end, base, seat.rotor is not None)
         if left is not None:
-            rest = made if left is support else SupportConnector(left, end, base, rotor)
+            rest = made
+            if left is not support:
+                rest = SupportConnector(left, end, base, seat.rotor is not None)
             parts.append((mbs.AddObject(rest.item(made)), PYTHON))
         objects, evaluation = zip(*parts, strict=True) if parts else ((), ())
         return SceneSupport(body, objects, evaluation, made, support, seat.base)
     if isinstance(support, MagneticBearing):
         sensors = end, base
         if support.sensor_interface != support.interface:
-            sensors = RotorEnd(body, support.sensor_interface), sensed.end(mbs)
-        own = _own_node(mbs, 2 * len(support.controller.realisation().inertia))
-        made = MagneticConnector(support, (end, base), sensors, own)
+            sensors = RotorEnd(body, support.sensor_interface), sensed.end
+        made = MagneticConnector(support, (end, base), sensors, mbs)
     else:
-        pads = isinstance(support, TiltingPadBearing)
-        own = _own_node(mbs, len(support.tangents)) if pads else None
-        spins = body.formulation.has_spin
-        # a foundation hardly turns, which a prescribed spin leaves out as linear analyses do
-        feels = spins or not isinstance(base, FoundationEnd)
-        made = BearingConnector(support, end, base, spins, feels and base.size > 0, own)
+        made = BearingConnector(support, end, base, mbs, body.formulation.has_spin)
     watch_clearance(body, made)
     number = mbs.AddObject(made.item())
     return SceneSupport(body, (number,), (PYTHON,), made, support, seat.base)
-
-
-def _own_node(mbs: exudyn.MainSystem, count: int) -> exudyn.NodeIndex:
-    return mbs.AddNode(generic_node(*np.zeros((2, count))))

@@ -13,7 +13,7 @@ from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.equations import UnconvergedError
-from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.linear.model.turning import interface_motion
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, spin_at_start
 from exudyn_rotor.theory.rotating_axes import into_rotor_frame, parts_across
@@ -21,7 +21,7 @@ from exudyn_rotor.theory.rotating_axes import into_rotor_frame, parts_across
 _SOFT = 1e-8  # of the stiffest mode: resistance of free motions, which are preferred
 
 
-def journal_start(scene: SceneCoordinates, speed: float, orders: np.ndarray) -> np.ndarray:
+def journal_start(scene: LinearScene, speed: float, orders: np.ndarray) -> np.ndarray:
     """Return harmonics (h, k) of the motion with all journals at rest in their equilibria.
 
     At a spin speed [rad/s]; the orders (h,) have −1, 0 and 1 among them.
@@ -33,12 +33,15 @@ def journal_start(scene: SceneCoordinates, speed: float, orders: np.ndarray) -> 
     """
     harmonics = np.zeros((len(orders), scene.size), dtype=complex)
     at = {n: orders.tolist().index(n) for n in (-1, 0, 1)}
-    harmonics[at[0]] = scene.N.T @ _tilts(scene, speed)
+    loads = _static_loads(scene.body)
+    harmonics[at[0]] = scene.N.T @ _tilts(scene, speed, loads)
     # where the origin is the centre of mass, its displacement is from its place at rest
     apart = scene.axes.T @ scene.body.axis.radial(scene.body.frame.origin)
     for n, shift in {0: apart, **into_rotor_frame(-apart)}.items():
         harmonics[at[n]] += scene.N[: scene.count].T @ shift[: scene.count]
-    places = journal_places(scene.body, speed)
+    cage = spin_at_start(scene.body)[0]
+    places = {one.interface: _place(one, load, speed, cage) for one, load in loads.items()}
+    places = {name: place for name, place in places.items() if np.any(place)}
     if not places:
         return harmonics
     source, columns = scene.body.selection.source, scene.columns
@@ -53,52 +56,39 @@ def journal_start(scene: SceneCoordinates, speed: float, orders: np.ndarray) -> 
     return harmonics
 
 
-def _tilts(scene: SceneCoordinates, speed: float) -> np.ndarray:
+def _tilts(scene: LinearScene, speed: float, loads: dict[Bearing, np.ndarray]) -> np.ndarray:
     """Return the tilts of pads in equilibrium [rad] by the free coordinates."""
     found = np.zeros(len(scene.rest))
-    loads = static_loads(scene.body)
     for one in scene.body.supports:
-        if isinstance(one.support, TiltingPadBearing) and np.any(loads.get(one.support, 0.0)):
+        if isinstance(one.support, TiltingPadBearing) and one.support in loads:
             tilts = one.support.tilts(speed, loads[one.support])
             found[one.own_coordinates(scene.body.mbs)] = np.nan_to_num(tilts)
     return found[scene.free]
 
 
-def journal_places(body: RotorBody, speed: float) -> dict[str, np.ndarray]:
-    """Return the equilibria of journals by interface, (2,) [m]; none of those in their centres."""
-    loads = static_loads(body).items()
-    places, cage = {}, spin_at_start(body)[0]
-    for bearing, load in loads:
-        if np.any(load) and isinstance(bearing, RollingBearing):
-            places[bearing.interface] = bearing.equilibrium(speed, load, cage)
-        elif np.any(load) and speed != 0.0:
-            try:
-                places[bearing.interface] = bearing.equilibrium(speed, load)
-            except (ValueError, ArithmeticError) as error:
-                where = f"linear scene at {speed:g} rad/s, bearing at {bearing.interface!r}"
-                raise UnconvergedError(f"{where}: {error}") from error
-    return {name: place for name, place in places.items() if np.any(place)}
+def _place(bearing: Bearing, load: np.ndarray, speed: float, cage: float) -> np.ndarray:
+    """Return the equilibrium of a journal (2,) [m]; a film at rest does not carry."""
+    if isinstance(bearing, RollingBearing):
+        return bearing.equilibrium(speed, load, cage)
+    try:
+        return bearing.equilibrium(speed, load) if speed else np.zeros(2)
+    except (ValueError, ArithmeticError) as error:
+        where = f"linear scene at {speed:g} rad/s, bearing at {bearing.interface!r}"
+        raise UnconvergedError(f"{where}: {error}") from error
 
 
-def static_loads(body: RotorBody) -> dict[Bearing, np.ndarray]:
-    """Return bearings and their static loads: on two the weight by the lever rule, or their own."""
+def _static_loads(body: RotorBody) -> dict[Bearing, np.ndarray]:
+    """Return loaded bearings and their loads: on two the weight by the lever rule, or their own."""
     bearings = [each.support for each in body.supports if isinstance(each.support, Bearing)]
     bearings = [bearing for bearing in bearings if bearing.carries]
     loads = [bearing.load for bearing in bearings]
     if len(bearings) == 2:
-        weights = _weights(body, [bearing.interface for bearing in bearings])
-        pairs = zip(weights, loads, strict=True)
-        loads = [weight if np.any(weight) else load for weight, load in pairs]
+        source = body.selection.source
+        e = source.axis.direction
+        left, right = (source.interfaces[each.interface].reference @ e for each in bearings)
+        weight = source.invariants.mass * parts_across(body.standing_axes, body.gravity)
+        if left != right and np.any(weight):
+            share = (source.center_of_mass @ e - left) / (right - left)
+            loads = [(1.0 - share) * weight, share * weight]
     pairs = zip(bearings, loads, strict=True)
-    return {bearing: load for bearing, load in pairs if load is not None}
-
-
-def _weights(body: RotorBody, names: list[str]) -> list[np.ndarray]:
-    source = body.selection.source
-    e = source.axis.direction
-    left, right = (source.interfaces[name].reference @ e for name in names)
-    if left == right:
-        return [np.zeros(2), np.zeros(2)]
-    share = (source.center_of_mass @ e - left) / (right - left)
-    weight = source.invariants.mass * parts_across(body.standing_axes, body.gravity)
-    return [(1.0 - share) * weight, share * weight]
+    return {bearing: load for bearing, load in pairs if load is not None and np.any(load)}

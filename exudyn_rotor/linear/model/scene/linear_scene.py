@@ -1,4 +1,4 @@
-"""A scene with a rotor, ready to be linearised about its equilibrium or searched for its motion.
+"""A scene around one rotor: its unknowns, and how they turn.
 
 The unknowns are the rotor's translations in axes that turn with it, its modal coordinates, and the
 coordinates of everything else as they are in the scene: foundations stay inertial. The spin is
@@ -17,34 +17,63 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.actuator import SaturatingActuator
-from exudyn_rotor.bearings.annular_seal import AnnularSeal
-from exudyn_rotor.bearings.bearing import Bearing
-from exudyn_rotor.bearings.given import Given
-from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.calls import kept
 from exudyn_rotor.linear.equations import others
 from exudyn_rotor.linear.model.body import RotorAlone
-from exudyn_rotor.linear.model.scene.equilibrium import motion_at_rest
-from exudyn_rotor.linear.model.scene.probe import probing
-from exudyn_rotor.linear.model.scene.scene_checks import check_period, check_scene
-from exudyn_rotor.linear.model.scene.scene_coordinates import Motion, SceneCoordinates, nullspace
-from exudyn_rotor.linear.model.scene.steady_motion import steady_motion
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, spin_at_start
+from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
+from exudyn_rotor.multibody.full.full_body import reduced_body
+from exudyn_rotor.multibody.rotor.plan import turned_origin
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState
+from exudyn_rotor.multibody.rotor.rotor_items import known_rotors
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 from exudyn_rotor.multibody.supports.ends import BaseEnd
-from exudyn_rotor.reduction.reduced_rotor import ModeKind
+from exudyn_rotor.theory.axis import SpinAxis, skew
+from exudyn_rotor.theory.rotating_axes import axes_of
 
+# objects without forces: grounds and constraints
+_FORCELESS = ("Ground", "ConnectorCoordinate", "ConnectorCoordinateVector", "ConnectorDistance")
 _HELD = 1e-8  # share of a motion of the rotor that is none of the scene
+_TOUCHED = 1e-14  # entry of a constraint below which it is none of a coordinate
 
 
 @dataclass(frozen=True, eq=False)
-class LinearScene(SceneCoordinates):
-    """An assembled scene around one rotor, ready for any spin speed; made by :meth:`of`."""
+class LinearScene:
+    """The unknowns y of a scene: the rotor's turn with it, those of everything else do not.
+
+    Attributes
+    ----------
+    body : RotorBody
+    free : ndarray of int
+        Coordinates of the scene that are unknowns: the rotor's first.
+    N : ndarray, shape (len(free), k)
+        Motions that the scene's constraints allow.
+    rest : ndarray
+        All coordinates of the given state.
+    """
+
+    body: RotorBody
+    free: np.ndarray
+    N: np.ndarray
+    rest: np.ndarray
+
+    @classmethod
+    def of_rotor(cls, body: RotorBody) -> LinearScene:
+        """Return the unknowns of the rotor alone, everything else as it is now."""
+        rest = np.array(body.mbs.systemData.GetODE2Coordinates(), dtype=float)
+        count = body.motion.formulation.translation_count
+        # translations, then modes
+        own = np.delete(body.layout.unknowns, [count] if body.formulation.has_spin else [])
+        free = np.asarray(body.mbs.systemData.GetObjectLTGODE2(body.objects["physics"]))[own]
+        made = cls(body, free, np.eye(len(free)), rest)
+        rest[free[count:]] = 0.0
+        # where the rotor is when it has turned back
+        turned = turned_origin(body.selection, body.placement.rotation, rest[made.spin_coordinate])
+        rest[free[:count]] -= body.motion.free_directions.T @ turned
+        return made
 
     @classmethod
     def of(cls, mbs: exudyn.MainSystem, body: RotorBody) -> LinearScene:
-        """Prepare the linearisation of an assembled scene; `mbs` is left as it is.
+        """Return the unknowns of an assembled scene; `mbs` is left as it is.
 
         Whether and at which speed the rotor spins in `mbs` plays no part.
 
@@ -55,40 +84,95 @@ class LinearScene(SceneCoordinates):
             coordinates of first order, and constraints that turn with the rotor.
         """
         check_scene(mbs, body)
-        rotor = np.asarray(mbs.systemData.GetObjectLTGODE2(body.objects["physics"]), dtype=int)
-        alone = SceneCoordinates.of(body)
-        rest = alone.rest
-        free = np.r_[alone.free, np.setdiff1d(np.arange(len(rest)), rotor)]
-        with probing(SceneCoordinates(body, free, np.eye(len(free)), rest), 0.0) as probe:
-            C = [probe.constraints(angle) for angle in (0.0, 1.0, 2.5)]
+        alone = cls.of_rotor(body)
+        rotor = mbs.systemData.GetObjectLTGODE2(body.objects["physics"])
+        free = np.r_[alone.free, np.setdiff1d(np.arange(len(alone.rest)), rotor)]
+        scene = cls(body, free, np.eye(len(free)), alone.rest)
+        with evaluating(mbs) as solver:
+            C = [scene._constraints(solver, angle) for angle in (0.0, 1.0, 2.5)]
         if any(X.shape != C[0].shape or np.abs(X - C[0]).max(initial=0.0) > 1e-6 for X in C):
             raise ValueError(
                 "linear scene: a constraint turns with the rotor; hold the rotor by springs "
                 "(bearings) instead of joints"
             )
-        return cls(body, free, nullspace(C[0]), rest)
+        # coordinates that no constraint touches stay as they are
+        N = others(C[0].T) if len(C[0]) else scene.N
+        return cls(body, free, N, scene.rest)
+
+    def _constraints(self, solver: exudyn.MainSolverStatic, theta: float) -> np.ndarray:
+        """Return the constraints' Jacobian by the free coordinates, rows that are zero left out."""
+        q, mbs = self.rest.copy(), self.body.mbs
+        q[self.spin_coordinate] = theta
+        mbs.systemData.SetODE2Coordinates(q)
+        mbs.systemData.SetODE2Coordinates_t(0.0 * q)
+        C = constraint_rows(mbs, solver, len(q))[:, self.free] @ self.turn(theta)[0]
+        return C[np.abs(C).max(axis=1, initial=0.0) > _TOUCHED]
 
     # ------------------------------------------------------------------ the rotor
 
+    @property
+    def size(self) -> int:
+        """Number of unknowns k."""
+        return self.N.shape[1]
+
+    @property
+    def mass(self) -> float:
+        """Mass of the rotor [kg]."""
+        return self.body.motion.invariants.mass
+
+    @property
+    def count(self) -> int:
+        """Number of the rotor's translations."""
+        return self.body.motion.formulation.translation_count
+
+    @property
+    def modal(self) -> slice:
+        """Where the rotor's modal coordinates stand among the free ones."""
+        return slice(self.count, self.count + self.body.motion.invariants.size)
+
+    @property
+    def spin_coordinate(self) -> int:
+        """The scene's coordinate θ."""
+        body = self.body
+        places = body.mbs.systemData.GetObjectLTGODE2(body.objects["physics"])
+        return int(places[body.locks.spin])
+
     @cached_property
-    def spin_column(self) -> np.ndarray:
-        """Columns of the reduced rotor by a free spin, (n, 1); (n, 0) where it is prescribed."""
-        source = self.body.selection.source
+    def axes(self) -> np.ndarray:
+        """``(n1, n2, e)`` in mesh axes."""
+        return axes_of(SpinAxis(self.body.motion.invariants.direction))
+
+    @cached_property
+    def touching(self) -> np.ndarray:
+        """Which of the unknowns move the rotor, (k,)."""
+        return np.any(self.N[: self.modal.stop] != 0.0, axis=0)
+
+    @cached_property
+    def columns(self) -> np.ndarray:
+        """Columns of the reduced rotor by the unknowns that move it, (n, r)."""
+        selection = self.body.selection
+        moved = selection.source.invariants.S.T @ self.axes[:, : self.count]
+        return np.hstack([moved, selection.T]) @ self.N[: self.modal.stop, self.touching]
+
+    @cached_property
+    def _with_spin(self) -> np.ndarray:
+        """The :attr:`columns`, then that of a free spin."""
         if not self.body.formulation.has_spin:
-            return np.zeros((source.size, 0))
+            return self.columns
+        source = self.body.selection.source
         center = source.center_of_mass
-        return source.invariants.moved(source.axis.project(center) - center).g[:, None]
+        about_axis = source.invariants.moved(source.axis.project(center) - center).g
+        return np.column_stack([self.columns, about_axis])
 
     @cached_property
     def by_columns(self) -> np.ndarray:
         """Unknowns that move the rotor by the coordinates of the reduced rotor, (r, n)."""
-        both = np.hstack([self.columns, self.spin_column])
-        return np.linalg.pinv(both)[: self.columns.shape[1]]
+        return np.linalg.pinv(self._with_spin)[: self.columns.shape[1]]
 
     @kept
     def held(self, alone: RotorAlone) -> np.ndarray:
         """Return motions of a rotor that it does not have in the scene, orthonormal (k, f)."""
-        columns = np.hstack([self.columns, self.spin_column])
+        columns = self._with_spin
         if len(alone.Q) > len(columns):  # in a richer basis
             inner = self.body.selection.source.in_attached
             columns = np.hstack([inner @ columns, la.null_space(inner.T)])
@@ -102,7 +186,61 @@ class LinearScene(SceneCoordinates):
             return alone
         return alone.within(others(held if whole else la.orth(alone.turning.still @ held)))
 
+    def interface_motion(self, name: str) -> np.ndarray:
+        """Return an interface's displacement and rotation along (n1, n2, e), (6, k), rotor frame.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For an interface that is not there.
+        """
+        columns = self.body.interface_carrier(name).motion  # of modes, in axes of the marker body
+        motion = np.zeros((6, len(self.free)))
+        motion[: self.count, : self.count] = np.eye(self.count)
+        motion[:, self.modal] = np.kron(np.eye(2), self.axes.T @ self.body.frame.B.T) @ columns
+        return motion @ self.N
+
+    def turn(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return T, T', T'' of the free scene coordinates ``T(θ) y``; ' is the derivative by θ."""
+        motion, c = self.body.motion, self.count
+        A = motion.orientation @ SpinAxis(motion.invariants.direction).rotation(theta)
+        e = skew(motion.invariants.direction)
+        blocks = []
+        for rest, turned in ((1.0, A), (0.0, A @ e), (0.0, A @ e @ e)):
+            T = rest * np.eye(len(self.free))
+            T[:c, :c] = motion.free_directions.T @ turned @ self.axes[:, :c]
+            blocks.append(T @ self.N)
+        return tuple(blocks)
+
+    def state(self, y: np.ndarray, y_t: np.ndarray, angle: float, speed: float) -> StartState:
+        """Return the state of the whole scene; what is no unknown is at rest.
+
+        Parameters
+        ----------
+        y, y_t : ndarray, shape (k,)
+            The unknowns and their rates.
+        angle, speed : float
+            Of the spin [rad], [rad/s].
+        """
+        T, T1, _ = self.turn(angle)
+        q, q_t = self.rest.copy(), np.zeros(len(self.rest))
+        q[self.free] += T @ y
+        q_t[self.free] = T @ y_t + speed * T1 @ y
+        spin = self.spin_coordinate
+        q[spin], q_t[spin] = angle, speed
+        return StartState(q, q_t, angle, speed)
+
     # ------------------------------------------------------------------ what is beside it
+
+    @cached_property
+    def foreign_items(self) -> list[dict]:
+        """Objects and loads that are neither the rotor's own nor its supports, as dictionaries."""
+        mbs, body = self.body.mbs, self.body
+        objects = set(range(mbs.systemData.NumberOfObjects())) - known_objects(body)
+        weight = set() if body.gravity_load is None else {int(body.gravity_load)}
+        loads = set(range(mbs.systemData.NumberOfLoads())) - weight
+        items = filter(_has_force, map(mbs.GetObject, sorted(objects)))
+        return [*items, *map(mbs.GetLoad, sorted(loads))]
 
     @cached_property
     def others(self) -> np.ndarray:
@@ -116,12 +254,6 @@ class LinearScene(SceneCoordinates):
         rows = self.N[np.concatenate([[], *places]).astype(int)]
         return np.argmax(rows != 0.0, axis=1).astype(int)
 
-    @cached_property
-    def mass_beside(self) -> np.ndarray:
-        """Mass matrix of the :attr:`others`, shape (o, o)."""
-        with probing(self, 0.0) as probe:
-            return probe.mass_beside()[np.ix_(self.others, self.others)]
-
     def base_motion(self, base: BaseEnd) -> np.ndarray:
         """Return the motion (6, o) along (n1, n2, e) of what carries a support, by the others."""
         motion = np.zeros((6, len(self.rest)))
@@ -131,32 +263,54 @@ class LinearScene(SceneCoordinates):
         motion[:, places] = base.rows()
         return motion[:, self.free] @ self.N[:, self.others]
 
-    # ------------------------------------------------------------------ steady motion
 
-    def steady_motion(self, speed: float, tolerance: float, start: Motion | None = None) -> Motion:
-        """Return the steady motion at a spin speed [rad/s] by its harmonics of the revolution.
-
-        Orders (h,) and harmonics (h, k) of ``y(θ) = Re Σ y_n exp(inθ)``, as deviations from
-        :attr:`rest`. Newton's last change, and the highest harmonics, are below `tolerance` of the
-        motion; the search begins with the motion `start` where one is given. Cages of rolling
-        bearings stand where they are when the rotor starts.
-
-        Raises
-        ------
-        UnconvergedError
-            Where no steady motion is found, or 192 angles do not resolve it, where loads do not
-            repeat with every revolution, and where nothing holds the own spin of a rotor with an
-            elastic drive against a torque.
-        """
-        with probing(self, checks.number(speed, "speed", "rad/s")) as probe:
-            check_period(self, probe)
-            if speed == 0.0 and ModeKind.SPIN not in self.body.selection.kinds:
-                return motion_at_rest(self, probe, tolerance, spin_at_start(self.body)[0], start)
-            return steady_motion(self, probe, tolerance, start)
+def known_objects(body: RotorBody) -> set[int]:
+    """Return the numbers of the objects of a rotor and its supports."""
+    found = {*map(int, body.objects.values()), *map(int, body.constraints.values())}
+    return found | {int(number) for one in body.supports for number in one.objects}
 
 
-def follows_load(one: Given) -> bool:
-    """Return whether the coefficients of a support depend on its static load."""
-    if isinstance(one, MagneticBearing):
-        return isinstance(one.actuator, SaturatingActuator)
-    return isinstance(one, Bearing) and not isinstance(one, AnnularSeal)
+def _has_force(item: dict) -> bool:
+    """Return whether an object may have a force: no ground, no constraint, no mere mass."""
+    kind = item["objectType"]
+    if kind == "GenericODE2":
+        names = "stiffnessMatrix", "dampingMatrix", "forceVector", "forceUserFunction"
+        return any(np.any(item[name]) for name in names)
+    return kind not in _FORCELESS and not kind.startswith("Joint")
+
+
+def check_body(mbs: exudyn.MainSystem, body: RotorBody) -> None:
+    """Refuse a system that is not assembled, another one's rotor, and coordinates of first order.
+
+    Raises
+    ------
+    TypeError, ValueError
+    """
+    checks.instance(mbs, "mbs", exudyn.MainSystem)
+    reduced_body(body, how="exudyn_rotor.add_rotor returned it for the rotor in this system")
+    if body.mbs is not mbs:
+        raise ValueError(f"rotor {body.name!r} belongs to another mbs")
+    body.check_present()
+    if not mbs.systemIsConsistent:
+        raise ValueError("the system is not assembled: call mbs.Assemble() first")
+    if mbs.systemData.ODE1Size():
+        raise ValueError("linear scene: coordinates of first order (ODE1) are not supported")
+
+
+def check_scene(mbs: exudyn.MainSystem, body: RotorBody) -> None:
+    """Refuse what :func:`check_body` does, and a second rotor.
+
+    Raises
+    ------
+    TypeError, ValueError
+    """
+    check_body(mbs, body)
+    second = [one.name for one in known_rotors(mbs) if one.token is not body.token]
+    if second:
+        raise ValueError(
+            f"linear scene: a second rotor in this system, {second[0]!r}; one revolution is a "
+            "period for one spin speed only. Give body=[…] with all rotors, on supports of "
+            "add_supports and linked by these and connect_rotors; or give linear analyses a "
+            "RotorTrain of the reduced rotors and their supports, with gears and couplings as "
+            "Link(…)"
+        )

@@ -6,7 +6,7 @@ u: that it turns with what carries the bearing, and that friction on this change
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property, lru_cache
@@ -15,43 +15,15 @@ from typing import NamedTuple
 import exudyn
 import numpy as np
 
-from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
-from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating, without_forces
+from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
+from exudyn_rotor.multibody.evaluation import evaluating, without_forces
 from exudyn_rotor.multibody.rotor.rotor_body import spin_at_start
-from exudyn_rotor.multibody.supports.connector import BearingConnector, Connector, Force
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.stiffening import stiffening
 
 _KEPT = 48  # angles whose terms of the rotor, and whose turned axes, are kept
 _LOADS = 2  # Exudyn's word for loads that depend on places and rates
-
-
-class Attached:
-    """A law that is attached to the rotor, at any state of a scene.
-
-    Attributes
-    ----------
-    connector : Connector
-    places : ndarray of int
-        Its coordinates among those of the scene.
-    """
-
-    def __init__(self, mbs: exudyn.MainSystem, connector: Connector, cage: float) -> None:
-        self.connector, self._cage = connector, cage
-        read = mbs.systemData.GetNodeLTGODE2
-        self.places = np.concatenate([read(node) for node in connector.nodes]).astype(int)
-
-    def read(self, q: np.ndarray, q_t: np.ndarray) -> None:
-        """Take the state of the scene."""
-        self.connector.read(q[self.places].tolist(), q_t[self.places].tolist())
-
-    def force(self, t: float) -> Force:
-        """Return the law's forces on its ports where it has been read, and its tangent."""
-        made = self.connector
-        return (
-            made.tangent(t, self._cage) if isinstance(made, BearingConnector) else made.tangent(t)
-        )
 
 
 class Forces(NamedTuple):
@@ -62,73 +34,85 @@ class Forces(NamedTuple):
     D: np.ndarray
 
 
+class LinearPoint(NamedTuple):
+    """M, D, K (k, k) at one angle, and the residual of y (k,)."""
+
+    M: np.ndarray
+    D: np.ndarray
+    K: np.ndarray
+    residual: np.ndarray
+
+
 class Probe:
     """Forces and masses at any state of a scene, spin Ω, beside the rotor's own terms.
 
-    Supports and bearings are known by their laws. Exudyn evaluates all else.
+    Supports and bearings are known by their laws, with cages of rolling bearings where they are
+    when the rotor starts. Exudyn evaluates all else.
 
     Attributes
     ----------
-    scene : SceneCoordinates
+    scene : LinearScene
     speed : float
-    laws : list of Attached
+    laws : list of Connector
         Of supports and bearings, in their order.
     """
 
-    def __init__(
-        self,
-        scene: SceneCoordinates,
-        speed: float,
-        solver: exudyn.MainSolverStatic,
-        laws: list[Attached],
-    ) -> None:
-        self.scene, self.speed, self.solver, self.laws = scene, speed, solver, laws
-        self.mbs, self.spin = scene.body.mbs, scene.spin_coordinate
-        self.rotor = np.arange(scene.modal.stop)
+    def __init__(self, scene: LinearScene, speed: float, solver: exudyn.MainSolverStatic) -> None:
+        self.scene, self.speed, self.solver = scene, speed, solver
+        body = scene.body
+        self.mbs, self.spin = body.mbs, scene.spin_coordinate
+        self.laws = [one.connector for one in body.supports]
+        read = body.mbs.systemData.GetNodeLTGODE2
+        self._places = [np.concatenate([read(n) for n in law.nodes]) for law in self.laws]
         self.rotor_terms = lru_cache(_KEPT)(self._rotor_terms)
-        self.turn = lru_cache(_KEPT)(scene.turn)
+        self.turn = lru_cache(_KEPT)(self._turn)
 
     def at_rest(self) -> Probe:
         """Return the same scene without spin."""
-        return Probe(self.scene, 0.0, self.solver, self.laws)
+        return Probe(self.scene, 0.0, self.solver)
 
-    # ------------------------------------------------------------------ constraints and masses
+    def _turn(self, theta: float) -> list[np.ndarray]:
+        """Return the free coordinates by the unknowns, and two derivatives by the time."""
+        return [self.speed**n * X for n, X in enumerate(self.scene.turn(theta))]
 
-    def constraints(self, theta: float) -> np.ndarray:
-        """Return the constraints' Jacobian by the free coordinates, rows that are zero left out."""
-        self._set(theta, *np.zeros((2, len(self.scene.free))))
-        rows = constraint_rows(self.mbs, self.solver, len(self.scene.rest))
-        if not len(rows):
-            return np.zeros((0, len(self.scene.free)))
-        C = rows[:, self.scene.free] @ self.turn(theta)[0]
-        return C[np.abs(C).max(axis=1) > 1e-14]
+    # ------------------------------------------------------------------ masses
 
     def mass(self) -> np.ndarray:
         """Return the mass matrix of all but the rotor at the present state, free coordinates."""
         self.solver.ComputeMassMatrix(self.mbs)
         mass = self._of_free(np.array(self.solver.GetSystemMassMatrix()))
-        attached, rotor = self._attached_mass(), np.ix_(self.rotor, self.rotor)
-        mass[rotor] = attached[rotor]
+        rotor = slice(self.scene.modal.stop)
+        mass[rotor, rotor] = self._attached_mass()[rotor, rotor]
         return mass
 
     def _attached_mass(self) -> np.ndarray:
         """Return the mass matrix of laws, where they have been read, by free coordinates."""
         whole = np.zeros((len(self.scene.rest),) * 2)
-        for one in self.laws:
-            if one.connector.has_mass:
-                whole[one.places[:, None], one.places] += one.connector.inertia()[0]
+        for law, places in zip(self.laws, self._places, strict=True):
+            if law.has_mass:
+                whole[places[:, None], places] += law.mass_matrix()
         return self._of_free(whole)
 
+    @cached_property
     def mass_beside(self) -> np.ndarray:
-        """Return the mass matrix of all but the rotor and laws, without deviations, (k, k)."""
+        """Mass matrix of all but the rotor and laws, without deviations, (k, k)."""
         self.read(0.0, *np.zeros((2, len(self.scene.free))))
         return self.scene.N.T @ (self.mass() - self._attached_mass()) @ self.scene.N
 
     @cached_property
-    def masses(self) -> np.ndarray:
-        """Diagonal of the mass matrix of all without deviations, (k,)."""
-        T = self.turn(0.0)[0]
-        return np.diag(T.T @ self.rotor_terms(0.0)[0] @ T + self.mass_beside())
+    def metres(self) -> np.ndarray:
+        """How many metres each of the unknowns counts as, (k,).
+
+        What moves as much kinetic energy as the rotor by a metre; of a light pad or controller
+        at least one.
+        """
+        T, scene = self.turn(0.0)[0], self.scene
+        masses = np.diag(T.T @ self.rotor_terms(0.0)[0] @ T + self.mass_beside)
+        metres = np.sqrt(np.maximum(masses, 1e-300) / scene.mass)
+        for one in scene.body.supports:
+            own = scene.own_unknowns(one)
+            metres[own] = np.maximum(metres[own], 1.0)
+        return metres
 
     def _rotor_terms(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Return the rotor's M, D, K and constant force at Ω, in the free coordinates."""
@@ -149,79 +133,62 @@ class Probe:
         zero = np.zeros(motion.size)
         by_q, by_v = motion.jacobian(0.0, zero, zero)
         full = np.zeros((3, size, size))
-        matrices = motion.mass_matrix(0.0, zero), -by_v, -by_q
-        full[(slice(None), *np.ix_(self.rotor, self.rotor))] = matrices
+        full[:, : motion.size, : motion.size] = motion.mass_matrix(0.0, zero), -by_v, -by_q
         return *full, np.r_[motion.forces(0.0, zero, zero), np.zeros(size - motion.size)]
 
     # ------------------------------------------------------------------ forces
 
-    def force(self, theta: float, x: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Return the forces of all but the rotor's own equations, free coordinates."""
-        return self._exudyn(theta, x, v) + self._laws(theta, x, v, has_slopes=False).values
+    def forces(
+        self, theta: float, x: np.ndarray, v: np.ndarray, *, slopes: bool = True, laws: bool = True
+    ) -> Forces:
+        """Return the forces of all but the rotor's own equations, with their derivatives.
 
-    def forces(self, theta: float, x: np.ndarray, v: np.ndarray) -> Forces:
-        """Return the forces of all but the rotor's own equations, with their derivatives."""
-        pairs = zip(self.foreign(theta, x, v), self._laws(theta, x, v), strict=True)
-        return Forces(*(X + Y for X, Y in pairs))
+        These are zero without `slopes`; without `laws` the forces are what Exudyn has beside them.
+        """
+        q, q_t = self._set(theta, x, v)
+        size = len(q)
+        self.solver.ComputeODE2RHS(self.mbs)  # the rotor's own object has none while it is probed
+        force = np.array(self.solver.GetSystemResidual())[:size]
+        K, D = self._exudyn_slopes() if slopes else np.zeros((2, size, size))
+        for law, places in zip(self.laws, self._places, strict=True) if laws else ():
+            law.read(q[places].tolist(), q_t[places].tolist())
+            force[places] += law.forces(self._time(theta))
+            if slopes:
+                by_place, by_rate = law.slopes(self._time(theta))
+                K[places[:, None], places] += by_place
+                D[places[:, None], places] += by_rate
+        return Forces(force[self.scene.free], self._of_free(K), self._of_free(D))
 
-    def foreign(self, theta: float, x: np.ndarray, v: np.ndarray) -> Forces:
-        """Return the forces of what is neither the rotor nor a law, with their derivatives."""
-        values, slopes = self._exudyn(theta, x, v), []
-        size = len(self.scene.rest) + self.solver.GetAEsize()
+    def _exudyn_slopes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return less the derivatives of Exudyn's forces at the present state."""
+        size = len(self.scene.rest)
+        whole, found = np.zeros((size + self.solver.GetAEsize(),) * 2), []
         for by_place, by_rate in ((-1.0, 0.0), (0.0, -1.0)):
-            self.solver.SetSystemJacobian(np.zeros((size, size)))
+            self.solver.SetSystemJacobian(whole)
             self.solver.ComputeJacobianODE2RHS(self.mbs, by_place, by_rate, 0.0, _LOADS)
-            slopes.append(self._of_free(np.array(self.solver.GetSystemJacobian())))
-        return Forces(values, *slopes)
+            found.append(np.array(self.solver.GetSystemJacobian())[:size, :size])
+        return tuple(found)
 
     def _of_free(self, X: np.ndarray) -> np.ndarray:
         return X[np.ix_(self.scene.free, self.scene.free)]
 
-    def _exudyn(self, theta: float, x: np.ndarray, v: np.ndarray) -> np.ndarray:
-        self._set(theta, x, v)
-        self.solver.ComputeODE2RHS(self.mbs)  # the rotor's own object has none while it is probed
-        return np.array(self.solver.GetSystemResidual())[self.scene.free]
+    # ------------------------------------------------------------------ states
 
     def read(self, theta: float, x: np.ndarray, v: np.ndarray) -> None:
         """Let the laws see a state."""
         q, q_t = self._set(theta, x, v)
-        for one in self.laws:
-            one.read(q, q_t)
-
-    def _laws(self, theta: float, x: np.ndarray, v: np.ndarray, has_slopes: bool = True) -> Forces:
-        """Return the forces of the laws; without slopes their derivatives are zero."""
-        q, q_t = self._state(theta, x, v)
-        size = len(self.scene.rest)
-        force, (K, D) = np.zeros(size), np.zeros((2, size, size))
-        for one in self.laws:
-            one.read(q, q_t)
-            found, places = one.force(self._time(theta)), one.places
-            force[places] += found.values @ found.J
-            parts = [found.slopes()] if has_slopes else []
-            if one.connector.has_mass:
-                _, turning, *more = one.connector.inertia()
-                force[places] += turning
-                parts += [more] if has_slopes else []
-            for total, *blocks in zip((K, D), *parts, strict=True) if parts else ():
-                total[places[:, None], places] += sum(blocks)
-        return Forces(force[self.scene.free], self._of_free(K), self._of_free(D))
-
-    # ------------------------------------------------------------------ states
+        for law, places in zip(self.laws, self._places, strict=True):
+            law.read(q[places].tolist(), q_t[places].tolist())
 
     def _time(self, theta: float) -> float:
         return theta / self.speed if self.speed else 0.0
 
-    def _state(self, theta: float, x: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return all coordinates and rates by a deviation x of the free ones, and their rates v."""
-        q, q_t = self.scene.rest.copy(), np.zeros(len(self.scene.rest))
+    def _set(self, theta: float, x: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Put a deviation x of the free coordinates and their rates v into the scene."""
+        data, q, q_t = self.mbs.systemData, self.scene.rest.copy(), 0.0 * self.scene.rest
         q[self.scene.free] += x
         q_t[self.scene.free] = v
         q[self.spin], q_t[self.spin] = theta, self.speed
-        return q, q_t
-
-    def _set(self, theta: float, x: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Put a deviation x of the free coordinates and their velocity v into the scene."""
-        data, (q, q_t) = self.mbs.systemData, self._state(theta, x, v)
         data.SetODE2Coordinates(q)
         data.SetODE2Coordinates_t(q_t)
         data.SetTime(self._time(theta))
@@ -229,84 +196,55 @@ class Probe:
             self.solver.ComputeAlgebraicEquations(self.mbs, False)
         return q, q_t
 
+    # ------------------------------------------------------------------ equations of the unknowns
+
+    def unbalanced(self, theta: float, *state: np.ndarray) -> np.ndarray:
+        """Return the residual of y, with its rate and acceleration, at one angle (k,)."""
+        return self._balance(theta, *state, slopes=False)[-1]
+
+    def linearised(self, theta: float, *state: np.ndarray) -> LinearPoint:
+        """Return the scene linearised about y, with its rate and acceleration, at one angle."""
+        M, D, K, residual = self._balance(theta, *state, slopes=True)
+        T, T1, T2 = self.turn(theta)
+        return LinearPoint(
+            T.T @ M @ T,
+            T.T @ (2.0 * M @ T1 + D @ T),
+            T.T @ (M @ T2 + D @ T1 + K @ T),
+            residual,
+        )
+
+    def _balance(
+        self, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray, slopes: bool
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Return M, D, K of the free coordinates, and the residual of y."""
+        T, T1, T2 = self.turn(theta)
+        x, v, a = T @ y, T @ y_t + T1 @ y, T @ y_tt + 2.0 * T1 @ y_t + T2 @ y
+        M, D, K, constant = self.rotor_terms(theta)
+        force, more_K, more_D = self.forces(theta, x, v, slopes=slopes)
+        M = M + self.mass()
+        residual = T.T @ (M @ a + D @ v + K @ x - constant - force)
+        return M, D + more_D, K + more_K, residual
+
 
 @contextmanager
-def probing(scene: SceneCoordinates, speed: float) -> Iterator[Probe]:
+def probing(scene: LinearScene, speed: float) -> Iterator[Probe]:
     """Open a scene for probing and leave it as it was.
 
-    Cages of rolling bearings stand where they are when the rotor starts.
+    Objects of the laws are without force meanwhile, and those that Exudyn evaluates inactive.
     """
-    body = scene.body
-    cage = spin_at_start(body)[0]
-    laws = [Attached(body.mbs, one.connector, cage) for one in body.supports]
-    with (
-        _muted(body.mbs, laws, scene.native),
-        without_forces(body.mbs, body.objects["physics"]),
-        evaluating(body.mbs) as solver,
-    ):
-        yield Probe(scene, speed, solver, laws)
+    body, mbs = scene.body, scene.body.mbs
+    numbers = [number for one in body.supports for number in one.objects]
+    native = [number for number in numbers if "activeConnector" in mbs.GetObject(number)]
 
-
-@contextmanager
-def _muted(
-    mbs: exudyn.MainSystem, laws: Sequence[Attached], native: Sequence[exudyn.ObjectIndex]
-) -> Iterator[None]:
-    """Let objects of the laws be without force, the `native` ones inactive."""
-
-    def let(muted: bool) -> None:
-        for one in laws:
-            one.connector.muted = muted
+    def probe(angle: float | None) -> None:
+        for one in body.supports:
+            one.connector.probed = angle
         for number in native:
-            mbs.SetObjectParameter(number, "activeConnector", not muted)
+            mbs.SetObjectParameter(number, "activeConnector", angle is None)
 
-    let(True)
+    probe(spin_at_start(body)[0])
     try:
-        yield
+        with without_forces(mbs, body.objects["physics"]), evaluating(mbs) as solver:
+            yield Probe(scene, speed, solver)
     finally:
-        let(False)
-
-
-class LinearPoint(NamedTuple):
-    """M, D, K (k, k) at one angle, and the residual of y (k,)."""
-
-    M: np.ndarray
-    D: np.ndarray
-    K: np.ndarray
-    residual: np.ndarray
-
-
-def unbalanced(probe: Probe, theta: float, *state: np.ndarray) -> np.ndarray:
-    """Return the residual of y at one angle (k,), as :func:`linearised` has it."""
-    force = probe.force(theta, *_moved(probe, theta, *state)[:2])
-    return _residual(probe, theta, state, force)
-
-
-def linearised(probe: Probe, theta: float, *state: np.ndarray) -> LinearPoint:
-    """Return the scene linearised about y, with its rate and acceleration, at one angle."""
-    T, T1, T2 = (probe.speed**n * X for n, X in enumerate(probe.turn(theta)))
-    M, D, K, _ = probe.rotor_terms(theta)
-    force, more_K, more_D = probe.forces(theta, *_moved(probe, theta, *state)[:2])
-    residual = _residual(probe, theta, state, force)
-    M, D, K = M + probe.mass(), D + more_D, K + more_K
-    return LinearPoint(
-        T.T @ M @ T,
-        T.T @ (2.0 * M @ T1 + D @ T),
-        T.T @ (M @ T2 + D @ T1 + K @ T),
-        residual,
-    )
-
-
-def _moved(
-    probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray
-) -> list[np.ndarray]:
-    """Return free coordinates with their rates and accelerations."""
-    T, T1, T2 = (probe.speed**n * X for n, X in enumerate(probe.turn(theta)))
-    return [T @ y, T @ y_t + T1 @ y, T @ y_tt + 2.0 * T1 @ y_t + T2 @ y]
-
-
-def _residual(
-    probe: Probe, theta: float, state: Sequence[np.ndarray], force: np.ndarray
-) -> np.ndarray:
-    x, v, a = _moved(probe, theta, *state)
-    M, D, K, constant = probe.rotor_terms(theta)
-    return probe.turn(theta)[0].T @ ((M + probe.mass()) @ a + D @ v + K @ x - constant - force)
+        probe(None)

@@ -7,42 +7,39 @@ more body, and its forces have Exudyn's own derivatives by the coordinates of th
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 import scipy.linalg as la
 
+from exudyn_rotor.bearings.actuator import SaturatingActuator
+from exudyn_rotor.bearings.annular_seal import AnnularSeal
+from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.clearance_stop import ClearanceStop
-from exudyn_rotor.bearings.given import Given, linear_supports
+from exudyn_rotor.bearings.given import Given
+from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, UnconvergedError, joined
-from exudyn_rotor.linear.model.assembly import (
-    NO_EQUATIONS,
-    Assembly,
-    End,
-    OwnBody,
-    PadBody,
-    Powers,
-    put,
-)
+from exudyn_rotor.linear.model.assembly import Assembly, End, PadBody, Powers, put
 from exudyn_rotor.linear.model.body import RotorAlone, RotorBody, StandingBody
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.model.scene.equilibrium import equilibrium
 from exudyn_rotor.linear.model.scene.journal_start import journal_start
-from exudyn_rotor.linear.model.scene.linear_scene import LinearScene, follows_load
-from exudyn_rotor.linear.model.scene.probe import Attached, Probe, probing
-from exudyn_rotor.multibody.supports.add_supports import SceneSupport
+from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
+from exudyn_rotor.linear.model.scene.probe import Probe, probing
+from exudyn_rotor.linear.model.scene.steady_motion import newton
+from exudyn_rotor.multibody.supports.connector import Connector
 from exudyn_rotor.multibody.supports.ends import BaseEnd
-from exudyn_rotor.theory.rotating_axes import axial_skew
 
 _WAVE_FREE = 0.99  # share of a held motion that must be no lateral wave
-_TOLERANCE = 1e-8  # of an equilibrium
+_TOLERANCE, _SMALLEST = 1e-8, 1e-5  # of an equilibrium, and [m] of the least that counts as one
 _SAME_LOAD, _NO_LOAD = 1e-6, 1e-9  # of a load, and of the rotor's weight
 _SAME = 0.05  # share of the stiffness of motions by which the unevenness of a mesh may change it
 _ROUNDING = 1e-7  # share of a matrix of Exudyn's differences that is their rounding
+# y(θ) by constant coordinates of a model: rows of the unknowns y, places of the coordinates, terms
+Part = tuple[np.ndarray, slice, Terms]
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +60,7 @@ class SceneModel(LinearModel):
         # any load, until that in the equilibrium is known
         share = np.array([0.0, -9.81 * scene.mass / max(len(given), 1)])
         given = [
-            replace(one, load=share) if follows_load(one) and one.load is None else one
+            replace(one, load=share) if _follows_load(one) and one.load is None else one
             for one in given
         ]
         return cls(
@@ -80,8 +77,7 @@ class SceneModel(LinearModel):
 
     @property
     def _is_list(self) -> bool:
-        """Whether all is known without a look at Exudyn."""
-        follow = any(follows_load(one.support) for one in self.scene.body.supports)
+        follow = any(_follows_load(one.support) for one in self.scene.body.supports)
         return not follow and not self._has_foreign
 
     def _alone(self, name: str, whole: bool) -> RotorAlone:
@@ -92,9 +88,7 @@ class SceneModel(LinearModel):
         alone = super()._alone("", False)
         held = self.scene.held(alone)  # a motion held across the axis turns with the rotor
         still = np.linalg.norm(alone.turning.still @ held, axis=0)
-        if np.any(still <= _WAVE_FREE):
-            return {"": np.inf}
-        return {"": self._alone("", False).unevenness(self.places(""))}
+        return {"": np.inf} if np.any(still <= _WAVE_FREE) else super()._own_unevenness
 
     @property
     def _is_alike(self) -> bool:
@@ -119,7 +113,7 @@ class SceneModel(LinearModel):
         one = self.scene.body.supports[number]
         ends = {one.support.interface: one.connector.base}
         sensor = getattr(one.support, "sensor_interface", None)
-        return ends if sensor is None else ends | {sensor: one.connector.sensor_base}
+        return ends if sensor is None else ends | {sensor: one.connector.seen.base}
 
     @cached_property
     def _standing_bodies(self) -> list[StandingBody]:
@@ -127,7 +121,8 @@ class SceneModel(LinearModel):
         scene = self.scene
         if not len(scene.others):
             return []
-        M = scene.mass_beside
+        with probing(scene, 0.0) as probe:
+            M = probe.mass_beside[np.ix_(scene.others, scene.others)]
         labels = tuple(f"scene, {number}" for number in range(1, len(M) + 1))
         points = {
             f"{number}: {name}": scene.base_motion(base)
@@ -139,18 +134,12 @@ class SceneModel(LinearModel):
         return [StandingBody("scene", 0, M, none, none, labels, points=points)]
 
     @cached_property
-    def _with_own(self) -> list[SceneSupport]:
-        """Supports with coordinates of their own in linear models."""
-        pairs = zip(self.scene.body.supports, self.supports[""], strict=True)
-        return [one for one, given in pairs if linear_supports([given])[1]]
-
-    @cached_property
     def _held_at_rest(self) -> tuple[Assembly, np.ndarray]:
         assembly, K = super()._held_at_rest
         if self._has_foreign:
             with probing(self.scene, 0.0) as probe:
-                state = _Standing.of(self, probe, assembly)
-                K = K + self._foreign(probe, state, assembly)["K", 0, 0]
+                undeformed = _Standing.of(probe, self.in_scene(assembly), assembly)
+                K = K + self._foreign(probe, undeformed, assembly)["K", 0, 0]
         return assembly, K
 
     # ------------------------------------------------------------------ equations
@@ -172,7 +161,7 @@ class SceneModel(LinearModel):
             state = self._equilibrium(probe)
             foreign = self._foreign(probe, state, assembly) if self._has_foreign else {}
             elements, _ = self._elements_for(self.turns, "", self._loaded(probe, state))
-        return replace(assembly, elements=tuple(elements)).system(speed, frequency, foreign)
+        return replace(assembly, elements=tuple(elements)).system(float(speed), frequency, foreign)
 
     def _foreign(self, probe: Probe, state: _Standing, assembly: Assembly) -> Powers:
         """Return what foreign forces add to the equations of an assembly, about a state.
@@ -184,10 +173,7 @@ class SceneModel(LinearModel):
         UnconvergedError
             Where it changes as the rotor turns, but for the unevenness of the mesh.
         """
-        # what a support brings with it is known by its law
-        pairs = zip(self.in_scene(assembly), assembly.bodies, strict=True)
-        parts = [part for part, body in pairs if not isinstance(body, OwnBody)]
-        moved, found = _Standing(probe, parts, np.zeros(assembly.size)), []
+        moved, found = _Standing.of(probe, self.in_scene(assembly), assembly), []
         # what stands still has two harmonics in axes that turn
         count = (5 if self.turns else 3) if probe.speed else 1
         angles = 2.0 * np.pi * np.arange(count) / count
@@ -195,7 +181,7 @@ class SceneModel(LinearModel):
         seen = probe.at_rest() if self.is_undamped else probe
         for theta in angles:
             x, v = state(theta)
-            _, K, D = seen.foreign(theta, x, 0.0 * v if self.is_undamped else v)
+            _, K, D = seen.forces(theta, x, 0.0 * v if self.is_undamped else v, laws=False)
             if self.is_undamped:
                 K, D = 0.5 * (K + K.T), 0.5 * (D - D.T)
             by_z, by_rate = moved.by_coordinates(theta)
@@ -219,28 +205,14 @@ class SceneModel(LinearModel):
             put(powers, "K", 0, {n: K})
         return powers
 
-    def systems(
-        self, speeds: np.ndarray, frequencies: np.ndarray | None
-    ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
-        if self._is_list:
-            return super().systems(speeds, frequencies)
-        found, refused = [], {}
-        rates = [None] * len(speeds) if frequencies is None else frequencies.tolist()
-        for place, (speed, rate) in enumerate(zip(speeds.tolist(), rates, strict=True)):
-            try:
-                found.append(self.at(speed, rate))
-            except NO_EQUATIONS as error:
-                refused[place] = error
-        return joined(found) if found else None, refused
-
     @property
     def pattern(self) -> tuple:
         """The model: another scene may have any forces."""
         return (id(self),)
 
-    def coefficients(self, speed: float) -> PeriodicSystem:
+    def coefficients(self, speed: float, frequency: float | None = None) -> PeriodicSystem:
         """Return what :meth:`at_points` needs: the equations."""
-        return self.at(speed)
+        return self.at(speed, frequency)
 
     def at_points(self, speeds: np.ndarray, coefficients: Sequence) -> PeriodicSystem:
         """Return equations at speeds as one stack."""
@@ -248,17 +220,14 @@ class SceneModel(LinearModel):
 
     # ------------------------------------------------------------------ equilibrium
 
-    def in_scene(self, assembly: Assembly) -> Iterator[tuple[np.ndarray, slice, Terms]]:
-        """Yield rows of the unknowns y, places of the coordinates, and y(θ) by these, terms."""
-        scene, with_own = self.scene, iter(self._with_own)
+    def in_scene(self, assembly: Assembly) -> Iterator[Part]:
+        """Yield how the rotor and what is beside it move by the coordinates of an assembly."""
+        scene = self.scene
         for body, place in zip(assembly.bodies, assembly.slices, strict=True):
             if isinstance(body, RotorBody):
                 yield np.flatnonzero(scene.touching), place, _of_rotor(scene, body)
             elif isinstance(body, StandingBody):
                 yield scene.others, place, {0: np.eye(body.size)}
-            else:
-                one = next(with_own)
-                yield scene.own_unknowns(one), place, _of_own(body, one, assembly.turns)
 
     def _equilibrium(self, probe: Probe) -> _Standing:
         """Return the equilibrium under loads that stand still.
@@ -268,40 +237,67 @@ class SceneModel(LinearModel):
         speed, scene = probe.speed, self.scene
         _, controllers = self._elements_for(0, "full")
         assembly = Assembly((*self._bodies(0, speed == 0.0), *controllers), (), 0)
-        state = _Standing.of(self, probe, assembly)
+        metres = np.sqrt(np.maximum(np.diag(assembly.M), 1e-300) / scene.mass)
+        parts = list(self.in_scene(assembly))
+        with_own = [one for one in scene.body.supports if one.connector.own]
+        first = len(assembly.bodies) - len(controllers)
+        for body, place, one in zip(controllers, assembly.slices[first:], with_own, strict=True):
+            metres[place] = np.maximum(metres[place], 1.0)  # of light pads
+            unit = -1.0 / one.support.film.radius if isinstance(body, PadBody) else 1.0
+            parts.append((scene.own_unknowns(one), place, {0: unit * np.eye(body.size)}))
+        state = _Standing.of(probe, parts, assembly)
         start = journal_start(scene, speed, np.arange(-1, 2)).sum(axis=0).real
-        W = state.of_unknowns(0.0)[0]
-        z = np.linalg.lstsq(W, start, rcond=1e-9)[0]
+        z = np.linalg.lstsq(state.of_unknowns(0.0)[0], start, rcond=1e-9)[0]
         own = la.block_diag(*(body.K[0] + speed * sum(body.K[1:2]) for body in assembly.bodies))
-        still = probe.at_rest()
+        still, by_z, by_rate = probe.at_rest(), *state.by_coordinates(0.0)
         angles = 2.0 * np.pi * np.arange(3) / 3.0 if speed else [0.0]
         weights = [state.by_coordinates(a)[0].T @ still.rotor_terms(a)[3] for a in angles]
         weight = np.mean(weights, axis=0)
 
-        def at(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            force, K, D = probe.forces(0.0, *replace(state, z=z)(0.0))
-            by_z, by_rate = state.by_coordinates(0.0)
+        def linearised(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            force, K, D = probe.forces(0.0, by_z @ z, by_rate @ z)
             return own + by_z.T @ (K @ by_z + D @ by_rate), own @ z - weight - by_z.T @ force
 
         def unbalanced(z: np.ndarray) -> np.ndarray:
-            force = probe.force(0.0, *replace(state, z=z)(0.0))
-            return own @ z - weight - state.by_coordinates(0.0)[0].T @ force
+            force = probe.forces(0.0, by_z @ z, by_rate @ z, slopes=False).values
+            return own @ z - weight - by_z.T @ force
 
-        metres = np.sqrt(np.maximum(np.diag(assembly.M), 1e-300) / scene.mass)
-        for body, place in zip(assembly.bodies, assembly.slices, strict=True):
-            if isinstance(body, OwnBody):
-                metres[place] = np.maximum(metres[place], 1.0)  # of light pads
-        where = f"linear scene at {speed:g} rad/s"
-        return replace(state, z=equilibrium(scene, at, unbalanced, metres, z, _TOLERANCE, where))
+        z = newton(
+            scene,
+            linearised,
+            unbalanced,
+            z,
+            metres,
+            lambda z: _TOLERANCE * max(np.abs(z * metres).max(), _SMALLEST),
+            lambda _: (
+                f"linear scene at {speed:g} rad/s: no equilibrium found; is there a load that "
+                "nothing holds, or a bearing or a magnetic force stronger than what holds the "
+                "rotor? A damped run from rest shows what it does"
+            ),
+            yields=True,
+        )
+        return replace(state, z=z)
 
     def _loaded(self, probe: Probe, state: _Standing) -> Sequence[Given]:
         """Return the supports, bearings under the loads that they have in an equilibrium."""
         probe.read(0.0, *state(0.0))
-        least = _NO_LOAD * 9.81 * self.scene.mass
         return [
-            _under_load(given, law, probe.speed, least) if follows_load(given) else given
+            self._under_load(given, law, probe) if _follows_load(given) else given
             for given, law in zip(self.supports[""], probe.laws, strict=True)
         ]
+
+    def _under_load(self, given: Given, law: Connector, probe: Probe) -> Given:
+        """Return a bearing under the static load that it has where its law has been read."""
+        place = np.array(law.relative[:2])
+        if isinstance(given, SqueezeFilmDamper) and not given.carries:  # another spring does
+            return Support(given.interface, *given.coefficients_at(place, probe.speed))
+        if isinstance(given, ClearanceStop):
+            return Support(given.interface, *given.slopes(*place, 0.0, 0.0, 0.0, probe.speed))
+        load = -np.array(law.wrench(0.0)[:2])
+        load[np.abs(load) <= _NO_LOAD * 9.81 * self.scene.mass] = 0.0
+        if np.abs(load - given.load).max() <= _SAME_LOAD * np.abs(load).max():
+            return given  # it remembers its coefficients
+        return replace(given, load=load)
 
     # ------------------------------------------------------------------ what a scene tells
 
@@ -319,19 +315,16 @@ class SceneModel(LinearModel):
 
 @dataclass(frozen=True, eq=False)
 class _Standing:
-    """A motion of constant coordinates z of an assembly, as a state of a scene.
-
-    `parts` are those of :meth:`SceneModel.in_scene`.
-    """
+    """A motion of constant coordinates z of an assembly, as a state of a scene."""
 
     probe: Probe
-    parts: list[tuple[np.ndarray, slice, Terms]]
+    parts: list[Part]
     z: np.ndarray
 
     @classmethod
-    def of(cls, model: SceneModel, probe: Probe, assembly: Assembly) -> _Standing:
+    def of(cls, probe: Probe, parts: Iterable[Part], assembly: Assembly) -> _Standing:
         """Return the undeformed state."""
-        return cls(probe, list(model.in_scene(assembly)), np.zeros(assembly.size))
+        return cls(probe, list(parts), np.zeros(assembly.size))
 
     def of_unknowns(self, theta: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the unknowns y and their rates by z, each (k, l)."""
@@ -347,7 +340,7 @@ class _Standing:
         """Return free coordinates of the scene and their rates by z, each (f, l)."""
         W, W_t = self.of_unknowns(theta)
         T, T1, _ = self.probe.turn(theta)
-        return T @ W, self.probe.speed * T1 @ W + T @ W_t
+        return T @ W, T1 @ W + T @ W_t
 
     def __call__(self, theta: float) -> tuple[np.ndarray, np.ndarray]:
         """Return free coordinates and their rates at an angle."""
@@ -366,30 +359,11 @@ def _of_rotor(scene: LinearScene, body: RotorBody) -> Terms:
     return {-n: L @ part for n, part in alone.turning.parts(np.eye(L.shape[1])).items()}
 
 
-def _of_own(body: OwnBody, one: SceneSupport, turns: int) -> Terms:
-    """Return the unknowns that a support brings with it."""
-    if isinstance(body, PadBody):
-        return {0: -np.eye(body.size) / one.support.film.radius}
-    if turns:
-        return {0: np.eye(body.size)}
-    half, quarter = np.eye(body.size // 2), axial_skew(3)[:2, :2]
-    return {  # R(−θ) = cos θ − sin θ ẽ: pairs of a scene turn
-        n: np.kron(half, 0.5 * (np.eye(2) + 1j * n * quarter)) for n in (1, -1)
-    }
-
-
-def _under_load(given: Given, law: Attached, speed: float, least: float) -> Given:
-    """Return a bearing under the static load that it has where its law has been read."""
-    place = np.array(law.connector.relative[:2])
-    if isinstance(given, SqueezeFilmDamper) and not given.carries:  # another spring does
-        return Support(given.interface, *given.coefficients_at(place, speed))
-    if isinstance(given, ClearanceStop):
-        return Support(given.interface, *given.slopes(*place, 0.0, 0.0, 0.0, speed))
-    load = -law.force(0.0).values[:2]
-    load[np.abs(load) <= least] = 0.0
-    if np.abs(load - given.load).max() <= _SAME_LOAD * np.abs(load).max():
-        return given  # it remembers its coefficients
-    return replace(given, load=load)
+def _follows_load(one: Given) -> bool:
+    """Return whether the coefficients of a support depend on its static load."""
+    if isinstance(one, MagneticBearing):
+        return isinstance(one.actuator, SaturatingActuator)
+    return isinstance(one, Bearing) and not isinstance(one, AnnularSeal)
 
 
 def _without_rounding(X: np.ndarray) -> np.ndarray:

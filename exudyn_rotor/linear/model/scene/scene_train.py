@@ -14,10 +14,10 @@ import numpy as np
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.linear.model.rotor_train import Link, RotorTrain
-from exudyn_rotor.linear.model.scene.scene_checks import check_body, rotors_in
-from exudyn_rotor.linear.model.scene.scene_coordinates import known_objects
+from exudyn_rotor.linear.model.scene.linear_scene import check_body, known_objects
 from exudyn_rotor.multibody.drives import SceneConnection
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, spin_at_start
+from exudyn_rotor.multibody.rotor.rotor_items import known_rotors
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 
 _PARALLEL = 1e-9  # entries of axes by which rounding may set rotors apart
@@ -68,12 +68,9 @@ def _check_all_rotors(mbs: exudyn.MainSystem, bodies: Sequence[RotorBody]) -> No
     """Refuse bodies that are not all rotors of the scene, each once."""
     for body in bodies:
         check_body(mbs, body)
-    names = [body.name for body in bodies]
-    if len(bodies) < 2 or sorted(names) != sorted(rotors_in(mbs).values()):
-        raise ValueError(
-            f"body: needs all rotors of the scene, {[*rotors_in(mbs).values()]}, each once, "
-            f"got {names}"
-        )
+    names, known = ([one.name for one in each] for each in (bodies, known_rotors(mbs)))
+    if len(names) < 2 or sorted(names) != sorted(known):
+        raise ValueError(f"body: needs all rotors of the scene, {known}, each once, got {names}")
 
 
 def _check_alike(first: RotorBody, body: RotorBody) -> None:
@@ -124,8 +121,6 @@ def _other_end(body: RotorBody, one: SceneSupport, markers: dict[int, str]) -> s
 
 def _link_of(one: SceneConnection) -> Link:
     law = one.connection
-    if isinstance(law, GearMesh) and (law.backlash is not None or law.variation.size):
-        raise ValueError(f"body: {one} of rotor {one.body.name!r} is not linear; {_BY_HAND}")
     given = law if isinstance(law, GearMesh) else law.support(one.at)
     return Link(f"{one.body.name}:{one.at}", f"{one.other.name}:{one.other_at}", given)
 
