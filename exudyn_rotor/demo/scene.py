@@ -18,7 +18,7 @@ from exudyn.rigidBodyUtilities import InertiaCuboid
 from netgen import occ
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor.rotor_items import virtual_nodes
+from exudyn_rotor.multibody.rotor.rotor_items import Carrier
 from exudyn_rotor.solid_rotor import SolidRotor
 
 AddRotor = Callable[[exudyn.MainSystem, FEMinterface], dict]
@@ -81,9 +81,8 @@ def add_3d_rotor_with_virtual_nodes(
     modes, places = body.modeBasis, {}
     for name, interface in model.interfaces.items():
         motion = interface.mean_motion(model.node_count) @ modes
-        points, columns = virtual_nodes(interface.reference, interface.radius, motion)
-        if markers == "position":
-            points, columns = interface.reference[None, :], motion[:3]
+        place = Carrier(None, interface.reference, motion, interface.radius)
+        points, columns = place.virtual_nodes(markers)
         places[name] = list(range(len(body.xRef) // 3, len(body.xRef) // 3 + len(points)))
         body.xRef = np.append(body.xRef, points)
         body.modeBasis = np.vstack([body.modeBasis, columns])

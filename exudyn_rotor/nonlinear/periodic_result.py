@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.response.response import DIRECTIONS
 from exudyn_rotor.multibody.full.full_body import reduced_body
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState, spin_at_start
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState
 from exudyn_rotor.nonlinear.run_start import state_in_scene
 from exudyn_rotor.results import Result, numbers, storable, text_table, words
 from exudyn_rotor.units import IN_HERTZ, Units
@@ -247,7 +247,7 @@ class PeriodicResponse(Result):
             For another rotor or foundation, controllers or pads, or a system not assembled.
         """
         reduced_body(body)
-        angle = spin_at_start(body)[0] if angle is None else checks.number(angle, "angle", "rad")
+        angle = body.placement.angle if angle is None else checks.number(angle, "angle", "rad")
         point = self._point(point)
         if self.coordinates is None:
             raise ValueError(
