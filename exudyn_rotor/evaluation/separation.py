@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.calls import user_level
-from exudyn_rotor.linear.modal.campbell_diagram import checked_range, shade_range
+from exudyn_rotor.linear.modal.campbell import checked_range, shade_range
 from exudyn_rotor.linear.response.response import (
     HALF_POWER,
     STILL,
