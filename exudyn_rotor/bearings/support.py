@@ -337,8 +337,10 @@ class Support:
 def _pair(speed: ArrayLike, frequency: ArrayLike | None) -> tuple[Any, Any]:
     """Return spin speeds and frequencies, by default those of unbalance, checked."""
     if np.ndim(speed):
-        speed = checks.array(speed, "speed")
-        return speed, np.abs(speed) if frequency is None else checks.array(frequency, "frequency")
+        speed = checks.vector(speed, "speed", "rad/s", None)
+        if frequency is None:
+            return speed, np.abs(speed)
+        return speed, checks.vector(frequency, "frequency", "rad/s", len(speed))
     checks.number(speed, "speed", "rad/s")
     if frequency is None:
         return speed, abs(speed)
