@@ -23,7 +23,7 @@ from exudyn_rotor.linear.model.body import RotorBody
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
-from exudyn_rotor.linear.response.loads import At, place, places
+from exudyn_rotor.linear.response.loads import At, BaseAcceleration, HarmonicForce, places, total
 from exudyn_rotor.linear.static.equilibrium import Journals, equilibrium
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_skew
@@ -118,27 +118,22 @@ class Problem:
 
     def load(self, loads: Mapping[At, np.ndarray], gravity: np.ndarray) -> np.ndarray:
         """Return the load (k,) of forces and moments (6,), of gravity (3,) and of the rotation."""
-        model, axes = self.model, self.axes
-        total = np.zeros(model.size)
+        load = np.zeros(self.model.size)
         for body, place_of in zip(self._assembly.bodies, self._assembly.slices, strict=True):
             if isinstance(body, RotorBody) and 0 in body.unbalance:
-                total[place_of] = (body.ratio * self.speed) ** 2 * body.unbalance[0].real
-        for key, wrench in loads.items():
-            point = place(model, key, self.speed)
-            if point.is_node and np.any(wrench[3:]):
-                raise ValueError(
-                    f"loads[{key!r}]: a mesh node has no rotation for a moment; use an interface"
-                )
-            total += self._still(point.seen).T @ np.r_[axes.T @ wrench[:3], axes.T @ wrench[3:]]
+                load[place_of] = (body.ratio * self.speed) ** 2 * body.unbalance[0].real
+        acting = [
+            HarmonicForce(at, wrench[:3] @ self.axes, wrench[3:] @ self.axes, self.frame)
+            for at, wrench in loads.items()
+        ]
         if np.any(gravity):
-            across = np.abs(axes[:, :2].T @ gravity).max() > _ROUNDING * np.linalg.norm(gravity)
-            if self._turns and across:
+            along = gravity @ self.axes
+            if self._turns and np.abs(along[:2]).max() > _ROUNDING * np.linalg.norm(gravity):
                 raise ValueError("gravity: stands still in space; leave frame='rotor' out")
-            base = model.base_loads(self.speed)
-            if base is None:
-                raise ValueError("gravity: needs a foundation with its participation")
-            total -= base[0].real.T @ (axes.T @ gravity)
-        return total
+            acting.append(BaseAcceleration(-along))
+        if acting:
+            load += total(acting, self.model, self.speed)[0].real
+        return load
 
     @property
     def axes(self) -> np.ndarray:
