@@ -232,11 +232,12 @@ class _Sweep:
             values, motions = self._refined(model, values, motions)
         motions, observed = self.joined(motions, values), places(model, self.at, self.speed)
         errors = basis_errors(model, self.accuracy, values, motions, self._joined_motions)
-        if errors is not None and np.any(np.isfinite(errors)):
-            at, place = np.unravel_index(np.nanargmax(errors), errors.shape)
-            where = f"{Units.of(self.unit).speeds(values[at]):.5g} {self.unit}"
-            what = f"the motion of {observed[place].label!r} at {where}"
-            warn(errors, what, model, self.accuracy)
+
+        def told(row: int, place: int) -> str:
+            where = f"{Units.of(self.unit).speeds(values[row]):.5g} {self.unit}"
+            return f"the motion of {observed[place].label!r} at {where}"
+
+        warn(errors, told, model, self.accuracy)
         orders = np.array(sorted(motions))
         motion = np.stack([motions[n] for n in orders.tolist()], axis=2)
         # a rotation counts as the displacement that it makes at the rotor's radius of gyration

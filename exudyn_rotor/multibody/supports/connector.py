@@ -477,7 +477,7 @@ def watch_clearance(body: RotorItems, connector: BearingConnector | MagneticConn
     """Let runs of the scene stop where the journal of a connector leaves its bearing."""
     bearing, name = connector.bearing, body.name
     stops = entry(body.mbs).setdefault("clearance stops", set())
-    place = body.token, bearing.interface
+    place = body.script, bearing.interface
     if isinstance(bearing, ClearanceStop):
         stops.add(place)
     advice = "take smaller steps, begin from steady_state(body), reduce the load, or add a"

@@ -17,7 +17,6 @@ import numpy as np
 
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.multibody.evaluation import evaluating, without_forces
-from exudyn_rotor.multibody.rotor.rotor_body import spin_at_start
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.stiffening import stiffening
@@ -242,7 +241,7 @@ def probing(scene: LinearScene, speed: float) -> Iterator[Probe]:
         for number in native:
             mbs.SetObjectParameter(number, "activeConnector", angle is None)
 
-    probe(spin_at_start(body)[0])
+    probe(body.placement.angle)
     try:
         with without_forces(mbs, body.objects["physics"]), evaluating(mbs) as solver:
             yield Probe(scene, speed, solver)
