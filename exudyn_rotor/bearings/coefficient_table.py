@@ -64,7 +64,7 @@ class CoefficientTable:
         axes = [
             given
             if given is None
-            else checks.ascending(given, f"{name}: {axis} of its table", "rad/s", of_table=True)
+            else checks.ascending(given, f"{name}: {axis} of its table", "rad/s")
             for given, axis in ((speeds, "the speeds"), (frequencies, "the frequencies"))
         ]
         if axes[1] is not None and axes[1][0] < 0.0:

@@ -43,7 +43,7 @@ class SceneFoundation:
     node : NodeIndex
         Of its coordinates.
     objects : mapping of str to ObjectIndex
-        ``'physics'`` (the equations) and ``'marker_body'`` (markers).
+        ``'physics'`` (the equations), ``'marker_body'`` (markers), and what holds its frame.
     gravity_load : LoadIndex or None
 
     Examples
@@ -187,12 +187,11 @@ def add_foundation(
     )
     # an inertia, which moves nothing: explicit solvers solve with the whole mass matrix
     hidden = VObjectGenericODE2(show=False)
-    mbs.AddObject(
+    inertia = mbs.AddObject(
         ObjectGenericODE2(nodeNumbers=[frame], massMatrix=np.eye(6), visualization=hidden)
     )
     ground = mbs.AddNode(NodePointGround())
-    for index in range(6):
-        held(mbs, ground, frame, index)
+    objects = {"physics": physics, "marker_body": body, "frame": inertia}
+    objects |= {f"frame {index}": held(mbs, ground, frame, index) for index in range(6)}
     load = add_weight(mbs, body, g)
-    objects = checks.read_only_mapping({"physics": physics, "marker_body": body})
-    return SceneFoundation(mbs, placed, coordinates, objects, load)
+    return SceneFoundation(mbs, placed, coordinates, checks.read_only_mapping(objects), load)
