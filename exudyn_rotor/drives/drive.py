@@ -94,7 +94,7 @@ class TorqueCurve(Drive):
         table = checks.items(self.curve, "curve", needed)
         if len(table) != 2:
             raise ValueError(f"curve: needs {needed}, got {checks.shown(self.curve)}")
-        speeds = checks.ascending(table[0], "curve: its speeds", "rad/s", of_table=True)
+        speeds = checks.ascending(table[0], "curve: its speeds", "rad/s")
         torques = checks.vector(table[1], "curve: its torques", "N m", size=len(speeds))
         object.__setattr__(self, "curve", (speeds, torques))
 
