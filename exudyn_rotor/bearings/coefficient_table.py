@@ -64,7 +64,7 @@ class CoefficientTable:
         axes = [
             given
             if given is None
-            else checks.ascending(given, f"{name}: {axis} of its table", "rad/s", of_table=True)
+            else checks.ascending(given, f"{name}: {axis} of its table", "rad/s")
             for given, axis in ((speeds, "the speeds"), (frequencies, "the frequencies"))
         ]
         if axes[1] is not None and axes[1][0] < 0.0:
@@ -205,10 +205,10 @@ def _columns(source: str | Path | Any) -> dict[str, np.ndarray]:
         )
     columns = {}
     for name, values in source.items():
+        what = f"source: {str(name)!r}"
         try:
-            columns[str(name)] = np.asarray(values, dtype=float)
+            numbers = np.asarray(values, dtype=float)
         except (TypeError, ValueError):
-            raise ValueError(f"source: {str(name)!r}: needs numbers, got other text") from None
-        if not np.all(np.isfinite(columns[str(name)])):
-            raise ValueError(f"source: {str(name)!r}: needs finite numbers in every row")
+            raise ValueError(f"{what}: needs numbers, got other text") from None
+        columns[str(name)] = checks.vector(numbers, what, size=None)
     return columns

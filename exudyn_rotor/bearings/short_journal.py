@@ -25,6 +25,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.bearing import Pair
 from exudyn_rotor.bearings.short_film import (
     THINNEST,
     ShortFilmBearing,
@@ -75,14 +76,18 @@ class ShortJournalBearing(ShortFilmBearing):
      [-25.06   8.82]]
     """
 
+    @property
+    def _shear(self) -> float:
+        """Torque of a film all around, for each rad/s [N m s]."""
+        return 2.0 * pi * self.viscosity * self.radius**3 * self.length / self.clearance
+
     def law_with_torque(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float, float]:
         """As :meth:`law`, with the torque (3) on the journal [N m]."""
         fx, fy = self.law(x, y, vx, vy, angle, speed)
         ratio = min(hypot(x, y) / self.clearance, THINNEST)
-        shear = 2.0 * pi * self.viscosity * self.radius**3 * self.length / self.clearance
-        return fx, fy, -shear * speed / sqrt(1.0 - ratio**2) - 0.5 * (x * fy - y * fx)
+        return fx, fy, -self._shear * speed / sqrt(1.0 - ratio**2) - 0.5 * (x * fy - y * fx)
 
     def eccentricity_ratio(self, speed: float, load: ArrayLike | None = None) -> float:
         """Return the eccentricity over the clearance under a static load [N] at a speed [rad/s].
@@ -123,7 +128,7 @@ class ShortJournalBearing(ShortFilmBearing):
         place = self.clearance * ratio * turn / abs(turn)
         return np.array([place.real, place.imag])
 
-    def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _matrices(self, speed: float, load: np.ndarray) -> Pair:
         """Return the derivatives of the film's force at rest."""
         place = (self._rest(speed, load) / self.clearance).tolist()
         found = self._size / self.clearance * film_tangent(*place, 0.0, 0.0, speed)[1]

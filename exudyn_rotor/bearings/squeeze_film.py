@@ -28,6 +28,7 @@ from typing import ClassVar
 import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.bearing import Pair
 from exudyn_rotor.bearings.short_film import ShortFilmBearing, damping_at_rest
 
 
@@ -102,7 +103,7 @@ class SqueezeFilmDamper(ShortFilmBearing):
             )
         return load / self.centring_stiffness
 
-    def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _matrices(self, speed: float, load: np.ndarray) -> Pair:
         """Return stiffness and damping on the orbit (1), at the spin speed, or at rest (2)."""
         return self.coefficients_at(self._rest(speed, load), speed)
 

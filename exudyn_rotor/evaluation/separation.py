@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.calls import user_level
-from exudyn_rotor.linear.modal.campbell_diagram import checked_range, shade_range
+from exudyn_rotor.linear.modal.campbell import checked_range, shade_range
 from exudyn_rotor.linear.response.response import (
     HALF_POWER,
     STILL,
@@ -306,10 +306,8 @@ def _half_power(speeds: np.ndarray, curve: np.ndarray, size: float) -> float:
     if seen.min() < STILL * size:  # at rest, without a load
         return float(np.interp(HALF_POWER * size, seen[:0:-1], at[:0:-1]))
     levels = (size / seen) ** 2
-    roots = np.roots(np.polyfit(at - at[1], levels - 2.0, 2)) + at[1]
-    between = [x.real for x in roots if abs(x.real - at[1:].mean()) <= abs(at[2] - at[1])]
-    line = at[1] + (at[2] - at[1]) * (2.0 - levels[1]) / (levels[2] - levels[1])
-    return float(min(between, key=lambda x: abs(x - line), default=line))
+    roots = np.roots(np.polyfit(at - at[1], levels - 2.0, 2)).real + at[1]
+    return float(min(roots, key=lambda x: abs(x - np.interp(2.0, levels[1:], at[1:]))))
 
 
 def _amplification(peak: float, sides: tuple[float, float]) -> float:

@@ -94,11 +94,11 @@ class PeriodicSystem:
         return PeriodicSystem(self.speed, basis.T @ self.M @ basis, D, K, H)
 
 
-def at_angle(terms: Terms, theta: float) -> np.ndarray:
-    """Return a matrix at a spin angle [rad]."""
-    if len(terms) == 1:
+def at_angle(terms: Terms, theta: float | np.ndarray) -> np.ndarray:
+    """Return a matrix at a spin angle [rad], or matrices at angles, stacked."""
+    if len(terms) == 1 and np.ndim(theta) == 0:
         return terms[0].real
-    return sum(X * np.exp(1j * n * theta) for n, X in terms.items()).real
+    return sum(np.multiply.outer(np.exp(1j * n * theta), X) for n, X in terms.items()).real
 
 
 def add(
@@ -125,13 +125,9 @@ def without_rounding(terms: Terms) -> dict[int, np.ndarray]:
     """Return Fourier terms without those that are rounding beside the largest; 0 always stays."""
     if len(terms) == 1 and 0 in terms:
         return dict(terms)
-    largest = max((np.abs(X).max(initial=0.0) for X in terms.values()), default=0.0)
-    kept = {
-        n: X for n, X in terms.items() if n == 0 or np.abs(X).max(initial=0.0) > _ROUNDING * largest
-    }
-    if 0 not in kept:
-        kept[0] = np.zeros_like(next(iter(terms.values())).real)
-    return kept
+    sizes = {n: np.abs(X).max(initial=0.0) for n, X in terms.items()}
+    least = _ROUNDING * max(sizes.values())
+    return {n: X for n, X in terms.items() if n == 0 or sizes[n] > least}
 
 
 def stacked(motions: Sequence[Terms]) -> dict[int, np.ndarray]:
@@ -149,27 +145,25 @@ def difference(one: Terms, other: Terms) -> dict[int, np.ndarray]:
     return {n: one.get(n, 0.0) - other.get(n, 0.0) for n in orders}
 
 
-def congruent(U: Terms, X: np.ndarray, V: Terms | None = None) -> dict[int, np.ndarray]:
-    """Return the Fourier terms of ``Uᵀ(θ) X V(θ)``, V = U by default.
+def congruent(U: Terms, X: np.ndarray) -> dict[int, np.ndarray]:
+    """Return the Fourier terms of ``Uᵀ(θ) X U(θ)``, of a matrix (p, p) or a stack (s, p, p).
 
-    With V = U the symmetric and the skew part of X stay exactly that: the rounding of a stiff
-    support would else be a circulatory force. Of a stack X (s, p, p), with s matrices each.
+    The symmetric and the skew part of X stay exactly that: the rounding of a stiff support would
+    else be a circulatory force.
     """
-    if V is not None:
-        return _products(U, X, V, -np.inf)
     result: dict[int, np.ndarray] = {}
     acting = np.any(X, axis=(*range(X.ndim - 2), -1)) | np.any(X, axis=(*range(X.ndim - 2), -2))
     U, X = {n: Y[acting] for n, Y in U.items()}, X[..., acting, :][..., acting]
     for sign in (1.0, -1.0):
         part = 0.5 * (X + sign * _transposed(X))
         if np.any(part):
-            for n, Y in _products(U, part, U, 0).items():
+            for n, Y in products(U, part, U, 0).items():
                 Y = 0.5 * (Y + sign * _transposed(Y))
                 add(result, {n: Y, -n: Y.conj()} if n else {0: Y})
     return result
 
 
-def _products(U: Terms, X: np.ndarray, V: Terms, least: float) -> dict[int, np.ndarray]:
+def products(U: Terms, X: np.ndarray, V: Terms, least: float = -np.inf) -> dict[int, np.ndarray]:
     """Return the Fourier terms of ``Uᵀ(θ) X V(θ)`` from the order `least` on."""
     result: dict[int, np.ndarray] = {}
     for a, left in U.items():
@@ -227,14 +221,9 @@ class States(NamedTuple):
 
 def states_of(system: PeriodicSystem) -> States:
     """Return the first-order form of a system, or of a stack."""
-    M, k = system.M, system.size
-    root = None
-    if np.any(np.eye(k) != M):  # Lᵀx are mass-orthonormal coordinates
-        root = _transposed(np.linalg.inv(np.linalg.cholesky(M)))
-    D, K = system.D, system.K
-    if root is not None:
-        inverse = _transposed(root)
-        D, K = ({n: inverse @ X @ root for n, X in terms.items()} for terms in (D, K))
+    k, inverse = system.size, np.linalg.inv(np.linalg.cholesky(system.M))
+    root = _transposed(inverse)  # to mass-orthonormal coordinates
+    D, K = ({n: inverse @ X @ root for n, X in each.items()} for each in (system.D, system.K))
     symmetric = 0.5 * (K[0] + _transposed(K[0]))
     squares, V = np.linalg.eigh(symmetric)
     omega = np.sqrt(np.abs(squares))
@@ -251,7 +240,7 @@ def states_of(system: PeriodicSystem) -> States:
     A[0][..., k + diagonal, diagonal] -= squares / omega
     A[0][..., diagonal, k + diagonal] = omega
     shape = np.zeros((*V.shape[:-1], 2 * k))
-    shape[..., :k] = (V if root is None else root @ V) / omega[..., None, :]
+    shape[..., :k] = root @ V / omega[..., None, :]
     return States(A, shape)
 
 

@@ -80,10 +80,9 @@ def motions_in(
         found = own_motions(model, stack)
         if warns:
             model.warn_beyond(met(model, found))
-        return found if basis is None else found.in_all(basis, neutral)
-    if basis is not None:
-        stack = stack.projected(basis)
-    found = motions_of(stack, method, tolerance, **given)
+    else:
+        stack = stack if basis is None else stack.projected(basis)
+        found = motions_of(stack, method, tolerance, **given)
     return found if basis is None else found.in_all(basis, neutral)
 
 
@@ -92,17 +91,13 @@ def forced_over(
     speed: float,
     loads: Terms,
     frequencies: np.ndarray,
-    *,
-    held: np.ndarray | None = None,
     **options: Any,
 ) -> dict[int, np.ndarray]:
     """Return the harmonics (s, k) of steady motions under loads of frequencies (s,) [rad/s].
 
-    At one speed [rad/s], in motions of a basis `held` where one is given. The harmonic n of the
-    loads, (k,), has the frequencies plus n times the speed, and the coefficients of these. The
-    `options` are those of :func:`forced_motions`.
+    At one speed [rad/s]. The harmonic n of the loads, (k,), has the frequencies plus n times the
+    speed, and the coefficients of these. The `options` are those of :func:`forced_motions`.
     """
-    options |= {"held": held}
     if not model.over_frequency:
         return forced_motions(model.at(speed), loads, frequencies, **options)
     found = {}

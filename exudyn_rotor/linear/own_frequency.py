@@ -1,13 +1,8 @@
 """Free motions on supports whose coefficients depend on the frequency of the motion itself.
 
-At a given spin speed the k motions of the equations with the coefficients of a frequency ω have
-eigenvalues, in the order of |Im λ|. That of the place j is found where
-
-    |Im λ_j(ω)| = ω,
-
-by the textbook's convention that coefficients of steady motions hold for growing and decaying ones.
-In this order |Im λ_j| is continuous in ω, so that each place has such a frequency between two
-at which the difference changes its sign; of several the lowest is taken.
+Coefficients of steady motions are taken for growing and decaying ones. With the coefficients of a
+frequency ω the k motions at a spin speed have eigenvalues λ_j in the order of |Im λ|, in which they
+are continuous in ω: the motion j is found where ``|Im λ_j(ω)| − ω`` first changes its sign.
 """
 
 from __future__ import annotations

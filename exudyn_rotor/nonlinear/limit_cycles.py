@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.given import Given, given_supports
+from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.build import Target
@@ -102,8 +102,6 @@ def limit_cycles(
     """
     speeds = checks.ascending_from_zero(speeds, "speeds")
     checks.instance(onset, "onset", StabilityThresholds, "stability_threshold(…) makes one")
-    loads = checks.instances(loads, "loads", HarmonicForce)
-    gravity = checks.vector(gravity, "gravity", "m/s²")
     tolerance = checks.tolerance(tolerance)
     asked = checked_places(at)
     begins = np.flatnonzero(onset.onset)
@@ -111,12 +109,12 @@ def limit_cycles(
         raise ValueError("onset: the rotor does not turn unstable in its range; give a wider one")
     speed = float(onset.values[begins[0]])
     frequency = float(onset.frequencies_inertial[begins[0]])
-    given = as_lists(target, body, given_supports(supports), foundation, gravity, loads, stiffening)
+    given = as_lists(target, body, supports, foundation, gravity, loads, stiffening)
     problem = Problem.of(given, unbalances=(), own=False, speed=speed, highest=speed)
-    if problem.standing is None or problem.laws.passes or not problem.laws.bearings:
+    if problem.standing is None or problem.laws.passes:
         raise ValueError(
-            "supports: need one film or more, and a round rotor without rolling bearings, whose "
-            "spin would be a second frequency"
+            "target, supports: need a round rotor without rolling bearings, whose spin would be a "
+            "second frequency"
         )
 
     def balance(p: np.ndarray, reach: tuple[int, int]) -> Balance:
@@ -142,13 +140,13 @@ def limit_cycles(
         limits = min(speeds[0], _BELOW * p[1]), speeds[-1]
         found = list(family.followed(start, speeds, limits=limits))
         warn_of(family, found)
-        return collected(found, np.zeros(len(found), int), "spin speed [rad/s]", asked)
+        return collected([found], "spin speed [rad/s]", asked)
 
 
 def _hopf(problem: Problem, frequency: float, speed: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the mean place (d,) and φ of (1) at a limit of stability."""
     try:
-        mean = problem.at_rest(speed)[1]
+        mean = problem.at_rest(speed)
     except UnconvergedError as error:
         raise ValueError(f"onset: no equilibrium at {speed:g} rad/s ({error})") from error
     balance = problem.balance(speed, (1, 0), whirl=frequency)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import MISSING, fields, replace
+from dataclasses import fields
 from functools import partial
 from os import PathLike
 from typing import Any, TypeVar
@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.storage import Entries, read_arrays, write_arrays
+from exudyn_rotor.storage import plain, read_arrays, write_arrays
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
 
@@ -55,54 +55,42 @@ def load_reduced(path: str | PathLike, classes: tuple[type, ...]) -> Rotor:
 
     OSError when there is no such file; ValueError when it is damaged or describes no reduced rotor.
     """
-    entries = Entries(read_arrays(path, _KIND))
+    data = {name: plain(value) for name, value in read_arrays(path, _KIND).items()}
     try:
-        return _rotor(entries, classes)
+        return _rotor(data, classes)
     except (KeyError, TypeError, ValueError) as error:
         raise ValueError(
             f"{path}: describes no reduced rotor, or was written by another version ({error})"
         ) from error
 
 
-def _rotor(entries: Entries, classes: tuple[type, ...]) -> Rotor:
-    """Return a rotor, which checks shapes and values, of all entries."""
+def _rotor(data: dict[str, Any], classes: tuple[type, ...]) -> Rotor:
+    """Return a rotor of all entries; the classes check what they are made of."""
     make, mode_kind, interface, shapes, centrifugal = classes
-    attached = entries.group(_ATTACHED)
-    columns = entries.array(_IN_ATTACHED) if attached else None
-    rotor = make(
-        axis=SpinAxis(*entries.array("axis")),
-        center_of_mass=entries.array("center_of_mass"),
-        invariants=_made(Invariants, entries.group("invariants.")),
-        rigid_kinds=tuple(mode_kind[name] for name in entries.words("rigid_kinds", unique=False)),
-        interfaces={
-            name: _made(interface, entries.group(f"interface{index}."))
-            for index, name in enumerate(entries.words("interface_names"))
+    attached = _taken(data, _ATTACHED)
+    found = {
+        "axis": SpinAxis(*data.pop("axis")),
+        "invariants": Invariants(**_taken(data, "invariants.")),
+        "rigid_kinds": tuple(mode_kind[name] for name in data.pop("rigid_kinds")),
+        "interfaces": {
+            name: interface(**_taken(data, f"interface{index}."))
+            for index, name in enumerate(data.pop("interface_names"))
         },
-        mode_mass=entries.array("mode_mass"),
-        dropped=entries.words("dropped", unique=False),
-        grounded=entries.flag("grounded"),
-        shapes=_made(shapes, entries.group("shapes."), optional=True),
-        centrifugal=_made(centrifugal, entries.group("centrifugal."), optional=True),
-    )
-    entries.close()
-    if columns is None:
-        return rotor
-    finer = _rotor(attached, classes)
-    columns = checks.array(columns, _IN_ATTACHED, shape=(finer.size, rotor.size))
-    if finer.interfaces.keys() != rotor.interfaces.keys():
-        raise ValueError("with_attachments: needs the interfaces of the rotor")
-    return replace(rotor, attached=partial(tuple, (finer, columns)))
+    }
+    for name, kind in (("shapes", shapes), ("centrifugal", centrifugal)):
+        values = _taken(data, f"{name}.")
+        found[name] = kind(**values) if values else None
+    if attached:
+        finer = _rotor(attached, classes)
+        shape = finer.size, found["invariants"].size
+        columns = checks.array(data.pop(_IN_ATTACHED), _IN_ATTACHED, shape=shape)
+        if finer.interfaces.keys() != found["interfaces"].keys():
+            raise ValueError("with_attachments: needs the interfaces of the rotor")
+        found["attached"] = partial(tuple, (finer, columns))
+    return make(**found, **data)
 
 
-def _made(kind: type, entries: Entries, optional: bool = False) -> Any:
-    """Return an object of a dataclass from the entries of its fields; None of none if optional."""
-    if optional and not entries:
-        return None
-    values = {}
-    for field in fields(kind):
-        if field.name in entries or field.default is MISSING:
-            read = entries.number if field.type.startswith("float") else entries.array
-            whole = field.name == "triangles"
-            values[field.name] = entries.array(field.name, int) if whole else read(field.name)
-    entries.close()
-    return kind(**values)
+def _taken(data: dict[str, Any], prefix: str) -> dict[str, Any]:
+    """Take all entries whose names begin with a prefix, without it."""
+    names = [name for name in data if name.startswith(prefix)]
+    return {name.removeprefix(prefix): data.pop(name) for name in names}

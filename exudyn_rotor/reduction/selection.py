@@ -97,7 +97,7 @@ def select_modes(reduced: ReducedRotor, formulation: Formulation) -> Selection:
     """
     checks.instance(reduced, "reduced", ReducedRotor, "SolidRotor.reduce(…) makes one")
     checks.instance(formulation, "formulation", Formulation)
-    _check_possible(reduced, formulation)
+    check_possible(formulation, reduced.grounded, ModeKind.SPIN in reduced.rigid_kinds)
     if formulation.translation_count:
         origin = reduced.center_of_mass
     else:
@@ -130,13 +130,14 @@ def _without_noise(invariants: Invariants) -> Invariants:
     )
 
 
-def _check_possible(reduced: ReducedRotor, formulation: Formulation) -> None:
-    if reduced.grounded and (formulation.translation_count or formulation.has_spin):
+def check_possible(formulation: Formulation, grounded: bool, turns: bool) -> None:
+    """Refuse what a rotor cannot have: held by its stiffness, or without inertia as it `turns`."""
+    if grounded and (formulation.translation_count or formulation.has_spin):
         raise ValueError(
             "the stiffness matrix holds this rotor in its own frame (grounded), and a frame "
             "without mass cannot move freely: use translation='none' and a prescribed spin"
         )
-    if formulation.has_spin and ModeKind.SPIN not in reduced.rigid_kinds:
+    if formulation.has_spin and not turns:
         raise ValueError(
             "the rotor has no moment of inertia about its axis, so its spin cannot be free: "
             "prescribe the spin, or give the rotor mass off the axis"

@@ -164,7 +164,7 @@ PLACES = {
         curved_elements, UserWarning, "are replaced by mid nodes"),
     "nonlinear/periodic_response.py:warn_of": (
         unstable_motion_on_rolling_bearings, UserWarning, "values .* the motion is unstable"),
-    "multibody/add_rotor.py:_add_solid": (
+    "multibody/add_rotor.py:add_rotor": (
         scene_of_a_full_lossy_rotor, UserWarning, "A scene runs without it"),
     "multibody/rotor/rotor_body.py:check_connections": (
         asked_for_connections, ConnectionWarning, "does not tilt"),
@@ -188,7 +188,6 @@ ELSEWHERE = {
     "linear/response/response.py:warn_of_coarse_peaks": "too far apart to give its size and width",
     "evaluation/separation.py:_warn_of_speeds_left_out": "count, and the response is known from",
     "linear/model/build.py:warn_of_structural_damping": "campbell finds modes without it",
-    "multibody/add_rotor.py:_add_reduced": "A scene runs without it",
     "solvers/factor.py:_tell_of_mkl": "exudyn-rotor\\[mkl\\]",
     "solid/meshes/mesh_model.py:import_model": "taken as",
     "theory/stiffening.py:warn_of_left_out": "beyond 'tilt' is left out",

@@ -207,11 +207,7 @@ def harmonic_response(
 
 @dataclass(frozen=True, eq=False)
 class _Sweep:
-    """Steady motions at places of a model over speeds or frequencies, with a user's options.
-
-    Harmonics that matter are larger than the `tolerance`, a share of the largest. Places are seen
-    at a spin `speed` [rad/s], or at any but 0.
-    """
+    """Steady motions at places, seen at a spin `speed` or any but 0, over speeds or frequencies."""
 
     at: Sequence[At] | At | None
     frame: str
@@ -236,11 +232,12 @@ class _Sweep:
             values, motions = self._refined(model, values, motions)
         motions, observed = self.joined(motions, values), places(model, self.at, self.speed)
         errors = basis_errors(model, self.accuracy, values, motions, self._joined_motions)
-        if errors is not None and np.any(np.isfinite(errors)):
-            at, place = np.unravel_index(np.nanargmax(errors), errors.shape)
-            where = f"{Units.of(self.unit).speeds(values[at]):.5g} {self.unit}"
-            what = f"the motion of {observed[place].label!r} at {where}"
-            warn(errors, what, model, self.accuracy)
+
+        def told(row: int, place: int) -> str:
+            where = f"{Units.of(self.unit).speeds(values[row]):.5g} {self.unit}"
+            return f"the motion of {observed[place].label!r} at {where}"
+
+        warn(errors, told, model, self.accuracy)
         orders = np.array(sorted(motions))
         motion = np.stack([motions[n] for n in orders.tolist()], axis=2)
         # a rotation counts as the displacement that it makes at the rotor's radius of gyration
@@ -279,8 +276,7 @@ class _Sweep:
     ) -> tuple[np.ndarray, Harmonics]:
         """Add points until the phase of every motion turns little between neighbours.
 
-        No point is added where there is no steady motion, as at a resonance without damping, nor
-        beside such a value.
+        None is added where there is no steady motion, as at a resonance without damping.
         """
         given, narrowest = values, _NARROWEST * np.ptp(values)
         for _ in range(_MOST_ROUNDS):
@@ -347,6 +343,9 @@ class _OverFrequency(_Sweep):
     def coordinates(self, model: LinearModel, values: np.ndarray) -> tuple[Harmonics, np.ndarray]:
         """Return the coordinates of a model, and at which frequencies (s,) it has equations."""
         load = total(self.loads, model, self.speed)
+        if not any(map(np.any, load.values())):
+            what = "give loads=[HarmonicForce(…)] that move the rotor"
+            raise ValueError(f"no load, so no response: {what}")
         model.warn_beyond(np.abs(np.add.outer(values, self.speed * np.array(list(load)))))
         options = {"driven": model.free_spins, "tolerance": self.tolerance}
 

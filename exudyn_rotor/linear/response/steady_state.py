@@ -11,7 +11,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.linear.model.scene.steady_motion import steady_motion
 from exudyn_rotor.multibody.full.full_body import reduced_body
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState, spin_at_start
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState
 from exudyn_rotor.theory.rotating_axes import axial_rotation
 
 _TOLD = 1e-5  # share of the motion in higher harmonics that a warning tells
@@ -78,7 +78,7 @@ class SteadyState:
             Spin angle θ [rad]; the one with which the rotor starts by default.
         """
         scene, body = self.scene, self.scene.body
-        angle = spin_at_start(body)[0] if angle is None else checks.number(angle, "angle", "rad")
+        angle = body.placement.angle if angle is None else checks.number(angle, "angle", "rad")
         turned = np.exp(1j * self.orders * angle)
         y = (turned @ self.harmonics).real
         y_t = (turned @ (1j * self.orders[:, None] * self.speed * self.harmonics)).real
@@ -204,7 +204,7 @@ def steady_state(
     tolerance = checks.tolerance(tolerance)
     body.check_assembled()
     scene = LinearScene.of(body.mbs, body)
-    speed = spin_at_start(body)[1] if speed is None else checks.number(speed, "speed", "rad/s")
+    speed = body.placement.speed if speed is None else checks.number(speed, "speed", "rad/s")
     begin = None if start is None else _begin(scene, start)
     found = SteadyState(scene, speed, *steady_motion(scene, speed, tolerance, begin))
     if speed and found.left_out > max(tolerance, _TOLD):

@@ -133,7 +133,7 @@ def static_response(
         away = np.abs(fields["reactions"] - better["reactions"]).max(initial=0.0)
         most = np.abs(better["reactions"]).max(initial=1e-300)
         errors = np.append(fields["basis_errors"], away / most)
-        warn(errors, "a static deflection or reaction", problem.model, accuracy)
+        warn(errors, lambda _: "a static deflection or reaction", problem.model, accuracy)
     return StaticResponse(**fields, **problem.mesh(y, stress), speed=speed, frame=frame)
 
 

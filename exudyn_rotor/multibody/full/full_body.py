@@ -11,7 +11,7 @@ import scipy.sparse as sp
 from exudyn.itemInterface import SensorSuperElement
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.full.ties import Ties, add_ties
+from exudyn_rotor.multibody.full.ties import add_ties
 from exudyn_rotor.multibody.rotor.rotor_body import Record, RotorBody, SceneBody, native_settings
 from exudyn_rotor.multibody.rotor.rotor_items import (
     Carrier,
@@ -128,10 +128,8 @@ class FullRotorBody(SceneBody):
 
     def _tied(self, interface: Interface) -> Carrier:
         """Add a flexible body whose six coordinates are tied to the nodes of an interface."""
-        size = self.motion.invariants.size
-        rows, none = sp.csr_array(interface.mean_motion(size // 3)), np.zeros((0, size))
-        ties = Ties(rows, none, none)
-        tied, _ = add_ties(self.mbs, self.nodes["fields"], ties, self)
+        rows = sp.csr_array(interface.mean_motion(self.node_count))
+        tied, _ = add_ties(self.mbs, self.nodes["fields"], self, rows)
         nodes = self.nodes["rigid"], tied
         return Carrier(
             self.mbs.AddObject(flexible_body(self, nodes, np.zeros((3, 6)))),

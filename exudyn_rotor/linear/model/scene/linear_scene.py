@@ -305,7 +305,7 @@ def check_scene(mbs: exudyn.MainSystem, body: RotorBody) -> None:
     TypeError, ValueError
     """
     check_body(mbs, body)
-    second = [one.name for one in known_rotors(mbs) if one.token is not body.token]
+    second = [one.name for one in known_rotors(mbs) if one.script is not body.script]
     if second:
         raise ValueError(
             f"linear scene: a second rotor in this system, {second[0]!r}; one revolution is a "
