@@ -25,7 +25,6 @@ from exudyn_rotor.reduction.component import (
 from exudyn_rotor.reduction.reduced_rotor import (
     RIGID_KINDS,
     Centrifugal,
-    ModeKind,
     ModeShapes,
     ReducedInterface,
     ReducedRotor,
