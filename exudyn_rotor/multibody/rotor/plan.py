@@ -363,18 +363,10 @@ def marker_name(name: str | None, interface: str) -> str:
     return interface if name is None else f"{name}:{interface}"
 
 
-def check_free_names(mbs: exudyn.MainSystem, setup: Setup) -> None:
-    """Refuse a name that an item of `mbs` already has."""
-    name = setup.name
-    taken = [(mbs.GetMarkerNumber, marker_name(name, one)) for one in setup.marker_kinds]
-    if name is not None:
-        taken.append((mbs.GetObjectNumber, name))
-    for find, item in taken:
-        if int(find(item)) != -1:
-            raise ValueError(
-                f"name {name!r}: this system already has an item {item!r}; "
-                "give the second rotor another name"
-            )
+def check_free(name: str, what: str, find: Callable[[str], int]) -> None:
+    """Refuse a name that an item of an ``mbs`` has already; `find` returns its number, or -1."""
+    if int(find(checks.label(name, "name"))) != -1:
+        raise ValueError(f"name: this system already has a {what} {name!r}; choose another")
 
 
 @dataclass(frozen=True, eq=False)
