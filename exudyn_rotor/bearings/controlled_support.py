@@ -15,24 +15,12 @@ class ControlledSupport:
     """Linear equations of a support and coordinates of its own, ``M p̈ + D ṗ + K p = 0``.
 
     The ports p are the displacement where it acts along (n1, n2), which stand still, that where its
-    sensors are, if it has any, and its own coordinates, which alone have inertia: of a controller
-    pairs along (n1, n2); of pads the motion s of each bore along the tangent t at the pivot, whose
-    film acts on ``x − s t``.
-
-    Attributes
-    ----------
-    interface : str
-        Where it acts.
-    masses : ndarray, shape (p,)
-        Of own coordinates: of a pad its inertia about the pivot over the square of the radius [kg].
-    matrices : callable
-        Stiffness and damping of the ports by the spin speed [rad/s]; a ValueError where the journal
-        has no equilibrium.
-    static_stiffness : Coefficient
-        Of all, the own coordinates eliminated, slowly and without an integral, of pads in the
-        whirl: with it critical speeds are found [N/m].
-    sensor : str or None
-        Interface at which a controller measures; None of pads.
+    sensors are, if it has any, and its own coordinates, which alone have the inertia `masses`: of a
+    controller pairs along (n1, n2); of pads the motion s of each bore along the tangent t at the
+    pivot, whose film acts on ``x − s t``. `matrices` returns stiffness and damping of the ports by
+    the spin speed; a ValueError says that the journal has no equilibrium. Critical speeds are found
+    with the `static_stiffness` of all, the own coordinates eliminated, slowly and without an
+    integral, of pads in the whirl. A controller measures at the interface `sensor`.
     """
 
     interface: str

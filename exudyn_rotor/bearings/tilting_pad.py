@@ -223,12 +223,13 @@ class TiltingPadBearing(Bearing):
         raise refused
 
 
-def _shift_of_pad(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float) -> float:
+def _shift_of_pad(pad: JournalBearing, place: np.ndarray, t: np.ndarray, speed: float) -> float:
     """Return s [m] of a pad whose film has no part along t; NaN where no tilt makes it carry.
 
     Over all tilts: where the moment about the pivot rises through zero. A ValueError says that the
     film is pressed thinner than its grid resolves.
     """
+    film = pad.film
     pressed = ValueError(
         f"load: presses the film of a pad below {film.thinnest:.3g} m, which its grid does not "
         "resolve; give more nodes, or a smaller load"
@@ -239,13 +240,9 @@ def _shift_of_pad(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float)
     high = np.min(-room[lever < 0.0] / lever[lever < 0.0], initial=np.inf)
     if not low < high:
         raise pressed
-    empty = None
 
     def moment(s: float) -> float:
-        nonlocal empty
-        state = film.solved(place - s * t, np.zeros(2), speed, empty)
-        empty = state.solution.empty
-        return float(t @ state.force)
+        return float(t @ pad._film_at(*(place - s * t), 0.0, 0.0, speed).force)
 
     # beside that of a film whose edges are equally thick, next to which a light pad is
     even = float((place - film.pads[0].center) @ t)
@@ -260,7 +257,7 @@ def _shift_of_pad(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float)
             raise pressed
         return np.nan
     s = brentq(moment, tried[rises[0]], tried[rises[0] + 1], xtol=_ROOT * film.radius)
-    stiffness = film.solved(place - s * t, np.zeros(2), speed, empty).coefficients()[0]
+    stiffness = pad._film_at(*(place - s * t), 0.0, 0.0, speed).coefficients()[0]
     return s if t @ stiffness @ t > 0.0 else np.nan  # where no pressure is left
 
 
@@ -268,7 +265,7 @@ def _shift_of_pad(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float)
 class _Pads:
     """Pads at one place of the journal, each tilted so that it obeys (1)."""
 
-    films: list[OilFilm]
+    pads: list[JournalBearing]
     tangents: np.ndarray
     speed: float
     place: np.ndarray
@@ -278,28 +275,28 @@ class _Pads:
     @classmethod
     def of(cls, bearing: TiltingPadBearing, speed: float, place: np.ndarray) -> _Pads:
         """Return pads with films of their own, the journal at a place [m]."""
-        films, tangents = [each.film for each in bearing.pad_bearings], bearing.tangents
-        pairs = list(zip(films, tangents, strict=True))
-        shifts = [_shift_of_pad(film, place, t, speed) for film, t in pairs]
+        pads, tangents = bearing.pad_bearings, bearing.tangents
+        pairs = list(zip(pads, tangents, strict=True))
+        shifts = [_shift_of_pad(pad, place, t, speed) for pad, t in pairs]
         states = [
-            None if np.isnan(s) else film.solved(place - s * t, np.zeros(2), speed)
-            for (film, t), s in zip(pairs, shifts, strict=True)
+            None if np.isnan(s) else pad._film_at(*(place - s * t), 0.0, 0.0, speed)
+            for (pad, t), s in zip(pairs, shifts, strict=True)
         ]
-        return cls(films, tangents, speed, place, np.array(shifts), states)
+        return cls(pads, tangents, speed, place, np.array(shifts), states)
 
     def together(self, speed: float, load: np.ndarray) -> _Pads | None:
         """Return the equilibrium at a speed, by Newton's method for journal and tilts at once.
 
         None where it does not end, a film vanishes or is too thin, and where absent pads carry.
         """
-        place, shifts, states, still = self.place, self.shifts, list(self.states), np.zeros(2)
-        films, present = self.films, [pad for pad, state in enumerate(states) if state is not None]
-        small = _STILL * min(film.clearance for film in films)
+        place, shifts, states = self.place, self.shifts, list(self.states)
+        present = [pad for pad, state in enumerate(states) if state is not None]
+        small = _STILL * min(pad.film.clearance for pad in self.pads)
         for _ in range(_STEPS):
             left, total, moved = load.copy(), np.zeros((2, 2)), np.full((len(states), 3), np.nan)
             for pad in present:
-                film, t, empty = films[pad], self.tangents[pad], states[pad].solution.empty
-                states[pad] = film.solved(place - shifts[pad] * t, still, speed, empty)
+                t = self.tangents[pad]
+                states[pad] = self.pads[pad]._film_at(*(place - shifts[pad] * t), 0.0, 0.0, speed)
                 force, stiffness = states[pad].force, states[pad].coefficients()[0]
                 rise, lever = t @ stiffness @ t, stiffness @ t
                 if not rise > _LOOSE * np.abs(stiffness).max():
@@ -318,9 +315,9 @@ class _Pads:
             place, shifts = place + share * move, shifts + share * tilting
         else:
             return None
-        for film, t, state in zip(films, self.tangents, states, strict=True):
-            thin = state is not None and state.heights.min() < film.thinnest
-            if thin or (state is None and not np.isnan(_shift_of_pad(film, place, t, speed))):
+        for pad, t, state in zip(self.pads, self.tangents, states, strict=True):
+            thin = state is not None and state.heights.min() < pad.film.thinnest
+            if thin or (state is None and not np.isnan(_shift_of_pad(pad, place, t, speed))):
                 return None
         return replace(self, speed=speed, place=place, shifts=shifts, states=states)
 

@@ -100,14 +100,25 @@ class GearMesh(Connection):
             raise ValueError(f"flank: needs 1 or -1, got {self.flank}")
         if self.backlash is not None:
             checks.keep_numbers(self, {"backlash": "m"}, least=0.0)
-        if self.teeth is not None:
-            checks.keep(self, teeth=self._checked_teeth())
+        self._check_teeth()
         sides = (self.flank,) if self.backlash is None else (self.flank, -self.flank)
         flanks = np.array([self._direction(side) for side in sides])
-        checks.keep(self, variation=self._checked_variation(), _flanks=checks.read_only(flanks))
+        checks.keep(self, _flanks=checks.read_only(flanks))
 
-    def _checked_teeth(self) -> np.ndarray:
+    def _check_teeth(self) -> None:
+        amplitudes = checks.vector(self.variation, "variation", size=None)
+        checks.keep(self, variation=amplitudes)
+        if np.abs(amplitudes).sum() >= 1.0:
+            raise ValueError(
+                "variation: needs amplitudes whose sum is below 1, or the stiffness may vanish, "
+                f"got {checks.shown(amplitudes.tolist())}"
+            )
+        if self.teeth is None and amplitudes.size:
+            raise ValueError("variation: needs the numbers of teeth; give teeth=[…, …]")
+        if self.teeth is None:
+            return
         teeth = checks.whole_numbers(self.teeth, "teeth", least=1)
+        checks.keep(self, teeth=teeth)
         if teeth.shape != (2,):
             raise ValueError(f"teeth: needs two whole numbers, got {len(teeth)}")
         if abs(teeth[0] * self.radii[1] / (teeth[1] * self.radii[0]) - 1.0) > _SAME_RATIO:
@@ -115,18 +126,6 @@ class GearMesh(Connection):
                 f"teeth: {teeth[0]} to {teeth[1]} is not the ratio of the radii, "
                 f"{self.radii[0]:g} to {self.radii[1]:g} m; give radii in the ratio of the teeth"
             )
-        return teeth
-
-    def _checked_variation(self) -> np.ndarray:
-        amplitudes = checks.vector(self.variation, "variation", size=None)
-        if amplitudes.size and self.teeth is None:
-            raise ValueError("variation: needs the numbers of teeth; give teeth=[…, …]")
-        if np.abs(amplitudes).sum() >= 1.0:
-            raise ValueError(
-                "variation: needs amplitudes whose sum is below 1, or the stiffness may vanish, "
-                f"got {checks.shown(amplitudes.tolist())}"
-            )
-        return amplitudes
 
     @property
     def direction(self) -> np.ndarray:

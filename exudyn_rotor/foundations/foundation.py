@@ -412,13 +412,9 @@ def _check_definite(matrix: np.ndarray, needed: str) -> None:
 
 def _in_three_axes(value: float | ArrayLike, name: str, unit: str) -> np.ndarray:
     given = checks.array(value, name, unit)
-    if given.shape not in ((), (3,), (3, 3)):
-        raise ValueError(
-            f"{name}: needs a number, three numbers or a 3 × 3 matrix [{unit}], got shape "
-            f"{given.shape}"
-        )
-    matrix = given if given.ndim == 2 else np.diag(np.broadcast_to(given, 3))
-    matrix = checks.symmetric(matrix, name, unit, size=3)
+    if given.ndim < 2:
+        given = np.diag(checks.one_or_each(given, name, unit, 3, least=0.0))
+    matrix = checks.symmetric(given, name, unit, size=3)
     if np.linalg.eigvalsh(matrix)[0] < -1e-9 * np.abs(matrix).max():
         raise ValueError(f"{name}: needs values ≥ 0 [{unit}], got {checks.shown(given)}")
     return matrix

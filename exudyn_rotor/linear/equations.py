@@ -94,11 +94,11 @@ class PeriodicSystem:
         return PeriodicSystem(self.speed, basis.T @ self.M @ basis, D, K, H)
 
 
-def at_angle(terms: Terms, theta: float) -> np.ndarray:
-    """Return a matrix at a spin angle [rad]."""
-    if len(terms) == 1:
+def at_angle(terms: Terms, theta: float | np.ndarray) -> np.ndarray:
+    """Return a matrix at a spin angle [rad], or matrices at angles, stacked."""
+    if len(terms) == 1 and np.ndim(theta) == 0:
         return terms[0].real
-    return sum(X * np.exp(1j * n * theta) for n, X in terms.items()).real
+    return sum(np.multiply.outer(np.exp(1j * n * theta), X) for n, X in terms.items()).real
 
 
 def add(

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 import scipy.linalg
@@ -19,11 +17,7 @@ from exudyn_rotor.reduction.reduced_rotor import RIGID_KINDS, ModeKind, rigid_na
 from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers import modes as eigen
-from exudyn_rotor.solvers.inertia_relief import (
-    free_motions_of,
-    inertia_relief,
-    relative_rounding,
-)
+from exudyn_rotor.solvers.inertia_relief import free_motions_of, inertia_relief
 from exudyn_rotor.theory.axis import SpinAxis, rotations, translations
 
 # share of a column that is new, and length of a column, of the largest, that is rounding
@@ -122,37 +116,28 @@ def free_modes(rotor: FiniteElementRotor, count: int) -> ModeBasis:
     ('eigenmode 1',) [2000000.]
     """
     check_rotor(rotor)
-    stiffness, mass = rotor.stiffness, rotor.mass
-    rigid = free_motions_of(rotor)
-    available = rigid.shape[0] - rigid.shape[1]
-    checks.count(count, "count", least=1, most=available)
-    solve = partial(eigen.lowest_modes, stiffness, mass, inertia_relief(rotor))
-    values, modes = lowest_with_pairs(solve, count, available)
-    precision = relative_rounding(stiffness, rigid)
-    eigen.check_modes(stiffness, mass, values, modes, precision=precision)
-    modes = with_fixed_sign(modes)
+    checks.count(count, "count", least=1)
+    inverse = inertia_relief(rotor)
+    values, modes = lowest_with_pairs(rotor.stiffness, rotor.mass, inverse, count)
     return ModeBasis(modes, numbered("eigenmode", count), rotor.nodes, frequencies=np.sqrt(values))
 
 
-def with_fixed_sign(modes: np.ndarray) -> np.ndarray:
-    """Return the modes with the largest component of each positive."""
-    largest = np.argmax(np.abs(modes), axis=0)
-    return modes * np.sign(modes[largest, np.arange(modes.shape[1])])
-
-
 def lowest_with_pairs(
-    solve: Callable[[int], eigen.Modes], count: int, available: int
+    stiffness: sp.csr_array, mass: sp.csr_array, inverse: eigen.Inverse, count: int
 ) -> eigen.Modes:
     """Return the `count` lowest modes; with a warning where the next one is the last one's pair.
 
     A round rotor bends in all planes alike; an uneven mesh splits the two frequencies by little.
-    With one mode of a pair it is an asymmetric shaft. `solve` returns squared frequencies and
-    modes by their number, of which `available` are there.
+    With one mode of a pair it is an asymmetric shaft.
     """
-    values, modes = solve(min(count + 1, available) if count else 0)
+    available = mass.shape[0] - inverse.left_out
+    checks.count(count, "count", most=available)
+    if count == 0:
+        return np.zeros(0), np.zeros((mass.shape[0], 0))
+    values, modes = eigen.lowest_modes(stiffness, mass, inverse, min(count + 1, available))
     frequencies = np.sqrt(np.maximum(values, 0.0))
     near = np.diff(frequencies) <= _APART * frequencies[1:]
-    if 0 < count < len(values) and near[count - 1] and not (count > 1 and near[count - 2]):
+    if count < len(values) and near[count - 1] and not (count > 1 and near[count - 2]):
         first, second = frequencies[count - 1 : count + 1] / (2.0 * np.pi)
         warnings.warn(
             f"count: mode {count} ({first:.4g} Hz) is one of a pair in two planes, and mode "
@@ -161,7 +146,10 @@ def lowest_with_pairs(
             UserWarning,
             stacklevel=user_level(),
         )
-    return values[:count], modes[:, :count]
+    values, modes = values[:count], modes[:, :count]
+    eigen.check_modes(stiffness, mass, inverse, values, modes)
+    largest = np.argmax(np.abs(modes), axis=0)
+    return values, modes * np.sign(modes[largest, np.arange(count)])
 
 
 def component_modes(
@@ -198,13 +186,8 @@ def fem_interface_modes(rotor: FiniteElementRotor, fem: FEMinterface) -> ModeBas
     recovered = fem.postProcessingModes
     if str(recovered.get("outputVariableType", "")).endswith("StressLocal"):
         nodes, count = len(rotor.nodes), matrix.shape[1]
-        stress = np.asarray(recovered["matrix"], dtype=float)  # six columns for every mode
-        if stress.shape != (nodes, 6 * count):
-            raise ValueError(
-                f"the FEMinterface's stress modes have the shape {stress.shape}, but {nodes} nodes "
-                f"and {count} modes need {(nodes, 6 * count)}; compute them after the modes, with "
-                "fem.ComputePostProcessingModesNGsolve(…)"
-            )
+        # six columns for every mode
+        stress = checks.array(recovered["matrix"], "fem: its stress", shape=(nodes, 6 * count))
         stress = stress.reshape(nodes, count, 6).transpose(0, 2, 1)
     labels = numbered("FEMinterface mode", matrix.shape[1])
     return ModeBasis(matrix, labels, rotor.nodes, stress=stress)

@@ -6,7 +6,6 @@ Source: Craig, Bampton, "Coupling of substructures for dynamic analyses", AIAA J
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
@@ -18,13 +17,11 @@ from exudyn_rotor.reduction.component import (
     check_rotor,
     lowest_with_pairs,
     numbered,
-    with_fixed_sign,
 )
 from exudyn_rotor.solid.model import rigid_basis
 from exudyn_rotor.solid.rotor import FiniteElementRotor, Interface
-from exudyn_rotor.solvers import modes as eigen
 from exudyn_rotor.solvers.constrained import ConstrainedInverse
-from exudyn_rotor.solvers.inertia_relief import held_inverse, inertia_relief, relative_rounding
+from exudyn_rotor.solvers.inertia_relief import held_inverse, inertia_relief
 from exudyn_rotor.theory.axis import coordinates, rigid_motions
 
 # static modes, eigenvalues and eigenmodes
@@ -90,7 +87,7 @@ def craig_bampton_modes(
     static, values, eigenmodes = _COUPLINGS[coupling](rotor, count, chosen)
     labels = sum((_labels(interface) for interface in chosen), ()) + numbered("eigenmode", count)
     return ModeBasis(
-        np.hstack([static, with_fixed_sign(eigenmodes)]),
+        np.hstack([static, eigenmodes]),
         labels,
         rotor.nodes,
         frequencies=np.r_[np.full(static.shape[1], np.nan), np.sqrt(values)],
@@ -132,7 +129,6 @@ def _rigid_coupling(rotor: FiniteElementRotor, count: int, chosen: list[Interfac
     nodes = np.setdiff1d(np.arange(len(rotor.nodes)), held)
     inner = coordinates(nodes)
     stiffness, mass = (matrix[inner][:, inner] for matrix in (rotor.stiffness, rotor.mass))
-    checks.count(count, "count", most=len(inner))
     try:
         inverse = held_inverse(rotor, nodes)
     except ValueError as error:
@@ -140,9 +136,7 @@ def _rigid_coupling(rotor: FiniteElementRotor, count: int, chosen: list[Interfac
             f"the interfaces do not hold the rotor, or it has loose parts ({error})"
         ) from error
     static[inner] = -inverse.solve((rotor.stiffness @ static)[inner])
-    solve = partial(eigen.lowest_modes, stiffness, mass, inverse)
-    values, inner_modes = lowest_with_pairs(solve, count, len(inner))
-    eigen.check_modes(stiffness, mass, values, inner_modes)
+    values, inner_modes = lowest_with_pairs(stiffness, mass, inverse, count)
     eigenmodes = np.zeros((rotor.mass.shape[0], count))
     eigenmodes[inner] = inner_modes
     return static, values, eigenmodes
@@ -150,21 +144,13 @@ def _rigid_coupling(rotor: FiniteElementRotor, count: int, chosen: list[Interfac
 
 def _mean_coupling(rotor: FiniteElementRotor, count: int, chosen: list[Interface]) -> CoupledModes:
     """Return static modes, eigenvalues and eigenmodes with prescribed mean motions (RBE3)."""
-    stiffness, mass = rotor.stiffness, rotor.mass
     rows = [
         interface.mean_motion(len(rotor.nodes))[: _motion_count(interface)] for interface in chosen
     ]
     constraints = sp.csr_array(sp.vstack(rows))
-    available = mass.shape[0] - constraints.shape[0]
-    checks.count(count, "count", most=available)
-    relief = inertia_relief(rotor)
-    inverse = ConstrainedInverse(relief, constraints)
+    inverse = ConstrainedInverse(inertia_relief(rotor), constraints)
     static = inverse.prescribe(np.eye(constraints.shape[0]))
-    balanced = partial(eigen.without_reactions, constraints=constraints)
-    solve = partial(eigen.lowest_modes, stiffness, mass, inverse, balanced=balanced)
-    values, modes = lowest_with_pairs(solve, count, available)
-    precision = relative_rounding(stiffness, relief.rigid)
-    eigen.check_modes(stiffness, mass, values, modes, precision=precision, constraints=constraints)
+    values, modes = lowest_with_pairs(rotor.stiffness, rotor.mass, inverse, count)
     return static, values, modes
 
 

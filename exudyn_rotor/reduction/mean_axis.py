@@ -78,12 +78,10 @@ def use_mean_axis_modes(fem: FEMinterface) -> tuple[int, ...]:
     elastic = [index - count for index in used if index >= count]
     if not elastic:
         raise ValueError("fem: its modes are rigid motions alone; no flexible mode would remain")
-    fem.modeBasis = {**fem.modeBasis, "matrix": flexible[:, elastic]}
+    fem.modeBasis = fem.modeBasis | {"matrix": flexible[:, elastic]}
     stress = fem.postProcessingModes.get("matrix")
     if stress is not None and np.shape(stress)[1] == 6 * modes.shape[1]:
         columns = [6 * index + component for index in elastic for component in range(6)]
-        fem.postProcessingModes = {
-            **fem.postProcessingModes,
-            "matrix": np.asarray(stress)[:, columns],
-        }
+        kept = {"matrix": np.asarray(stress)[:, columns]}
+        fem.postProcessingModes = fem.postProcessingModes | kept
     return tuple(index for index in range(modes.shape[1]) if index not in elastic)

@@ -25,7 +25,6 @@ from exudyn_rotor.reduction.component import (
 from exudyn_rotor.reduction.reduced_rotor import (
     RIGID_KINDS,
     Centrifugal,
-    ModeKind,
     ModeShapes,
     ReducedInterface,
     ReducedRotor,
@@ -38,7 +37,6 @@ from exudyn_rotor.theory.axis import translations
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.stiffening import with_prestress
 
-_UNRESISTED = (ModeKind.TRANSLATION_1, ModeKind.TRANSLATION_2, ModeKind.AXIAL)
 _FREE_MODES = 12  # beside static ones, for what a spin adds
 
 ModeSource = int | ModeBasis | FEMinterface | np.ndarray
@@ -232,8 +230,8 @@ def _of_loads(rotor: FiniteElementRotor, invariants: Invariants, basis: np.ndarr
     matrix = basis.T @ (rotor.carried_prestress.by_loads @ basis)
     if rotor.grounded:
         return 0.5 * (matrix + matrix.T)
-    free = np.eye(len(matrix))[:, [RIGID_KINDS.index(kind) for kind in _UNRESISTED]]
-    others = np.eye(len(matrix)) - free @ free.T
+    others = np.eye(len(matrix))
+    others[:, :3] = 0.0  # translations are the first of RIGID_KINDS
     turns = others @ (rotor.axis.direction @ invariants.mean_rotation)
     turns[len(RIGID_KINDS) :] = 0.0
     turns /= np.linalg.norm(turns) or 1.0

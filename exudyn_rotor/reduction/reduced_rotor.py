@@ -133,9 +133,6 @@ class Centrifugal(Checked):
     yield_stress: float | None = None
 
 
-_SAME_DIRECTION = 1e-9  # of unit vectors: a file keeps them to the last bit
-
-
 @dataclass(frozen=True, eq=False)
 class ReducedRotor:
     """Rotor in a mass-orthonormal basis: the rigid motions, then the flexible modes.
@@ -208,9 +205,6 @@ class ReducedRotor:
     def __post_init__(self) -> None:
         checks.instance(self.axis, "axis", SpinAxis)
         size = checks.instance(self.invariants, "invariants", Invariants).size
-        away = np.abs(self.invariants.direction - self.axis.direction).max()
-        if away > _SAME_DIRECTION:
-            raise ValueError(f"axis: differs from the direction of the invariants by {away:.3g}")
         checks.mapping(self.interfaces, "interfaces", "ReducedInterface")
         for name, interface in self.interfaces.items():
             checks.instance(interface, f"interfaces[{name!r}]", ReducedInterface)

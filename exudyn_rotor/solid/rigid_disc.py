@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy.linalg as la
 import scipy.sparse as sp
 from numpy.typing import ArrayLike
 from scipy.sparse.linalg import spsolve
@@ -165,29 +166,21 @@ class RigidDisc(Checked):
         fields = np.column_stack([np.ones(len(arms)), arms])
         return np.linalg.pinv(fields, rcond=_ROUNDING)
 
-    def _rigid(self, places: np.ndarray) -> np.ndarray:
-        """Return the six rigid motions of some nodes, arms over the largest one, (3s, 6)."""
-        largest = np.linalg.norm(self.positions - self.center, axis=1).max() or 1.0
-        return rigid_motions(self.positions[places] / largest, self.center / largest)
-
     def mass_matrix(self, node_count: int) -> sp.csr_array:
         """Return what the disc adds to the mass matrix, shape (3n, 3n) [kg]."""
         checks.count(node_count, "node_count", least=int(self.nodes.max()) + 1)
-        a, b = self._affine[0], self._affine[1:]
-        scalar = self.mass * np.outer(a, a) + b.T @ self._moments @ b
-        some = self.nodes[self._some]
-        rows, columns = np.meshgrid(some, some, indexing="ij")
-        entries = scalar.ravel(), (rows.ravel(), columns.ravel())
-        matrix = sp.csr_array(entries, shape=(node_count, node_count))
-        return in_all_directions(matrix)
+        some = sp.eye_array(node_count, format="csr")[self.nodes[self._some]]
+        affine = sp.csr_array(self._affine) @ some
+        moments = la.block_diag(self.mass, self._moments)
+        return in_all_directions(affine.T @ sp.csr_array(moments) @ affine)
 
     def stiffness_matrix(self, node_count: int) -> sp.csr_array:
         """Return the springs that hold the section rigid, shape (3n, 3n) [N/m]."""
         checks.count(node_count, "node_count", least=int(self.nodes.max()) + 1)
-        every = np.arange(self.nodes.size)
-        follow = self._rigid(every) @ np.linalg.pinv(self._rigid(self._some))
+        rigid, some = rigid_motions(self.positions, self.center), coordinates(self._some)
+        follow = rigid @ np.linalg.pinv(rigid[some])
         identity = sp.eye_array(3 * self.nodes.size, format="csr")
-        held = identity - sp.csr_array(follow) @ identity[coordinates(self._some)]
+        held = identity - sp.csr_array(follow) @ identity[some]
         strain = held @ sp.eye_array(3 * node_count, format="csr")[coordinates(self.nodes)]
         matrix = self.spring * (strain.T @ strain)
         return sp.csr_array(0.5 * (matrix + matrix.T))

@@ -192,10 +192,7 @@ class FiniteElementRotor:
 
     @classmethod
     def _of_model(
-        cls: type[Rotor],
-        model: FiniteElementModel,
-        axis: AxisLike,
-        check_units: bool,
+        cls: type[Rotor], model: FiniteElementModel, axis: AxisLike, check_units: bool
     ) -> Rotor:
         """Return the rotor of a model whose arrays are checked here; as ``from_matrices``."""
         checks.flag(check_units, "check_units")

@@ -34,7 +34,8 @@ class ConstrainedInverse:
     ) -> None:
         self._relief, self._constraints = relief, constraints
         self._rigid = relief.rigid if rigid is None else rigid
-        self.iterative = relief.iterative
+        self.iterative, self.precision = relief.iterative, relief.precision
+        self.left_out = constraints.shape[0]
         self.start = relief.start
         self._flexible = relief.solve(constraints.T.toarray())
         held = constraints @ self._rigid
@@ -63,6 +64,12 @@ class ConstrainedInverse:
         # by CG = (GCᵀ)ᵀ
         _, reaction = self._balance(self._flexible.T @ load, self._rigid.T @ load)
         return -(self._constraints.T @ reaction)
+
+    def without_reactions(self, force: np.ndarray) -> np.ndarray:
+        """Return the part of forces (3n, k) that reactions ``Cᵀ λ`` cannot balance."""
+        constraints = self._constraints
+        gram = (constraints @ constraints.T).toarray()
+        return force - constraints.T @ la.solve(gram, constraints @ force, assume_a="pos")
 
     def precondition(self, load: np.ndarray) -> np.ndarray:
         """Return roughly what :meth:`solve` does, for shape (3n, k), with ``C u = 0``."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
@@ -16,7 +14,6 @@ Modes = tuple[np.ndarray, np.ndarray]
 _SEED = 4830498
 # share of ω² M φ that Lanczos iteration is asked to leave, and that any may leave
 _RESIDUAL, _RESIDUAL_LIMIT = 1e-7, 1e-6
-_EPS = np.finfo(float).eps
 
 
 def lowest_modes(
@@ -24,18 +21,15 @@ def lowest_modes(
     mass: sp.csr_array,
     inverse: Inverse,
     count: int,
-    balanced: Callable[[np.ndarray], np.ndarray] | None = None,
 ) -> Modes:
     """Return the `count` lowest modes; parameters as of :func:`davidson_modes`."""
     size = mass.shape[0]
-    if count == 0:
-        return np.zeros(0), np.zeros((size, 0))
     # Lanczos iteration loses its advantage where a large part of the spectrum is wanted
     if 4 * count > size or (size <= DENSE_SIZE and not inverse.iterative):
         return dense_modes(mass, inverse.solve, count)
     if inverse.iterative:
         unit = rounding_unit(stiffness)
-        return davidson_modes(stiffness, mass, inverse, count, unit, balanced)
+        return davidson_modes(stiffness, mass, inverse, count, unit)
     return lanczos_modes(mass, inverse.solve, count, _RESIDUAL)
 
 
@@ -102,32 +96,22 @@ def _one_step_further(
 def check_modes(
     stiffness: sp.csr_array,
     mass: sp.csr_array,
+    inverse: Inverse,
     eigenvalues: np.ndarray,
     modes: np.ndarray,
-    *,
-    precision: float = _EPS,
-    constraints: sp.csr_array | None = None,
 ) -> None:
     """Check ``K φ − ω² M φ + Cᵀ λ = 0`` for the best ``λ``.
 
-    ValueError if the residual is larger than 1e-6 of ``ω² M φ`` and what the relative `precision`
-    of the stiffness leaves in ``K φ`` at best.
+    ValueError if the residual is larger than 1e-6 of ``ω² M φ`` and what the precision of the
+    stiffness leaves in ``K φ`` at best.
     """
     inertia = mass @ (modes * eigenvalues)
-    residual = stiffness @ modes - inertia
-    if constraints is not None:
-        residual = without_reactions(residual, constraints)
+    residual = inverse.without_reactions(stiffness @ modes - inertia)
     allowed = _RESIDUAL_LIMIT * np.linalg.norm(inertia, axis=0)
-    allowed += rounding_unit(stiffness, precision) * np.linalg.norm(modes, axis=0)
+    allowed += rounding_unit(stiffness, inverse.precision) * np.linalg.norm(modes, axis=0)
     excess = np.linalg.norm(residual, axis=0) - allowed
     if np.any(excess > 0.0):
         raise ValueError(
             f"eigenmode {np.argmax(excess) + 1} does not satisfy K φ = ω² M φ; the matrices may "
             "not be symmetric"
         )
-
-
-def without_reactions(force: np.ndarray, constraints: sp.csr_array) -> np.ndarray:
-    """Return the part of `force` that reactions ``Cᵀ λ`` cannot balance."""
-    gram = (constraints @ constraints.T).toarray()
-    return force - constraints.T @ la.solve(gram, constraints @ force, assume_a="pos")

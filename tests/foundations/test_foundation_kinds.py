@@ -84,7 +84,7 @@ def test_bad_foundations_are_refused():
         Foundation.from_modes([1.0], 2.0, {"left": [[1.0], [0.0], [0.0]]})
     with pytest.raises((TypeError, ValueError), match="masses: needs"):
         Foundation.from_modes([1.0], 0.02, {"left": [[1.0], [0.0], [0.0]]}, masses=[[1.0], 2.0])
-    with pytest.raises(ValueError, match="stiffness: needs values ≥ 0"):
+    with pytest.raises(ValueError, match="stiffness: needs a finite number"):
         Mount("left", -1.0)
     with pytest.raises(ValueError, match="'left' is no interface of the solid"):
         Foundation.from_solid(replace(rings(), interfaces={}), POINTS)

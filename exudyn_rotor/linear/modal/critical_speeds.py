@@ -24,7 +24,7 @@ from exudyn_rotor.linear.modal.resonance import SAME, Search, Stiffness, groups_
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, Named, signed_diameters
 from exudyn_rotor.linear.model.assembly import NO_EQUATIONS
 from exudyn_rotor.linear.model.body import EVEN
-from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import AXES, warn_of_refused
 from exudyn_rotor.linear.over import ModelResult, basis_column, table_lines
 from exudyn_rotor.linear.solve.motions import Motions
@@ -62,6 +62,10 @@ class _Undamped(ModelResult):
         lines = [f"undamped critical speeds of order {self.order:g}"]
         lines += table_lines(self.columns(units)) if np.any(self.speeds > 0.0) else ["none"]
         return "\n".join([*lines, *self._closing(self.basis_errors)])
+
+    def _told(self, *at: int) -> str:
+        """Return a critical speed in words."""
+        return f"the critical speed of {Units.of('rpm').speeds(self.speeds[at]):.5g} rpm"
 
 
 @storable
@@ -201,33 +205,19 @@ def critical_speeds(
                   954.93        15.9155                 0  1  forward
     stiffening: tilt
     """
-    given = checked(order, max_speed, nodal_diameters)
     checks.accuracy(accuracy)
     model = linear_model(
         target, supports=supports, foundation=foundation, body=body, stiffening=stiffening,
         axes=axes,
     ).undamped()  # fmt: skip
-    search = Search(model, *given)
+    search = Search(model, order, nodal_diameters, max_speed)
     result = collected(search, accuracy is not None)
     search.warn()
     model.warn_beyond(result.order * result.speeds)
     if result.speeds.size:
-        warn_of_left_out_stiffening(model, max_speed or result.speeds[0])
-    basis_error.warn(result.basis_errors, lambda i: told_speed(result.speeds[i]), model, accuracy)
+        warn_of_omissions(model, max_speed or result.speeds[0])
+    basis_error.warn(result.basis_errors, result._told, model, accuracy)
     return result
-
-
-def checked(
-    order: float, max_speed: float | None, nodal_diameters: Sequence[int]
-) -> tuple[float, list[int], float | None]:
-    """Return order, nodal diameters and largest speed of an analysis."""
-    order = checks.number(order, "order", least=0.0)
-    if max_speed is not None:
-        max_speed = checks.number(max_speed, "max_speed", "rad/s", above=0.0)
-    values = checks.whole_numbers(nodal_diameters, "nodal_diameters", most=4)
-    if not values.size:
-        raise ValueError("nodal_diameters: needs at least one whole number from 0 to 4, got none")
-    return order, sorted({int(n) for n in values}), max_speed
 
 
 def collected(search: Search, estimate: bool) -> CriticalSpeeds:
@@ -298,11 +288,6 @@ def _basis_errors(search: Search, found: Motions) -> np.ndarray:
         if likeness > _ALIKE:
             errors[row] = abs(better / speed - 1.0)
     return errors
-
-
-def told_speed(speed: float) -> str:
-    """Return a critical speed [rad/s] in words."""
-    return f"the critical speed of {Units.of('rpm').speeds(speed):.5g} rpm"
 
 
 @storable
@@ -463,7 +448,6 @@ def critical_speed_map(
     )
     if not names:
         raise ValueError("interfaces: needs at least one name, got none")
-    given = checked(order, max_speed, nodal_diameters)
     checks.choice(stiffening, "stiffening", CHOICES)
     checks.choice(axes, "axes", AXES)
     checks.accuracy(accuracy)
@@ -481,6 +465,7 @@ def critical_speed_map(
     for row, stiffness in enumerate(tqdm(values, "critical speed map", disable=not progress)):
         model = replace(first, supports={"": _with(kept, names, stiffness)})
         # a map takes what a film is within its own smoothness
+        given = order, nodal_diameters, max_speed
         search = Search(model, *given, 1e-7 if model.table_speeds.size else _FILM)
         try:
             solved.append(collected(search, row in judged))
@@ -497,11 +482,10 @@ def critical_speed_map(
             speeds[here], codes[here] = entry.speeds, [WHIRLS.index(word) for word in entry.whirl]
             errors[here] = np.nan if entry.basis_errors is None else entry.basis_errors
     if np.any(speeds > 0.0):
-        warn_of_left_out_stiffening(first, max_speed or np.nanmin(speeds))
-    basis_error.warn(errors, lambda *at: told_speed(speeds[at]), first, accuracy)
+        warn_of_omissions(first, max_speed or np.nanmin(speeds))
     top = max_speed or float(np.nanmax(speeds, initial=1.0))
     own = (None, None) if bearing is None else _curve(bearing, top)
-    return CriticalSpeedMap(
+    result = CriticalSpeedMap(
         values,
         speeds,
         codes,
@@ -513,6 +497,8 @@ def critical_speed_map(
         axes=first.axes,
         unevenness=first.unevenness,
     )
+    basis_error.warn(result.basis_errors, result._told, first, accuracy)
+    return result
 
 
 def _with(supports: tuple[Given, ...], names: Sequence[str], stiffness: float) -> tuple[Given, ...]:

@@ -25,6 +25,7 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import brentq
 
+from exudyn_rotor import checks
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.linear.equations import PeriodicSystem
 from exudyn_rotor.linear.modal.whirl import Content
@@ -77,11 +78,6 @@ class Stiffness:
             system = self.model.at(speed, self.order * speed)
             self.known[speed] = system.projected(self.basis)
         return self.known[speed]
-
-    def stacked(self, speeds: np.ndarray) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
-        """Return the equations at speeds (s,) where there are any, and why there are none else."""
-        stack, refused = self.model.systems(speeds, self.order * speeds)
-        return None if stack is None else stack.projected(self.basis), refused
 
     def __call__(self, speed: float, multiples: np.ndarray) -> np.ndarray:
         """Return H at a speed for frequencies `multiples` (h,) of it, (h·k, h·k)."""
@@ -168,6 +164,14 @@ class Search:
     refused: dict[float, Exception] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        self.order = checks.number(self.order, "order", least=0.0)
+        if self.limit is not None:
+            self.limit = checks.number(self.limit, "max_speed", "rad/s", above=0.0)
+        self.diameters = checks.whole_numbers(self.diameters, "nodal_diameters", most=4)
+        if not self.diameters.size:
+            raise ValueError(
+                "nodal_diameters: needs at least one whole number from 0 to 4, got none"
+            )
         self.varies = self.model.stiffness_varies
         if self.limit is None and self.varies:
             raise ValueError(
@@ -202,7 +206,7 @@ class Search:
         model = self.model
         ratios = {model.ratios[body.name] for body in rotors_of(model.bodies)}
         shifts = []
-        for n in self.diameters:
+        for n in np.unique(self.diameters).tolist():
             for sign in (1, -1) if n and self.order else (1,):  # at order 0 they are conjugates
                 # waves of more diameters stay in the axes of their rotor
                 shifts += [sign * n * r for r in ratios] if n > 1 else [sign * n * model.turns]
@@ -265,11 +269,11 @@ class Search:
         even = np.linspace(first, self.limit, count)
         wanted = np.unique([*even, *slow, *kinks[(kinks > first) & (kinks < self.limit)]])
         wanted = wanted[np.diff(wanted, prepend=0.0) > SAME * first]
-        stack, errors = self.stiffness.stacked(wanted)
+        stack, errors = self.model.systems(wanted, self.order * wanted)
         if stack is None or len(stack.speed) < 2:
             raise errors[min(errors)]
         self.refused = {float(wanted[i]): errors[i] for i in errors if wanted[i] >= first}
-        return stack
+        return stack.projected(self.stiffness.basis)
 
     def _bracketed(self, multiples: np.ndarray) -> list[Zero]:
         """Return where H is singular, by its eigenvalues over the grid."""

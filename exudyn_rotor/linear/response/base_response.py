@@ -22,12 +22,7 @@ from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.foundations.record import BaseRecord
 from exudyn_rotor.linear.equations import Terms, UnconvergedError, at_angle, states_of
-from exudyn_rotor.linear.model.build import (
-    Target,
-    linear_model,
-    warn_of_left_out_stiffening,
-    warn_of_structural_damping,
-)
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.response.loads import At, Place, checked_places, places
 from exudyn_rotor.linear.response.response import DIRECTIONS, AtPlaces
@@ -211,8 +206,7 @@ def base_response(
             "target: a motion of the ground needs a reduced rotor on supports, and a foundation "
             "with its participation; in a scene, use add_base_motion"
         )
-    warn_of_structural_damping(model, "base_response computes motion over time")
-    warn_of_left_out_stiffening(model, speed)
+    warn_of_omissions(model, speed, "base_response computes motion over time")
     model.check_without_frequency("a motion of the ground")
     model = model.for_responses
     observed = places(model, at, speed)
@@ -317,10 +311,7 @@ class _ShakenRotor:
         return times, motion
 
     def _lines(self, times: np.ndarray, step: float) -> np.ndarray:
-        """Return first value and slope (t, 6) of the line in every step.
-
-        It has the mean and the first moment of the record.
-        """
+        """Return first value and slope (t, 6) of the line in every step."""
         velocity, place = self.record.integrals(times)
         mean = np.diff(velocity, axis=0) / step
         moment = 0.5 * step * (velocity[1:] + velocity[:-1]) - np.diff(place, axis=0)
@@ -346,7 +337,7 @@ class _ShakenRotor:
         """Return Fourier terms of what a step does with state (2k, 2k) and line (2k, 6)."""
         size, first = len(self.A[0]), 2.0 * np.pi * np.arange(_ANGLES) / _ANGLES
         stages = np.add.outer(first, self.speed * step * _STAGES)
-        rates, loads = (_at_angles(each, stages) for each in (self.A, self.loads))
+        rates, loads = (at_angle(each, stages) for each in (self.A, self.loads))
         loads = np.concatenate([loads, (step * _STAGES)[:, None, None] * loads], axis=3)
         left = -step * np.einsum("ij,njab->niajb", _RADAU, rates).reshape(_ANGLES, 3 * size, -1)
         right = step * np.einsum("ij,njab->niab", _RADAU, loads).reshape(_ANGLES, 3 * size, 6)
@@ -361,15 +352,10 @@ class _ShakenRotor:
         return tuple({n: spectrum[n][:, part] for n in known} for part in parts)
 
 
-def _at_angles(terms: Terms, angles: np.ndarray) -> np.ndarray:
-    """Return matrices at spin angles [rad], stacked."""
-    return sum(np.multiply.outer(np.exp(1j * n * angles), X) for n, X in terms.items()).real
-
-
 def _matrices(terms: Terms, angles: np.ndarray) -> Iterator[np.ndarray]:
     """Give the matrices at spin angles [rad], one after the other."""
     for first in range(0, len(angles), _AT_ONCE):
-        yield from _at_angles(terms, angles[first : first + _AT_ONCE])
+        yield from at_angle(terms, angles[first : first + _AT_ONCE])
 
 
 def _followed(by_state: Terms, angles: np.ndarray, added: np.ndarray) -> np.ndarray:
@@ -380,7 +366,7 @@ def _followed(by_state: Terms, angles: np.ndarray, added: np.ndarray) -> np.ndar
     """
     (count, size), turn = added.shape, len(angles)
     turns = -(-count // turn)
-    added = np.concatenate([added, np.zeros((turns * turn - count, size))])
+    added = np.pad(added, ((0, turns * turn - count), (0, 0)))
     added = added.reshape(turns, turn, size).swapaxes(0, 1)
     states, whole = np.zeros((turn + 1, turns, size)), np.eye(size)
     for n, E in enumerate(_matrices(by_state, angles)):

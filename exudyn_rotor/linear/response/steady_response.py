@@ -17,7 +17,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.linear.modal.basis_error import basis_errors, warn
-from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import forced_over
 from exudyn_rotor.linear.response.loads import (
@@ -130,7 +130,7 @@ def unbalance_response(
     options = at, frame, tolerance, refine, accuracy
     sweep = _OverSpeed(*options, unbalances=unbalances, own=checks.flag(own, "own"))
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
-    warn_of_left_out_stiffening(model, np.abs(values).max())
+    warn_of_omissions(model, np.abs(values).max())
     values, found = sweep.over(model.for_responses, values)
     loads = in_words(model, unbalances, own)
     return UnbalanceResponse(frame=frame, speeds=values, loads=loads, **found)
@@ -197,7 +197,7 @@ def harmonic_response(
     loads = checks.instances(loads, "loads", (HarmonicForce, BaseAcceleration))
     sweep = _OverFrequency(at, frame, tolerance, refine, accuracy, loads=loads, speed=speed)
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
-    warn_of_left_out_stiffening(model, speed)
+    warn_of_omissions(model, speed)
     values, found = sweep.over(model.for_responses, values)
     return HarmonicResponse(frame=frame, frequencies=values, speed=speed, **found)
 
@@ -207,11 +207,7 @@ def harmonic_response(
 
 @dataclass(frozen=True, eq=False)
 class _Sweep:
-    """Steady motions at places of a model over speeds or frequencies, with a user's options.
-
-    Harmonics that matter are larger than the `tolerance`, a share of the largest. Places are seen
-    at a spin `speed` [rad/s], or at any but 0.
-    """
+    """Steady motions at places, seen at a spin `speed` or any but 0, over speeds or frequencies."""
 
     at: Sequence[At] | At | None
     frame: str
@@ -280,8 +276,7 @@ class _Sweep:
     ) -> tuple[np.ndarray, Harmonics]:
         """Add points until the phase of every motion turns little between neighbours.
 
-        No point is added where there is no steady motion, as at a resonance without damping, nor
-        beside such a value.
+        None is added where there is no steady motion, as at a resonance without damping.
         """
         given, narrowest = values, _NARROWEST * np.ptp(values)
         for _ in range(_MOST_ROUNDS):
@@ -348,6 +343,9 @@ class _OverFrequency(_Sweep):
     def coordinates(self, model: LinearModel, values: np.ndarray) -> tuple[Harmonics, np.ndarray]:
         """Return the coordinates of a model, and at which frequencies (s,) it has equations."""
         load = total(self.loads, model, self.speed)
+        if not any(map(np.any, load.values())):
+            what = "give loads=[HarmonicForce(…)] that move the rotor"
+            raise ValueError(f"no load, so no response: {what}")
         model.warn_beyond(np.abs(np.add.outer(values, self.speed * np.array(list(load)))))
         options = {"driven": model.free_spins, "tolerance": self.tolerance}
 

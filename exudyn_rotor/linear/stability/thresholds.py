@@ -22,12 +22,7 @@ from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.linear.modal import basis_error
 from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, OfMotions
 from exudyn_rotor.linear.model.assembly import NO_EQUATIONS
-from exudyn_rotor.linear.model.build import (
-    Target,
-    linear_model,
-    warn_of_left_out_stiffening,
-    warn_of_structural_damping,
-)
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel, warn_of_refused
 from exudyn_rotor.linear.over import NOT_KNOWN, basis_column, motions_in, table_lines
 from exudyn_rotor.linear.solve.motions import Motions
@@ -158,12 +153,6 @@ class StabilityThresholds(OfMotions, Result):
         return ax
 
 
-def _motions(model: LinearModel, speeds: Sequence[float], tolerance: float) -> Motions:
-    """Return the motions of a model at speeds [rad/s], of which the least stable one is right."""
-    how = {"held": True, "least_stable": True, "warns": False}
-    return motions_in(model, model.at_all(speeds), "auto", tolerance, **how)
-
-
 @dataclass(eq=False)
 class _Margin:
     """By how much the least stable motion grows beyond rounding [1/s], over a parameter.
@@ -182,40 +171,33 @@ class _Margin:
     def at(self, points: Sequence[float]) -> None:
         """Compute the margin at points, with one warning where there are no coefficients."""
         found, refused = [], []
-        if self.model is not None:
-            motions = _motions(self.model, points, self.tolerance)
-            found = list(zip(points, motions.values.real, motions.bounds, strict=True))
-        for point in points if self.model is None else ():
+        together = [points] if self.model else [[point] for point in points]
+        for group in together:
             try:
-                motions = self.motions(point)
-                found.append((point, motions.values.real[0], motions.bounds[0]))
+                motions = self.motions(group)
+                found += zip(group, motions.values.real, motions.bounds, strict=True)
             except NO_EQUATIONS as error:
-                refused.append((f"{point:.5g}", error))
-        warn_of_refused(refused, len(points))
+                refused.append((f"{group[0]:.5g}", error))
+        warn_of_refused(refused, len(together))
         if self.resting is None:
             rest = [np.sum(np.abs(growth) <= b) for _, growth, b in found if np.isfinite(b)]
             self.resting = int(min(rest))
         self.known |= dict.fromkeys(points, np.nan)
         self.known |= {point: self.of(growth, bound) for point, growth, bound in found}
 
-    def motions(self, point: float) -> Motions:
-        """Return the motions at a point."""
-        model, speed = self.model_at(point)
-        return _motions(model, [speed], self.tolerance)
+    def motions(self, points: Sequence[float], richer: bool = False) -> Motions:
+        """Return the motions at points of one model, or of a richer one; the least stable right."""
+        built = [self.model_at(point) for point in points]
+        model, speeds = built[0][0], [speed for _, speed in built]
+        model = model.richer if richer else model
+        how = {"held": True, "least_stable": True, "warns": False}
+        return motions_in(model, model.at_all(speeds), "auto", self.tolerance, **how)
 
     def of(self, growth: np.ndarray, bound: float) -> float:
         """Return the margin of the growth of all motions, (k,)."""
         counted = growth[np.argsort(np.abs(growth))[self.resting :]]
         counted = counted[np.isfinite(counted)]
         return float(max(np.where(np.abs(counted) <= bound, 0.0, counted), default=0.0)) - bound
-
-    def missing(self, point: float) -> float:
-        """Return the margin at a limit with the shapes that the basis leaves out."""
-        model, speed = self.model_at(point)
-        if model.is_full:
-            return 0.0
-        motions = _motions(model.richer, [speed], self.tolerance)
-        return self.of(motions.values.real[0], motions.bounds[0])
 
     def __call__(self, point: float) -> float:
         """Return the margin at a point between two that have one; negative where it has none."""
@@ -364,8 +346,7 @@ def stability_threshold(
 def _over_speed(target: Target, fastest: float, tolerance: float, **made) -> _Margin:
     """Return the margin over the speed; warn of what its model leaves out."""
     model = linear_model(target, **made)
-    warn_of_structural_damping(model, WHAT)
-    warn_of_left_out_stiffening(model, fastest)
+    warn_of_omissions(model, fastest, WHAT)
     return _Margin(lambda speed: (model, speed), tolerance, model)
 
 
@@ -387,14 +368,15 @@ def _found(
         width = ends[place + 2 if onset[place] else place] - value
         aside = np.sign(width) * min(_ASIDE * (high - low), 0.5 * abs(width))
         model = margin.model_at(value + aside)[0]
-        state = of_motions(model, Content.of(model), margin.motions(value + aside), None)
+        state = of_motions(model, Content.of(model), margin.motions([value + aside]), None)
         which = 0, state.least_stable[0]
         heard.append(state.frequencies_inertial[which])
         codes.append(state.whirl_codes[which])
         diameters.append(state.nodal_diameters[which])
         if basis_error.is_known(model, accuracy):
-            slope = state.exponents[which].real / aside
-            shifts.append(margin.missing(value) / slope)
+            better = None if model.is_full else margin.motions([value], richer=True)
+            grown = margin.of(better.values.real[0], better.bounds[0]) if better else 0.0
+            shifts.append(grown * aside / state.exponents[which].real)
     errors = None
     if accuracy is not None and len(shifts) == len(values):
         errors = np.abs(shifts) / np.maximum(np.abs(values), _SMALL * (high - low))

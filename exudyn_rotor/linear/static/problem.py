@@ -23,8 +23,8 @@ from exudyn_rotor.linear.model.body import RotorBody
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
-from exudyn_rotor.linear.response.loads import At, place, places
-from exudyn_rotor.linear.static.equilibrium import Journal, equilibrium
+from exudyn_rotor.linear.response.loads import At, BaseAcceleration, HarmonicForce, places, total
+from exudyn_rotor.linear.static.equilibrium import Journals, equilibrium
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_skew
 
@@ -118,27 +118,22 @@ class Problem:
 
     def load(self, loads: Mapping[At, np.ndarray], gravity: np.ndarray) -> np.ndarray:
         """Return the load (k,) of forces and moments (6,), of gravity (3,) and of the rotation."""
-        model, axes = self.model, self.axes
-        total = np.zeros(model.size)
+        load = np.zeros(self.model.size)
         for body, place_of in zip(self._assembly.bodies, self._assembly.slices, strict=True):
             if isinstance(body, RotorBody) and 0 in body.unbalance:
-                total[place_of] = (body.ratio * self.speed) ** 2 * body.unbalance[0].real
-        for key, wrench in loads.items():
-            point = place(model, key, self.speed)
-            if point.is_node and np.any(wrench[3:]):
-                raise ValueError(
-                    f"loads[{key!r}]: a mesh node has no rotation for a moment; use an interface"
-                )
-            total += self._still(point.seen).T @ np.r_[axes.T @ wrench[:3], axes.T @ wrench[3:]]
+                load[place_of] = (body.ratio * self.speed) ** 2 * body.unbalance[0].real
+        acting = [
+            HarmonicForce(at, wrench[:3] @ self.axes, wrench[3:] @ self.axes, self.frame)
+            for at, wrench in loads.items()
+        ]
         if np.any(gravity):
-            across = np.abs(axes[:, :2].T @ gravity).max() > _ROUNDING * np.linalg.norm(gravity)
-            if self._turns and across:
+            along = gravity @ self.axes
+            if self._turns and np.abs(along[:2]).max() > _ROUNDING * np.linalg.norm(gravity):
                 raise ValueError("gravity: stands still in space; leave frame='rotor' out")
-            base = model.base_loads(self.speed)
-            if base is None:
-                raise ValueError("gravity: needs a foundation with its participation")
-            total -= base[0].real.T @ (axes.T @ gravity)
-        return total
+            acting.append(BaseAcceleration(-along))
+        if acting:
+            load += total(acting, self.model, self.speed)[0].real
+        return load
 
     @property
     def axes(self) -> np.ndarray:
@@ -151,29 +146,33 @@ class Problem:
         return [self._still(U) for U in self._assembly.motions]
 
     @cached_property
-    def journals(self) -> dict[int, Journal]:
-        """Bearings with a law of their own by the numbers of their elements."""
+    def _bearings(self) -> list[int]:
+        """Numbers of the elements of bearings with a law of their own."""
+        return [i for i, one in enumerate(self.acting) if isinstance(one, Nonlinear)]
+
+    @cached_property
+    def _journals(self) -> Journals:
         sensors = {one: i for i, one in enumerate(self.acting) if isinstance(one, int)}
-        found = {}
-        for i, one in enumerate(self.acting):
-            if isinstance(one, Nonlinear):
-                owner, _ = self._assembly.elements[i].ends[0]
-                moved = self._motions[i][:2], self._motions[sensors.get(i, i)][:2]
-                found[i] = Journal(one, self.model.ratios[owner] * self.speed, *moved)
-        return found
+        owners = [self._assembly.elements[i].ends[0][0] for i in self._bearings]
+        U, U_s = (
+            np.reshape([self._motions[i][:2] for i in numbers], (-1, 2, self.model.size))
+            for numbers in (self._bearings, [sensors.get(i, i) for i in self._bearings])
+        )
+        speeds = [self.model.ratios[owner] * self.speed for owner in owners]
+        return Journals([self.acting[i] for i in self._bearings], speeds, U, U_s)
 
     def solved(self, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the coordinates (k,) and the force on the rotor of each bearing (b, 2) [N]."""
-        model, journals = self.model, list(self.journals.values())
+        model = self.model
         loaded = any(one.invariants.K0 is not None for one in model.rotors.values())
-        if loaded and not self.speed and not journals:
+        if loaded and not self.speed and not self._bearings:
             values = np.linalg.eigvalsh(0.5 * (self.stiffness + self.stiffness.T))
             if values[0] < -_ROUNDING * values[-1]:
                 raise ValueError(
                     "supports: the rotor buckles on them under the loads of its prestress; "
                     "rotor.prestress(loads=…, supports=…) with them finds the buckling load"
                 )
-        y, forces = equilibrium(self.stiffness, load, journals, model.free_spins)
+        y, forces = equilibrium(self.stiffness, load, self._journals, model.free_spins)
         if y is None:
             free = " or ".join(model.free_motions) or "a combination of rigid motions"
             raise ValueError(
@@ -187,7 +186,7 @@ class Problem:
         observed, elements = places(self.model, at, self.speed), self._assembly.elements
         motion = np.array([self._still(one.seen) @ y for one in observed])
         motion[[one.is_node for one in observed], 3:] = np.nan
-        own = dict(zip(self.journals, forces, strict=True))
+        own = dict(zip(self._bearings, forces, strict=True))
         shown = [i for i, one in enumerate(self.acting) if not isinstance(one, int)]
         reactions, moved = np.zeros((2, len(shown), 6))
         for row, i in enumerate(shown):

@@ -20,7 +20,7 @@ from typing import Any
 
 import exudyn
 import numpy as np
-from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
+from exudyn.itemInterface import ObjectGenericODE2, SensorUserFunction, VObjectGenericODE2
 from scipy.linalg import block_diag
 
 from exudyn_rotor import checks
@@ -32,7 +32,7 @@ from exudyn_rotor.bearings.support import Support, acts
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.plan import generic_node
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, add_function_sensor
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, add_sensor
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, entry
 from exudyn_rotor.multibody.supports.ends import QUARTER, BaseEnd, FoundationEnd, RotorEnd
 from exudyn_rotor.theory.rotating_axes import axial_rotation, axial_skew
@@ -311,29 +311,26 @@ class MagneticConnector(Connector):
         second = self._second
         if self.seen.end is not self.end:
             self.seen.read(q, q_t)
-        self._currents = -self._by_place.dot(q[second:]) - self._by_rate.dot(q_t[second:])
+        currents = -self._by_place.dot(q[second:]) - self._by_rate.dot(q_t[second:])
+        places = self._turn.dot(self.relative[:2])
+        self._axes = list(zip(currents.tolist(), places.tolist(), strict=True))
 
     def motions(self) -> list[tuple[float, ...]]:
         """Return x, y, ẋ, ẏ, θ and Ω of the journal, as one of a list."""
         return [self.relative]
-
-    @property
-    def axes_states(self) -> list[tuple[float, float]]:
-        """Current [A] and place [m] of each control axis."""
-        return list(zip(self._currents.tolist(), (self._turn @ self.relative[:2]), strict=True))
 
     def wrench(self, t: float) -> tuple:
         """Return the force on the rotor, and what drives the controller's coordinates."""
         x, y = self.relative[:2]
         self.outside = x * x + y * y >= self._least
         law = self.bearing.actuator.law
-        force = self._turn.T @ [law(*state) for state in self.axes_states]
+        force = self._turn.T @ [law(*state) for state in self._axes]
         own = self._law.place.dot(self.seen.relative[:2])
         return float(force[0]), float(force[1]), 0.0, (0.0, 0.0, 0.0), own
 
     def tangent(self, t: float) -> Tangent:
         """Return the tangent, with rows of magnets, sensors and own coordinates."""
-        slopes = [self.bearing.actuator.slopes(*state) for state in self.axes_states]
+        slopes = [self.bearing.actuator.slopes(*state) for state in self._axes]
         D, K = self.bearing.coupling(np.array(slopes))
         D[4:, 4:] = K[4:, 4:] = 0.0  # what own coordinates have among themselves is constant
         J, L = np.zeros((2, 4 + self.own, self.size))
@@ -551,7 +548,7 @@ class SceneLaw(ABC):
         def output(mbs, t, sensors, factors, configuration):
             return np.hstack(self.values(configuration)).tolist()
 
-        return add_function_sensor(self.body, output, options)
+        return add_sensor(self.body, SensorUserFunction, options, sensorUserFunction=output)
 
 
 def check_body(body: Body, argument: str) -> None:

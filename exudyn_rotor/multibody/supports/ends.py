@@ -24,7 +24,7 @@ from exudyn_rotor.multibody.rotor.rotor_items import (
     carrying_rotor,
     marker_carrier,
 )
-from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation, foundation_marker
+from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation
 from exudyn_rotor.solid.places import SAME_PLACE, leeway, off_place
 from exudyn_rotor.theory.axis import skew
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_rotation, axial_skew
@@ -88,7 +88,8 @@ class Seat:
     def marker(self, mbs: exudyn.MainSystem) -> exudyn.MarkerIndex:
         """Add a marker of the base at the place, with the axes (n1, n2, e)."""
         if isinstance(self.base, SceneFoundation):
-            return foundation_marker(self.base, self.name, self.place, self.axes)
+            point = self.base._carrier(self.name, self.place)
+            return point.add_marker(mbs, "rigid", self.axes)
         turn = self.orientation.T @ self.axes
         shift = self.orientation.T @ (self.place - self.origin)
         shift[np.abs(shift) <= _ROUNDING * np.abs([self.place, self.origin]).max()] = 0.0
@@ -146,6 +147,7 @@ def marker_on_axis(body: RotorItems, interface: str, kind: str) -> exudyn.Marker
 
 QUARTER = axial_skew(3)
 _RIGID = 6  # coordinates of the node of a rotor's frame
+_WRENCHES = np.eye(6).tolist()
 _TURNED = {
     "RigidBodyRxyz": (RotXYZ2RotationMatrix, RotXYZ2G, 6),
     "RigidBodyEP": (EulerParameters2RotationMatrix, EulerParameters2G, 7),
@@ -165,7 +167,8 @@ class RotorEnd:
         own = axes_of(body.axis)
         interface = body.selection.source.interfaces[name]
         carrier = body.interface_carrier(name)
-        self.nodes = carrier.nodes
+        nodes = body.mbs.GetObjectParameter(carrier.body, "nodeNumbers")
+        self.nodes = tuple(map(exudyn.NodeIndex, nodes))
         modes = np.kron(np.eye(2), own.T @ body.frame.B.T) @ carrier.motion
         self.axes = body.standing_axes
         point = own.T @ (body.axis.project(interface.reference) - body.frame.origin)
@@ -230,16 +233,8 @@ class RotorEnd:
         return self._pull.dot(loads)
 
     def rows(self) -> np.ndarray:
-        """Return the rows J (6, size) of displacement and rotation where it has been read."""
-        J, R = np.zeros((6, self.size)), axial_rotation(self.angle)
-        (x, y, z), (a, b, _) = self._arm, self.tilt
-        J[:3] = self._rows[:3] + R @ self._rows[3:6]
-        J[3:] = R @ self._rows[6:]
-        J[:, self._spin] = -y, x, 0.0, -b, a, 1.0
-        for place, axis, turns in self._held:
-            a, b, c = R @ axis if turns else axis
-            J[:, place] = b * z - c * y, c * x - a * z, a * y - b * x, a, b, c
-        return J
+        """Return the rows J (6, size) of displacement and rotation: the forces of unit wrenches."""
+        return np.array([self.pull(*one[:3], one[3:]) for one in _WRENCHES])
 
     def rate_rows(self) -> np.ndarray:
         """Return the derivative (6, size) of the rate by the coordinates: J turns with the spin."""

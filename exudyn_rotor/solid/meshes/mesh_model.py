@@ -114,11 +114,6 @@ def _regions(data: MeshData, materials: Mapping[str, Any] | None) -> dict[int, s
     sets = materials if isinstance(materials, Mapping) else ()
     for name in sets:
         if name in data.element_sets and name not in own:
-            twice = [number for number in data.element_sets[name] if number in given]
-            if twice:
-                raise ValueError(
-                    f"materials: element {twice[0]} is in {given[twice[0]]!r} and in {name!r}"
-                )
             given.update(dict.fromkeys(data.element_sets[name], name))
     return data.regions | given
 
@@ -128,20 +123,16 @@ def _blocks(
     regions: Mapping[int, str],
     numbers: np.ndarray,
 ) -> tuple[list[Block], list[str]]:
-    """Return the elements of each kind by the places of their nodes, and the names of regions."""
+    """Return the elements by the places of their nodes, and the names of regions."""
     order = np.argsort(numbers)
     names: dict[str, int] = {}
-    kinds: dict[str, list[tuple[np.ndarray, list[int]]]] = {}
+    blocks = []
     for (kind, region), rows in elements.items():
         table = np.array(rows, dtype=np.int64)
         called = [regions.get(number, region) for number in table[:, 0].tolist()]
-        chosen = [names.setdefault(name, len(names)) for name in called]
+        chosen = np.array([names.setdefault(name, len(names)) for name in called])
         nodes = order[np.searchsorted(numbers[order], table[:, 1:])]
-        kinds.setdefault(kind, []).append((nodes, chosen))
-    blocks = [
-        Block(kind, *(np.concatenate(parts) for parts in zip(*pieces, strict=True)))
-        for kind, pieces in kinds.items()
-    ]
+        blocks.append(Block(kind, nodes, chosen))
     return blocks, list(names)
 
 
@@ -174,9 +165,7 @@ def _node_sets(
 def _assembled(path: Path, numbers: list[int]) -> tuple[sp.csr_array, sp.csr_array]:
     """Return mass and stiffness of other programs on nodes with these numbers, in file units.
 
-    `path` is ``name.sti`` with ``name.mas`` and ``name.dof`` beside it (CalculiX, ``*FREQUENCY,
-    SOLVER=MATRIXSTORAGE``), or a punch file of DMIG cards with one matrix whose name begins with M
-    and one with K.
+    `path` is ``name.sti`` of CalculiX, with ``.mas`` and ``.dof`` beside it, or has DMIG cards.
     """
     if path.suffix == ".sti":
         order = _equations(path.with_suffix(".dof"), numbers)
