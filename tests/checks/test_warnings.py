@@ -187,7 +187,7 @@ ELSEWHERE = {
     "linear/response/steady_response.py:_warn_of_missing": "no values at",
     "linear/response/response.py:warn_of_coarse_peaks": "too far apart to give its size and width",
     "evaluation/separation.py:_warn_of_speeds_left_out": "count, and the response is known from",
-    "linear/model/build.py:warn_of_structural_damping": "campbell finds modes without it",
+    "linear/model/build.py:warn_of_omissions": "campbell finds modes without it",
     "solvers/factor.py:_tell_of_mkl": "exudyn-rotor\\[mkl\\]",
     "solid/meshes/mesh_model.py:import_model": "taken as",
     "theory/stiffening.py:warn_of_left_out": "beyond 'tilt' is left out",
