@@ -44,9 +44,9 @@ from exudyn_rotor.foundations.record import BaseRecord as BaseRecord
 from exudyn_rotor.html_report import report as report
 from exudyn_rotor.linear.modal.campbell import Campbell as Campbell
 from exudyn_rotor.linear.modal.campbell import campbell as campbell
-from exudyn_rotor.linear.modal.critical_speed_map import CriticalSpeedMap as CriticalSpeedMap
-from exudyn_rotor.linear.modal.critical_speed_map import critical_speed_map as critical_speed_map
+from exudyn_rotor.linear.modal.critical_speeds import CriticalSpeedMap as CriticalSpeedMap
 from exudyn_rotor.linear.modal.critical_speeds import CriticalSpeeds as CriticalSpeeds
+from exudyn_rotor.linear.modal.critical_speeds import critical_speed_map as critical_speed_map
 from exudyn_rotor.linear.modal.critical_speeds import critical_speeds as critical_speeds
 from exudyn_rotor.linear.model.build import linear_model as linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel as LinearModel
@@ -67,9 +67,9 @@ from exudyn_rotor.linear.response.steady_state import steady_state as steady_sta
 from exudyn_rotor.linear.stability.sensitivity import Sensitivity as Sensitivity
 from exudyn_rotor.linear.stability.sensitivity import sensitivity as sensitivity
 from exudyn_rotor.linear.stability.stability import Stability as Stability
+from exudyn_rotor.linear.stability.stability import StabilityMap as StabilityMap
 from exudyn_rotor.linear.stability.stability import stability as stability
-from exudyn_rotor.linear.stability.stability_map import StabilityMap as StabilityMap
-from exudyn_rotor.linear.stability.stability_map import stability_map as stability_map
+from exudyn_rotor.linear.stability.stability import stability_map as stability_map
 from exudyn_rotor.linear.stability.thresholds import StabilityThresholds as StabilityThresholds
 from exudyn_rotor.linear.stability.thresholds import stability_threshold as stability_threshold
 from exudyn_rotor.linear.stability.thresholds import unstable_ranges as unstable_ranges

@@ -23,6 +23,10 @@ from numpy.typing import ArrayLike
 Kind = TypeVar("Kind")
 Shape = tuple[int | None, ...]
 
+_KINDS = {
+    float: "numbers", complex: "complex numbers",
+    int: "whole numbers", bool: "flags (True, False)",
+}  # fmt: skip
 LARGEST = 1e150  # squares of numbers stay finite
 MOST = 2**31 - 1  # nodes, modes or points: more than any machine holds
 _SIGNS = {">": operator.gt, "≥": operator.ge, "<": operator.lt, "≤": operator.le}
@@ -132,16 +136,8 @@ def accuracy(value: float | None) -> None:
 
 def count(value: int, name: str, *, least: int = 0, most: int = MOST) -> int:
     """Return a whole number within limits, both included."""
-    limits = f" ≥ {least}" + (f" and ≤ {most}" if most < MOST else "")
-    return _whole(value, name, f"a whole number{limits}", least, most)
-
-
-def whole_number(value: int, name: str) -> int:
-    """Return a whole number of either sign."""
-    return _whole(value, name, "a whole number", -MOST, MOST)
-
-
-def _whole(value: object, name: str, needed: str, least: int, most: int) -> int:
+    lower = f" ≥ {least}" if least > -MOST else ""
+    needed = f"a whole number{lower}" + (f" and ≤ {most}" if most < MOST else "")
     if isinstance(value, np.ndarray | np.generic):
         is_whole = value.ndim == 0 and value.dtype.kind in "ui"
     else:
@@ -151,6 +147,11 @@ def _whole(value: object, name: str, needed: str, least: int, most: int) -> int:
     if not least <= value <= most:
         raise ValueError(told(name, needed, value))
     return int(value)
+
+
+def whole_number(value: int, name: str) -> int:
+    """Return a whole number of either sign."""
+    return count(value, name, least=-MOST)
 
 
 def flag(value: bool, name: str) -> bool:
@@ -176,8 +177,6 @@ def instances(
     """Return objects of some kinds, given as one or as a sequence."""
     if isinstance(values, kinds):
         return (values,)
-    if isinstance(values, list | tuple) and all(isinstance(value, kinds) for value in values):
-        return tuple(values)
     needed = f"a {_named(kinds)} or a sequence of them" + (f" ({how})" if how else "")
     return tuple(
         instance(value, f"{name}[{index}]", kinds, how)
@@ -315,7 +314,8 @@ def array(
     """
 
     def needed() -> str:
-        return f"{_kind_of(dtype, finite)}{of_unit(unit)}{_of_shape(shape)}"
+        kind = "finite " * (finite and dtype in (float, complex)) + _KINDS[dtype]
+        return f"{kind}{of_unit(unit)}{_of_shape(shape)}"
 
     exact = type(values) is np.ndarray and values.dtype == dtype
     result = read_only(values if exact else _numbers(values, name, needed(), dtype), dtype)
@@ -332,6 +332,15 @@ def array(
 def vector(values: ArrayLike, name: str, unit: str = "", size: int | None = 3) -> np.ndarray:
     """Return a read-only array of `size` finite numbers, of any length for None."""
     return array(values, name, unit, shape=(size,))
+
+
+def one_or_each(values: ArrayLike, name: str, unit: str, size: int, **bounds: float) -> np.ndarray:
+    """Return a vector (size,) of numbers within bounds, given as one for all or as many."""
+    given = array(values, name, unit)
+    found = np.full(size, given) if given.ndim == 0 else vector(values, name, unit, size)
+    for each in found.tolist() if bounds else ():
+        number(each, name, unit, **bounds)
+    return read_only(found)
 
 
 def whole_numbers(values: ArrayLike, name: str, *, least: int = 0, most: int = MOST) -> np.ndarray:
@@ -381,21 +390,14 @@ def rotation(values: ArrayLike, name: str = "rotation") -> np.ndarray:
     return result
 
 
-def ascending(
-    values: Sequence[float], name: str, unit: str = "", of_table: bool = False
-) -> np.ndarray:
-    """Return one or more finite numbers in ascending order, each once, read-only.
-
-    Those `of_table` have values beside them, which must not be left behind when they are sorted.
-    """
+def ascending(values: Sequence[float], name: str, unit: str = "") -> np.ndarray:
+    """Return one or more finite numbers in ascending order, each once, read-only."""
     if isinstance(values, int | float | np.number):
         values = [values]
     result = vector(values, name, unit, size=None)
     if result.size == 0 or np.any(np.diff(result) <= 0.0):
         needed = f"at least one number{of_unit(unit)}, in ascending order without repetition"
-        remedy = "np.unique makes them so"
-        if of_table:
-            remedy = "np.unique(…, return_index=True) gives the places of the values to take along"
+        remedy = "np.unique makes them so; with return_index=True for a table's values, too"
         raise ValueError(told(name, f"{needed} ({remedy})", values))
     return result
 
@@ -459,13 +461,6 @@ def _numbers(values: object, name: str, needed: str, dtype: type) -> np.ndarray:
     return result
 
 
-def _kind_of(dtype: type, finite: bool) -> str:
-    if dtype in (int, bool):
-        return {int: "whole numbers", bool: "flags (True, False)"}[dtype]
-    kind = {float: "numbers", complex: "complex numbers"}[dtype]
-    return f"finite {kind}" if finite else kind
-
-
 def _of_shape(shape: Shape | None) -> str:
     return "" if shape is None else f" of shape {shape}".replace("None", "any")
 
@@ -477,13 +472,7 @@ def _has_shape(found: tuple[int, ...], wanted: Shape) -> bool:
 
 
 def place(value: str | int | Sequence[float], name: str) -> str | int | tuple[float, float, float]:
-    """Return a place of the rotor: an interface's name, a node's number or a position [m].
-
-    Raises
-    ------
-    TypeError, ValueError
-        For anything else.
-    """
+    """Return a place of the rotor: an interface's name, a node's number or a position [m]."""
     if isinstance(value, str):
         return label(value, name)
     if isinstance(value, int | np.integer):
@@ -589,15 +578,12 @@ def _without_none(hint: Any) -> Any:
 
 def _array(value: object, item: Field) -> np.ndarray:
     """Return a read-only array of the described type, its values within the limits."""
-    told = item.metadata
-    if not told:
-        kind = getattr(value, "dtype", np.dtype(float)).kind
-        return array(value, item.name, finite=False, dtype=_DTYPES.get(kind, float))
+    told = {"finite": False, "dtype": float, **item.metadata}
     result = array(value, item.name, finite=told["finite"], dtype=told["dtype"])
-    low, high = told["least"], told["most"]
-    if (low is not None and np.any(result < low)) or (high is not None and np.any(result > high)):
-        limits = [f"≥ {low}"] * (low is not None) + [f"≤ {high}"] * (high is not None)
-        raise ValueError(f"{item.name}: needs values {' and '.join(limits)}")
+    for sign, name in (("≥", "least"), ("≤", "most")):
+        limit = told.get(name)
+        if limit is not None and not np.all(_SIGNS[sign](result, limit) | np.isnan(result)):
+            raise ValueError(f"{item.name}: needs values {sign} {limit}")
     return result
 
 
@@ -615,7 +601,6 @@ def _check_shape(shape: tuple[int, ...], item: Field, sizes: dict[str, int]) -> 
         raise ValueError(f"{item.name}: needs the shape {wanted}, got {shape}")
 
 
-_DTYPES = {"b": bool, "i": int, "u": int, "c": complex}
 FIELD_CHECKS: dict[Any, Any] = {
     np.ndarray: _array,
     float: number,

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.solid.matrices import as_triangles
 from exudyn_rotor.storage import write_bytes
 
 if TYPE_CHECKING:
@@ -153,9 +154,15 @@ def draw_surface(
     from mpl_toolkits.mplot3d import Axes3D
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-    positions, triangles, values = _checked_surface(positions, triangles, values)
+    positions = checks.array(positions, "positions", "m", shape=(None, 3))
+    corners = flat_triangles(as_triangles(triangles, len(positions)))
+    if not corners.size:
+        raise ValueError(
+            "triangles: there are none, so there is no surface to draw; models from NGSolve have "
+            "one, others need triangles=…"
+        )
+    values = checks.array(values, "values", shape=(len(positions),))
     checks.label(label, "label")
-    corners = flat_triangles(triangles)
     mapped = ScalarMappable(cmap="viridis")
     mapped.set_array(values[corners].mean(axis=1))
     colors = mapped.to_rgba(mapped.get_array())
@@ -184,28 +191,6 @@ def flat_triangles(triangles: np.ndarray) -> np.ndarray:
     if triangles.shape[1] == 3:
         return triangles
     return triangles[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
-
-
-def _checked_surface(
-    positions: ArrayLike, triangles: ArrayLike, values: ArrayLike
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    if np.size(triangles) == 0:
-        raise ValueError(
-            "triangles: there are none, so there is no surface to draw; models from NGSolve have "
-            "one, others need triangles=…"
-        )
-    positions = checks.array(positions, "positions", "m", shape=(None, 3))
-    triangles = checks.array(triangles, "triangles", shape=(None, None), dtype=int)
-    if triangles.shape[1] not in (3, 6):
-        raise ValueError(f"triangles: needs 3 or 6 nodes each, got {triangles.shape[1]}")
-    checks.whole_numbers(triangles.ravel(), "triangles", most=len(positions) - 1)
-    values = checks.array(values, "values")
-    if values.shape != (len(positions),):
-        raise ValueError(
-            f"values: needs one for each of the {len(positions)} nodes, got the shape "
-            f"{values.shape}"
-        )
-    return positions, triangles, values
 
 
 def keep_apart(labels: Sequence[Annotation]) -> None:

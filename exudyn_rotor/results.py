@@ -8,19 +8,21 @@ and only registered classes are made from it, so loading never executes code fro
 
 from __future__ import annotations
 
+import csv
+import io
 import sys
 from collections.abc import Mapping
-from dataclasses import Field, fields, is_dataclass
+from dataclasses import fields, is_dataclass
 from os import PathLike
 from typing import Any, TypeVar
 
 import numpy as np
 
-from exudyn_rotor import checks, export
+from exudyn_rotor import checks
 from exudyn_rotor.checks import FIELD_CHECKS, Checked, field_types
 from exudyn_rotor.checks import numbers as numbers
 from exudyn_rotor.checks import words as words
-from exudyn_rotor.storage import read_arrays, write_arrays
+from exudyn_rotor.storage import plain, read_arrays, write_arrays, write_text
 
 _KIND = "result"
 _REGISTERED: dict[str, type[Result]] = {}
@@ -113,12 +115,19 @@ class Result(Checked):
         ImportError
             Without pandas, which ``pip install "exudyn-rotor[pandas]"`` brings.
         """
-        return export.data_frame(self.columns(units))
+        try:
+            import pandas
+        except ImportError as error:
+            raise ImportError(
+                "to_dataframe: needs pandas, which is not installed: pip install "
+                '"exudyn-rotor[pandas]"; to_csv needs nothing more'
+            ) from error
+        return pandas.DataFrame(self.columns(units))
 
     def to_csv(self, path: str | PathLike, units: str = "SI") -> None:
-        """Write the table to a CSV file; see :meth:`columns`.
+        """Write the table to a CSV file (RFC 4180, UTF-8), numbers so that none is lost.
 
-        A file of that name is replaced only by a complete one.
+        See :meth:`columns`. A file of that name is replaced only by a complete one.
 
         Raises
         ------
@@ -126,7 +135,11 @@ class Result(Checked):
             As :meth:`save`.
         """
         checks.path(path)
-        export.write_csv(path, self.columns(units))
+        text, columns = io.StringIO(), self.columns(units)
+        writer = csv.writer(text)
+        writer.writerow(columns)
+        writer.writerows(zip(*(values.tolist() for values in columns.values()), strict=True))
+        write_text(path, text.getvalue())
 
     @classmethod
     def load(cls: type[Kind], path: str | PathLike) -> Kind:
@@ -210,43 +223,10 @@ def load_result(path: str | PathLike) -> Result:
     cls = _REGISTERED.get(name)
     if cls is None:
         raise ValueError(f"{path}: holds a {name}, which is no result of this package")
+    values = {key.removeprefix("field."): plain(value) for key, value in data.items()}
     try:
-        return cls(**_arguments(cls, data))
+        return cls(**values)
     except (TypeError, ValueError) as error:
         raise ValueError(
             f"{path}: describes no {name}, or was written by another version ({error})"
         ) from error
-
-
-def _arguments(cls: type[Result], data: Mapping[str, np.ndarray]) -> dict[str, object]:
-    """Return the constructor's arguments; only what may be None may be missing."""
-    keys = {f"field.{item.name}": item for item in fields(cls)}
-    unknown = [repr(key) for key in data if key not in keys]
-    if unknown:
-        raise ValueError(f"the entries {', '.join(unknown)} are unknown")
-    for key, item in keys.items():
-        if key not in data and item.default is not None:
-            raise ValueError(f"the entry {item.name!r} is missing")
-    types = field_types(cls)
-    return {
-        item.name: _decoded(data[key], types[item.name], item)
-        for key, item in keys.items()
-        if key in data
-    }
-
-
-def _decoded(array: np.ndarray, hint: Any, item: Field) -> object:
-    """Return a field's value; its exact type is checked here, the rest by the constructor."""
-    if hint is np.ndarray:
-        wanted = item.metadata.get("dtype")
-        if array.ndim == 0 or (wanted is not None and array.dtype != wanted):
-            raise ValueError(f"{item.name}: needs an array of {wanted}, holds {array.dtype}")
-        return array
-    if hint == tuple[str, ...]:
-        if array.ndim != 1 or array.dtype.kind != "U":
-            raise ValueError(f"{item.name}: needs a row of words")
-        return tuple(str(word) for word in array)
-    kind = "U" if hint is str else np.dtype(hint).kind
-    if array.ndim or array.dtype.kind != kind or (hint is float and array.dtype != float):
-        raise ValueError(f"{item.name}: needs one {hint.__name__}, holds {array.dtype}")
-    return array.item()

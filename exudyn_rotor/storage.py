@@ -14,7 +14,7 @@ import shutil
 from collections.abc import Iterator, Mapping
 from os import PathLike
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import BinaryIO
 
 import numpy as np
 
@@ -132,68 +132,11 @@ def read_rows(path: str | PathLike, name: str = "path") -> list[tuple[int, list[
     return rows
 
 
-class Entries:
-    """Entries of a file, taken one by one with a check of their type; none may be left."""
-
-    def __init__(self, data: Mapping[str, np.ndarray], prefix: str = "") -> None:
-        self._data, self._prefix = dict(data), prefix
-
-    def __len__(self) -> int:
-        return len(self._data)
-
-    def __contains__(self, name: str) -> bool:
-        return name in self._data
-
-    def array(self, name: str, dtype: type = float) -> np.ndarray:
-        """Return an array of exactly this type."""
-        value = self._taken(name)
-        if value.dtype != dtype:
-            raise ValueError(f"{self._prefix}{name}: needs {np.dtype(dtype)}, holds {value.dtype}")
-        return value
-
-    def arrays(self, *names: str, optional: bool = False) -> dict[str, np.ndarray]:
-        """Return arrays of floats by their names; those that are there, if they are optional."""
-        return {name: self.array(name) for name in names if name in self or not optional}
-
-    def number(self, name: str) -> float:
-        """Return one number."""
-        return self._one(self.array(name), name)
-
-    def flag(self, name: str) -> bool:
-        """Return True or False."""
-        return self._one(self.array(name, bool), name)
-
-    def words(self, name: str, unique: bool = True) -> tuple[str, ...]:
-        """Return a row of words, each once if `unique`."""
-        value = self._taken(name)
-        if value.dtype.kind != "U" or value.ndim != 1:
-            raise ValueError(f"{self._prefix}{name}: needs a row of words, holds {value.dtype}")
-        words = tuple(str(word) for word in value)
-        if unique and len(set(words)) < len(words):
-            raise ValueError(f"{self._prefix}{name}: needs each word once")
-        return words
-
-    def group(self, prefix: str) -> Entries:
-        """Take all entries whose names begin with `prefix`, without it."""
-        names = [name for name in self._data if name.startswith(prefix)]
-        taken = {name.removeprefix(prefix): self._data.pop(name) for name in names}
-        return Entries(taken, self._prefix + prefix)
-
-    def close(self) -> None:
-        """Refuse what was not taken."""
-        if self._data:
-            names = ", ".join(repr(self._prefix + name) for name in sorted(self._data))
-            raise ValueError(f"the entries {names} are unknown")
-
-    def _taken(self, name: str) -> np.ndarray:
-        if name not in self._data:
-            raise ValueError(f"the entry {self._prefix + name!r} is missing")
-        return self._data.pop(name)
-
-    def _one(self, value: np.ndarray, name: str) -> Any:
-        if value.ndim:
-            raise ValueError(f"{self._prefix}{name}: needs one value, got {value.shape}")
+def plain(value: np.ndarray) -> object:
+    """Return an entry of a file as it was given: a number, word, tuple of words, or array."""
+    if value.ndim == 0:
         return value.item()
+    return tuple(value.tolist()) if value.dtype.kind == "U" else value
 
 
 def _target(path: str | PathLike) -> Path:

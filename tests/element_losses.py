@@ -111,7 +111,7 @@ SEAL |= {"density": 1000.0, "viscosity": 1e-3}
 
 def seal(m):
     """−k z − d (ż − iΩ z/2) − M (z̈ − iΩ ż − Ω² z/4), whose M changes with the speed."""
-    k, d, M = np.array([AnnularSeal(interface="left", **SEAL).terms(each) for each in m.speed]).T
+    k, d, M = np.array([AnnularSeal(interface="left", **SEAL)._terms(each) for each in m.speed]).T
     u, v, half = m.u[:, :2], m.v[:, :2], 0.5 * m.speed
     fed = half * d * dot(around(u), v) - (k - M * half**2) * dot(u, v)
     fed = fed + 0.5 * np.gradient(M, m.time, edge_order=2) * dot(v, v)

@@ -91,7 +91,7 @@ def results() -> list:
                           15.0, 2.0, 40.0),
         MotionShapes(RNG.normal(size=(4, 3)), np.array(TRIANGLES), [0.0, 0.0, 1.0], np.zeros(3),
                      speeds, ("a", "b", "c"), speeds, speeds, np.array([-2, 0]),
-                     RNG.normal(size=(3, 2, 12)) + 1j),
+                     RNG.normal(size=(3, 2, 4, 3)) + 1j),
         StaticResponse(
             ("left", "node 2"), motion[:2, 0, 0].real, ("left", "right"),
             *RNG.normal(size=(2, 2, 6)), *RNG.normal(size=(2, 2)), np.eye(3), 90.0,

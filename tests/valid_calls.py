@@ -292,7 +292,6 @@ CALLS = {
         "nodes": w.SolidRotor.nodes,
         "interfaces": {"left": [0, 1, 2, 3]},
     },
-    "ReducedRotor.stress_of": lambda w: {"coordinates": np.zeros(w.ReducedRotor.size)},
     "SolidRotor.from_mesh": lambda w: {
         "mesh": _cube(),
         "materials": STEEL,
@@ -317,7 +316,6 @@ CALLS = {
     "StressField.plot": lambda w: {"modal_coordinates": w.coordinates[0]},
     "Support": {"stiffness": 1e6 * np.eye(3), "damping": 100.0},
     "FloatingRingBearing": {"inner": _FILM, "outer": _FILM},
-    "FloatingRingBearing.torque": {"ring_speed": 100.0},
     "SeriesSupport": {"inner": er.Support("left", 1e6), "outer": er.Support("left", 1e6)},
     "Support.from_columns": {"source": {"speed": [0.0, 9e3], "kxx": [1e6, 2e6]}},
     "Support.from_table": {

@@ -47,7 +47,10 @@ class Candidate:
     def of(cls, reduced: ReducedRotor, supports: Sequence[Support] | Support) -> Candidate:
         """Take a reduced rotor with its supports."""
         source = linear_model(reduced, supports=supports, axes="rotor")
-        return cls(reduced, source, any(map(_acts_along, source.supports[""])))
+        # bearings act across the axis
+        linear = [one for one in source.supports[""] if isinstance(one, Support)]
+        matrices = [matrix for one in linear for matrix in one.matrices(1.0)]
+        return cls(reduced, source, any(np.any(X[2]) or np.any(X[:, 2]) for X in matrices))
 
     @property
     def invariants(self) -> Invariants:
@@ -123,16 +126,8 @@ class Candidate:
             loads.append(unbalance[None, :])
         return motion, np.vstack(loads)
 
-    def ends_of_harmonics(self, made: Hill) -> tuple[np.ndarray, np.ndarray]:
+    def ends_of_harmonics(self, orders: int) -> tuple[np.ndarray, np.ndarray]:
         """Return displacements (h p, h k) of all harmonics, and load columns (h k, l) of one."""
         motion, loads = self.ends
-        columns = np.zeros((len(made.M), len(loads)))
-        start = loads.shape[1] * (made.orders // 2)
-        columns[start : start + loads.shape[1]] = loads.T
-        return np.kron(np.eye(made.orders), motion), columns
-
-
-def _acts_along(given: object) -> bool:
-    """Return whether a support acts along the axis; bearings act across it."""
-    matrices = given.matrices(1.0) if isinstance(given, Support) else ()
-    return any(np.any(matrix[2]) or np.any(matrix[:, 2]) for matrix in matrices)
+        unit = np.eye(orders)
+        return np.kron(unit, motion), np.kron(unit[:, [orders // 2]], loads.T)

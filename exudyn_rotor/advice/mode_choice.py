@@ -9,8 +9,7 @@ is.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import NamedTuple
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -22,67 +21,55 @@ _FREQUENCIES = 9
 _ALIKE = 0.01  # relative distance of frequencies of a pair: both planes of bending go together
 
 
-class Truncation(NamedTuple):
-    """Flexible modes that stay."""
+def _change_without(
+    given: Candidate, speed: float, s: complex
+) -> Callable[[list[np.ndarray]], float]:
+    """Return the largest relative change of the response to any load, by the modes left out.
 
-    kept: np.ndarray  # counted from 0
-    error: float  # largest relative change of the response by what was left out
-    in_band: int  # modes kept because their frequency lies in the band
+    The response is that at one speed and one exponent of the loads. Holding coordinates d still
+    changes the compliance H by ``−H_d (H_dd)⁻¹ H_dᵀ``.
+    """
+    made, count = given.hill(speed), given.source.size
+    used = np.flatnonzero(~np.isin(np.arange(len(made.M)) % count, given.held))
+    rows, loads = given.ends_of_harmonics(made.orders)
+    rows, loads = rows[:, used], loads[used]
+    H = np.linalg.inv(made.stiffness(s)[np.ix_(used, used)])
+    harmonics = np.arange(0, len(made.M), count)
+    places = np.searchsorted(used, given.flexible[:, None] + harmonics)
+    sizes = np.linalg.norm(rows @ (H @ loads), axis=0)
 
+    def change(left_out: list[np.ndarray]) -> float:
+        d = places[np.concatenate(left_out)].ravel()
+        inner = np.linalg.solve(H[np.ix_(d, d)], H[d] @ loads)
+        return largest_share(rows @ (H[:, d] @ inner), sizes)
 
-class Response:
-    """Response at one speed and one exponent of the loads, with all modes and without some."""
-
-    def __init__(self, given: Candidate, speed: float, s: complex) -> None:
-        made = given.hill(speed)
-        count = len(made.M) // made.orders
-        places = given.flexible[:, None] + count * np.arange(made.orders)
-        used = np.flatnonzero(~np.isin(np.arange(len(made.M)) % count, given.held))
-        rows, loads = given.ends_of_harmonics(made)
-        self._rows, self._loads = rows[:, used], loads[used]
-        self._H = np.linalg.inv(made.stiffness(s)[np.ix_(used, used)])
-        self._places = np.searchsorted(used, places)
-        self._sizes = np.linalg.norm(self._rows @ (self._H @ self._loads), axis=0)
-
-    def error_without(self, dropped: np.ndarray) -> float:
-        """Return the largest relative change of the response to any load without some modes.
-
-        Holding coordinates d still changes the compliance H by ``−H_d (H_dd)⁻¹ H_dᵀ``.
-        """
-        d = self._places[dropped].ravel()
-        inner = np.linalg.solve(self._H[np.ix_(d, d)], self._H[d] @ self._loads)
-        change = self._rows @ (self._H[:, d] @ inner)
-        return largest_share(change, self._sizes)
+    return change
 
 
-def choose_modes(given: Candidate, request: Request) -> Truncation:
+def choose_modes(given: Candidate, request: Request) -> tuple[np.ndarray, float]:
     """Return the fewest modes whose response is within half the accuracy of that with all.
 
-    Modes with a frequency in the band stay in any case. The others are left out one pair after
-    the other, those first that change the response least.
+    Counted from 0, and the largest relative change of the response by the others. Modes with a
+    frequency in the band stay in any case. The others are left out one pair after the other, those
+    first that change the response least.
     """
     frequencies = given.frequencies
-    responses = [Response(given, *each) for each in exponents(given, request)]
+    changes = [_change_without(given, *each) for each in exponents(given, request)]
     gaps = np.diff(frequencies) > _ALIKE * frequencies[1:]
     pairs = np.split(np.arange(frequencies.size), np.flatnonzero(gaps) + 1)
     pairs = [pair for pair in pairs if pair.size and frequencies[pair].min() > request.highest]
 
-    def error_without(chosen: list[np.ndarray]) -> float:
-        return max(one.error_without(np.concatenate(chosen)) for one in responses)
+    def error_without(left_out: list[np.ndarray]) -> float:
+        return max(change(left_out) for change in changes)
 
-    ranked = sorted(pairs, key=lambda pair: error_without([pair]))
-    dropped, error = 0, 0.0
+    ranked, dropped, error = sorted(pairs, key=lambda pair: error_without([pair])), 0, 0.0
     for count in range(1, len(ranked) + 1):  # the error grows with the number left out
         change = error_without(ranked[:count])
         if change > request.allowed:
             break
         dropped, error = count, change
     left_out = np.concatenate([np.zeros(0, dtype=int), *ranked[:dropped]])
-    return Truncation(
-        kept=np.setdiff1d(np.arange(frequencies.size), left_out),
-        error=error,
-        in_band=int(np.sum(frequencies <= request.highest)),
-    )
+    return np.setdiff1d(np.arange(frequencies.size), left_out), error
 
 
 def exponents(

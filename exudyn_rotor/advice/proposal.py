@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.advice.candidate import Candidate
-from exudyn_rotor.advice.mode_choice import GROWTH, Truncation, choose_modes
+from exudyn_rotor.advice.mode_choice import GROWTH, choose_modes
 from exudyn_rotor.advice.request import AssumptionWarning, Request
 from exudyn_rotor.advice.step_size import Step, choose_step
 from exudyn_rotor.bearings.support import Support
@@ -212,20 +212,20 @@ def propose(
         )
     given = Candidate.of(reduced, supports)
     spin, translation, why = _formulation(given, request)
-    chosen, step = choose_modes(given, request), choose_step(given, request)
+    (kept, error), step = choose_modes(given, request), choose_step(given, request)
     for message in _unmet(given, request):
         warnings.warn(message, AssumptionWarning, stacklevel=2)
     return Proposal(
         translation=translation,
         spin=spin,
         stiffening="full" if given.invariants.K2 is not None else "tilt",
-        modes=chosen.kept,
+        modes=kept,
         total=given.frequencies.size,
-        error=chosen.error,
+        error=error,
         step=step.size,
         speeds=(request.low, request.high),
         accuracy=request.accuracy,
-        reasons=(why, *_reasons(given, request, chosen, step)),
+        reasons=(why, *_reasons(given, request, kept, error, step)),
     )
 
 
@@ -246,13 +246,16 @@ def _formulation(given: Candidate, request: Request) -> tuple[str | float, str, 
     return "free", "in-plane", "the speed varies, and nothing acts along the axis"
 
 
-def _reasons(given: Candidate, request: Request, chosen: Truncation, step: Step) -> Iterator[str]:
+def _reasons(
+    given: Candidate, request: Request, kept: np.ndarray, error: float, step: Step
+) -> Iterator[str]:
     """Yield why these modes and this step."""
+    frequencies = given.frequencies
     yield (
-        f"modes: {chosen.in_band} lie in the band up to (f + Ω)/2π = "
+        f"modes: {np.sum(frequencies <= request.highest)} lie in the band up to (f + Ω)/2π = "
         f"{IN_HERTZ * request.highest:.4g} Hz of the rotor frame; the "
-        f"{given.frequencies.size - chosen.kept.size} left out change the response of interfaces "
-        f"by {chosen.error:.2g}, resonances damped by {GROWTH:.0%} at least"
+        f"{frequencies.size - kept.size} left out change the response of interfaces "
+        f"by {error:.2g}, resonances damped by {GROWTH:.0%} at least"
     )
     if np.isnan(step.speed):
         yield (

@@ -4,26 +4,23 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import exudyn
 import numpy as np
 
-from exudyn_rotor.advice.axial_force import axial_share, axial_share_of_full
+from exudyn_rotor.advice.axial_force import axial_share
 from exudyn_rotor.advice.candidate import Candidate
+from exudyn_rotor.advice.recorded_run import RecordedRun, squares
 from exudyn_rotor.advice.request import PERIOD_ERROR
-from exudyn_rotor.advice.run_loads import instants, interface_loads, residual_deflection
 from exudyn_rotor.advice.step_size import GROWTH_CHANGE, growth_by_step
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.linear.model.build import linear_model
-from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.connections import lost_items
-from exudyn_rotor.multibody.rotor.rotor_body import Record, RotorBody, implicit_step
-from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.elements import von_mises
-from exudyn_rotor.theory.invariants import Invariants, inertia_tensor
+from exudyn_rotor.theory.invariants import inertia_tensor
+from exudyn_rotor.theory.rotating_axes import axes_of
 from exudyn_rotor.theory.stiffening import stiffening
 
 _FORCE = exudyn.OutputVariableType.Force
@@ -33,120 +30,30 @@ _STEADY = 1e-9  # relative change of a constant speed
 _RESOLVED = 0.5  # ωh up to which the error of a step is that of its series
 _TOLD = 1e-6  # growth per radian that is more than rounding
 _RINGING = 1.5  # energy about the static stretch over that of a start without it, with a margin
-
-
-@dataclass(frozen=True, eq=False)
-class RecordedRun:
-    """What the rows of a check read of a run."""
-
-    body: RotorBody | FullRotorBody
-    record: Record
-    reduced: ReducedRotor | None = None  # knows the yield stress
-
-    @property
-    def invariants(self) -> Invariants:
-        """Invariants in the basis of the run."""
-        return self.body.motion.invariants
-
-    @cached_property
-    def flexible(self) -> np.ndarray:
-        """Which modal coordinates are flexible modes, ascending in frequency."""
-        stiff = np.diag(self.invariants.K) > 0.0
-        elastic = [kind is ModeKind.ELASTIC for kind in self.body.selection.kinds]
-        return np.flatnonzero(stiff & elastic)
-
-    @cached_property
-    def size(self) -> float:
-        """Radius of gyration of the whole rotor [m]."""
-        inv = self.invariants.moved(self.invariants.center)
-        return float(np.sqrt(np.trace(inv.J) / inv.mass))
-
-    def unknowns(self, rows: np.ndarray) -> np.ndarray:
-        """Return the unknowns of the equations out of recorded coordinates (s, n)."""
-        return rows[:, self.body.layout.unknowns]
-
-    @cached_property
-    def zeta(self) -> np.ndarray:
-        """Modal coordinates (s, m); of a full body the displacements of all nodes."""
-        return self.unknowns(self.record.q)[:, self.body.motion.modes]
-
-    @cached_property
-    def zeta_t(self) -> np.ndarray:
-        """Modal velocities (s, m)."""
-        return self.unknowns(self.record.q_t)[:, self.body.motion.modes]
-
-    @cached_property
-    def fastest(self) -> float:
-        """Highest spin speed, either way round [rad/s]."""
-        return float(np.abs(self.record.speed).max())
-
-    @cached_property
-    def mean_rotation(self) -> np.ndarray:
-        """Rotation vector of the rotor in the mean (s, 3) [rad]."""
-        return self.zeta @ self.invariants.mean_rotation.T
-
-    @cached_property
-    def energy(self) -> float:
-        """Largest elastic and largest kinetic energy of the vibration, together [J]."""
-        inv, omega = self.invariants, self.record.speed
-        modes = self.flexible
-        elastic = 0.5 * self.zeta[:, modes] ** 2 @ np.diag(inv.K)[modes]
-        # inertial velocity of the deviation from rigid rotation: ζ̇ + ω ẽ ζ
-        kinetic = 0.5 * squares(inv.M, self.zeta_t) + 0.5 * omega**2 * squares(inv.C, self.zeta)
-        kinetic += omega * np.einsum("si,ij,sj->s", self.zeta_t, inv.G, self.zeta)
-        frame = self.unknowns(self.record.q_t)[:, self.body.motion.translations]
-        kinetic += 0.5 * inv.mass * ((frame - frame.mean(axis=0)) ** 2).sum(axis=1)
-        return float(elastic.max(initial=0.0) + kinetic.max(initial=0.0))
-
-    @cached_property
-    def stretch(self) -> np.ndarray:
-        """Static centrifugal deformation (s, m), about which the rotor vibrates."""
-        inv, modes = self.invariants, self.flexible
-        shape = np.zeros(inv.size)
-        shape[modes] = inv.h[modes] / np.diag(inv.K)[modes]
-        return self.record.speed[:, None] ** 2 * shape
-
-
-def squares(matrix, rows: np.ndarray) -> np.ndarray:
-    """Return ``uᵀ X u`` of rows (s, n), shape (s,)."""
-    return np.einsum("si,is->s", rows, matrix @ rows.T)
-
+_STILL = 1e-5  # of the rotor's size: motion that counts as none
 
 Measure = Callable[[RecordedRun], float | None]
 
 
 class Row(NamedTuple):
-    """A row that any run may have; its measure is None where the row does not apply."""
+    """A row that any run may have; it stands above its measure, None where it does not apply."""
 
     name: str
-    limit: Callable[[float], float]  # of the accuracy
-    measure: Measure
+    limit: float | Callable[[float], float]  # or by the accuracy
     meaning: str
     advice: str
-    of_modes: bool
+    of_modes: bool = False  # not of full bodies
 
-
-ROWS: list[Row] = []
-
-
-def _row(
-    name: str,
-    limit: float | Callable[[float], float],
-    meaning: str,
-    advice: str,
-    of_modes: bool = False,
-) -> Callable[[Measure], Measure]:
-    """Put a measure into the table; rows `of_modes` do not exist for full bodies."""
-
-    def listed(measure: Measure) -> Measure:
-        limit_of = limit if callable(limit) else lambda _: limit
-        ROWS.append(Row(name, limit_of, measure, meaning, advice, of_modes))
+    def __call__(self, measure: Measure) -> Measure:
+        """Put a measure into the table."""
+        ROWS[self] = measure
         return measure
 
-    return listed
+
+ROWS: dict[Row, Measure] = {}
 
 
-@_row(
+@Row(
     "tilt",
     np.sqrt,
     "largest tilt [rad]",
@@ -157,7 +64,7 @@ def _tilt(run: RecordedRun) -> float:
     return np.linalg.norm(rotation - np.outer(rotation @ e, e), axis=1).max()
 
 
-@_row(
+@Row(
     "deflection",
     np.sqrt,
     "flexible displacement over the size",
@@ -171,17 +78,17 @@ def _deflection(run: RecordedRun) -> float:
     return np.sqrt(max(bent.max(), 0.0) / inv.mass) / run.size
 
 
-@_row(
+@Row(
     "connections",
     0.0,
     "connections, joints and loads that the rotor cannot carry",
     "body.check_connections() names them; use markers at interfaces or mesh nodes",
 )
 def _connections(run: RecordedRun) -> float:
-    return len(lost_items(run.body))
+    return len(list(lost_items(run.body)))
 
 
-@_row(
+@Row(
     "step",
     lambda accuracy: accuracy,
     "relative error of every period; free vibrations go out of phase by 2π times that in each",
@@ -194,7 +101,7 @@ def _step(run: RecordedRun) -> float:
     error of its period. Motion of the rigid rotor that is slow in space, ``ω_s``, errs by
     ``κ(ωh)² ω/ω_s`` where it is integrated in the rotor frame.
     """
-    step, record = implicit_step(run.body), run.record
+    step, record = run.step, run.record
     if step is None or len(record.time) < 3:
         return 0.0
     moved, rate, acceleration = (
@@ -216,35 +123,30 @@ def _spread(run: RecordedRun, rows: np.ndarray) -> float:
 
 def _slow_in_space(run: RecordedRun) -> float:
     """Return ``ω³/ω_s`` of the rigid rotor's lateral motion [rad²/s²], by its share of it."""
-    inv, e, speed = run.invariants, run.invariants.direction, run.record.speed
+    inv, speed = run.invariants, run.record.speed
+    n1, n2, _ = axes_of(run.body.axis).T
     steps = 0.5 * np.diff(run.record.time) * (speed[1:] + speed[:-1])
-    angle = np.append(0.0, np.cumsum(steps))
+    turn = np.exp(1j * np.append(0.0, np.cumsum(steps)))
     parts = []
     for rows in (inv.S / inv.mass, run.size * inv.mean_rotation):  # moved, and tilted
-        across = rows - np.outer(e, e @ rows)
-        motion, rate = run.zeta @ across.T, run.zeta_t @ across.T
-        in_space = _turned(motion, e, angle)
-        rate_in_space = _turned(rate + speed[:, None] * np.cross(e, motion), e, angle)
+        across = (n1 + 1j * n2) @ rows
+        motion, rate = run.zeta @ across, run.zeta_t @ across
+        in_space, rate_in_space = turn * motion, turn * (rate + 1j * speed * motion)
         parts.append((in_space, _frequency(in_space, rate_in_space), _frequency(motion, rate)))
-    size = np.sqrt(sum((in_space**2).sum(axis=1).mean() for in_space, _, _ in parts))
+    size = np.sqrt(sum((np.abs(in_space) ** 2).mean() for in_space, _, _ in parts))
     return max(
-        np.sqrt(in_space.var(axis=0).sum()) / size * frequency**3 / slow if slow else 0.0
+        in_space.std() / size * frequency**3 / slow if slow else 0.0
         for in_space, slow, frequency in parts
     )
 
 
-def _turned(values: np.ndarray, e: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Return vectors (s, 3) across e, turned about it by angles (s,)."""
-    return np.cos(angle)[:, None] * values + np.sin(angle)[:, None] * np.cross(e, values)
-
-
 def _frequency(values: np.ndarray, rates: np.ndarray) -> float:
-    """Return the mean frequency of signals (s, c), weighted with their amplitudes squared."""
-    moved = values.var(axis=0).sum()
-    return float(np.sqrt(rates.var(axis=0).sum() / moved)) if moved else 0.0
+    """Return the mean frequency of a signal (s,), weighted with its amplitudes squared."""
+    moved = values.std()
+    return float(rates.std() / moved) if moved else 0.0
 
 
-@_row(
+@Row(
     "growth",
     1.5 * GROWTH_CHANGE,
     "change of a growth by the step towards the other sign, over the growth",
@@ -253,7 +155,7 @@ def _frequency(values: np.ndarray, rates: np.ndarray) -> float:
 )
 def _growth(run: RecordedRun) -> float | None:
     """Of lightly damped motions of the linearised scene, all of which modes have, at one speed."""
-    body, step, speed = run.body, implicit_step(run.body), run.record.speed
+    body, step, speed = run.body, run.step, run.record.speed
     is_constant = np.ptp(speed) <= _STEADY * run.fastest
     if step is None or body.formulation.translation_count or not is_constant:
         return None
@@ -269,7 +171,7 @@ def _growth(run: RecordedRun) -> float | None:
     return float(((own - found).real / own.real)[told].max(initial=0.0))
 
 
-@_row(
+@Row(
     "film",
     1.0,
     "displacement of a journal at the end over that to which it has a film",
@@ -284,7 +186,7 @@ def _film(run: RecordedRun) -> float | None:
     return max(shares[np.isfinite(edges)], default=None)
 
 
-@_row(
+@Row(
     "unresisted load",
     0.01,
     "what the rotor cannot carry, over the largest load",
@@ -294,22 +196,20 @@ def _film(run: RecordedRun) -> float | None:
 def _unresisted(run: RecordedRun) -> float:
     """Moments count over the rotor's size; loads and forces are those at the end of the run."""
     mbs, sizes = run.body.mbs, [0.0]
-    for is_load, number in lost_items(run.body):
-        if not is_load:
+    for number, item, _ in lost_items(run.body):
+        if "loadType" not in item:
             sizes.append(np.linalg.norm(mbs.GetObjectOutput(number, _FORCE)))
             continue
-        load = mbs.GetLoad(number)
-        marker = mbs.GetMarker(int(load["markerNumber"]))
-        is_moment = "Torque" in load["loadType"] or int(marker.get("coordinate", 0)) in _TURNS
+        marker = mbs.GetMarker(int(item["markerNumber"]))
+        is_moment = "Torque" in item["loadType"] or int(marker.get("coordinate", 0)) in _TURNS
         sizes.append(np.linalg.norm(mbs.GetLoadValues(number)) / (run.size if is_moment else 1.0))
     lost = max(sizes)
-    if not lost or len(run.record.time) < 2:
+    if not lost or run.loads is None:
         return float(lost > 0.0)
-    carried = interface_loads(run.body, run.record, instants(run.record, 50), run.size)
-    return lost / max(lost, 0.0 if carried is None else np.linalg.norm(carried, axis=1).max())
+    return lost / max(lost, np.linalg.norm(run.loads, axis=1).max())
 
 
-@_row(
+@Row(
     "stiffening",
     lambda accuracy: accuracy,
     "stiffening left out, relative change of frequency",
@@ -337,7 +237,7 @@ def _missing_stiffness(run: RecordedRun) -> float:
     return 0.25 * np.abs(work).max() / run.energy
 
 
-@_row(
+@Row(
     "top modes",
     0.01,
     "energy in the highest fifth of the modes",
@@ -359,7 +259,7 @@ def _top_share(run: RecordedRun) -> float:
     return np.maximum(elastic - ringing, 0.0)[:, top].sum(axis=1).max() / run.energy
 
 
-@_row(
+@Row(
     "residual",
     lambda accuracy: accuracy,
     "deflection at interfaces that the modes leave out",
@@ -367,23 +267,72 @@ def _top_share(run: RecordedRun) -> float:
     of_modes=True,
 )
 def _residual(run: RecordedRun) -> float | None:
-    return residual_deflection(run.body, run.record, run.size)
+    """By static response to the loads of the run, and to the centrifugal one.
+
+    What the response of attachment modes has beyond that of the modes, over the displacement of the
+    interfaces; where stiff supports let them move less than the rotor bends, over its bending
+    there. Inertia of modes that are left out does not count: next to a resonance, and after a
+    sudden start, their motion is larger.
+    """
+    body, rotor, picked = run.body, run.body.selection.source, run.instants
+    if rotor.with_attachments is None or not rotor.interfaces:
+        return None
+    if run.loads is None:
+        return 0.0
+    columns = body.selection.T @ run.zeta[picked].T
+    moved = np.vstack([one.motion for one in rotor.interfaces.values()])
+    (all_, stretch), (own, own_stretch) = (
+        _static(each, body.selection.origin) for each in (rotor.with_attachments, rotor)
+    )
+    missing = (all_ - own) @ run.loads.reshape(-1, len(picked))
+    missing += np.outer(stretch - own_stretch, run.record.speed[picked] ** 2)
+    rigid = len(rotor.rigid_kinds)
+    bent = moved[:, rigid:] @ columns[rigid:]
+    frame = np.column_stack([_of_frame(run, index) for index in picked])
+    whole = moved @ columns + np.tile(frame, (len(rotor.interfaces), 1))
+    return _largest(missing) / max(_largest(whole), _largest(bent), _STILL * run.size)
 
 
-@_row(
+def _static(rotor: ReducedRotor, origin: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return static motions of the interfaces by the flexible modes.
+
+    By loads there, ``Σ φ φᵀ/ω²`` (6p, 6p), and by the centrifugal load per ω², (6p,).
+    """
+    flexible = slice(len(rotor.rigid_kinds), None)
+    frequencies = rotor.frequencies[flexible]
+    motion = np.vstack([one.motion[:, flexible] for one in rotor.interfaces.values()])
+    scaled = motion / frequencies
+    h = rotor.invariants.moved(origin - rotor.center_of_mass).h
+    return scaled @ scaled.T, scaled @ (h[flexible] / frequencies)
+
+
+def _of_frame(run: RecordedRun, index: int) -> np.ndarray:
+    """Return how far the frame's axis has moved, in its own axes, without rotation (6,)."""
+    motion, t = run.body.motion, float(run.record.time[index])
+    q, q_t = (rows[index][run.body.layout.unknowns] for rows in (run.record.q, run.record.q_t))
+    turn = motion.at(t, q, q_t).A
+    # the frame may stand in a centre of mass off the axis, and that circles about it
+    arm = run.body.axis.radial(run.body.selection.origin)
+    shift = motion.free_directions @ q[motion.translations]
+    return np.concatenate([turn.T @ (shift + motion.orientation @ arm) - arm, np.zeros(3)])
+
+
+def _largest(motion: np.ndarray) -> float:
+    """Return the largest displacement of all interfaces together, of motions (6p, s) [m]."""
+    displacements = motion.reshape(-1, 6, motion.shape[1])[:, :3]
+    return float(np.sqrt((displacements**2).sum(axis=(0, 1))).max())
+
+
+Row(
     "axial force",
     lambda accuracy: 2.0 * accuracy,
     "axial force over the buckling load, its stiffness in bending left out",
     "frequencies are off by about half of it; give it to rotor.prestress(loads=…, "
     "supports=…), and the prestress to reduce",
-)
-def _axial(run: RecordedRun) -> float | None:
-    if isinstance(run.body, FullRotorBody):
-        return axial_share_of_full(run.body, run.record)
-    return axial_share(run.body, run.record, run.size)
+)(axial_share)
 
 
-@_row(
+@Row(
     "yield",
     1.0,
     "static stress over yield stress",
@@ -395,3 +344,15 @@ def _yielding(run: RecordedRun) -> float | None:
     if static is None or static.stress is None or not static.yield_stress:
         return None
     return run.fastest**2 * von_mises(static.stress).max() / static.yield_stress
+
+
+@Row(
+    "speed",
+    lambda accuracy: 1.0 + accuracy,
+    "highest speed over that of the proposal",
+    "propose again with the speeds that were reached",
+)
+def _speed(run: RecordedRun) -> float | None:
+    if run.proposed is None or not run.fastest:
+        return None if run.proposed is None else 0.0
+    return run.fastest / run.proposed if run.proposed else np.inf

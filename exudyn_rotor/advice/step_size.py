@@ -44,9 +44,11 @@ class Step(NamedTuple):
 
 
 def choose_step(given: Candidate, request: Request) -> Step:
-    """Return the step with half the accuracy, for the response and for periods in the band."""
-    chosen = Step(request.step)
-    trial = _TRIAL / request.highest
+    """Return the step with half the accuracy, for the response and for periods in the band.
+
+    The same or a smaller one, by which growth changes by less than half.
+    """
+    chosen, trial = Step(request.step), _TRIAL / request.highest
     # acceleration and unbalance stand behind loads at interfaces
     first = 0 if request.banded else len(given.ends[0])
     steady = _STEADY if request.low == request.high else GROWTH
@@ -54,18 +56,25 @@ def choose_step(given: Candidate, request: Request) -> Step:
         change = _change(given, speed, s, trial, first)
         size = trial * np.sqrt(request.allowed / max(change, 1e-300))
         chosen = min(chosen, Step(float(size), speed, float(s.imag)), key=lambda each: each.size)
-    for speed in request.speeds:
-        chosen = _with_right_growth(given, request, float(speed), chosen)
+    for speed in request.speeds.tolist():
+        for _ in range(_HALVINGS):
+            own, found = growth_by_step(given, speed, chosen.size, request.highest)
+            shares = np.abs((found - own).real / own.real)
+            if shares.max(initial=0.0) <= GROWTH_CHANGE:
+                break
+            worst = int(np.argmax(shares))
+            size = chosen.size * max((GROWTH_CHANGE / shares[worst]) ** 0.5, 0.5)
+            chosen = Step(size, speed, float(own[worst].imag))
     return chosen
 
 
 def _change(given: Candidate, speed: float, s: complex, step: float, first: int) -> float:
     """Return the largest relative change of the response to any load from `first` by a step."""
     made = given.hill(speed)
-    rows, loads = given.ends_of_harmonics(made)
-    exact = made.stiffness(s)
-    response = rows @ np.linalg.solve(exact, loads[:, first:])
-    change = rows @ np.linalg.solve(exact + _of_step(made, s, step), loads[:, first:]) - response
+    rows, loads = given.ends_of_harmonics(made.orders)
+    loads, exact = loads[:, first:], made.stiffness(s)
+    response = rows @ np.linalg.solve(exact, loads)
+    change = rows @ np.linalg.solve(exact + _of_step(made, s, step), loads) - response
     return largest_share(change, np.linalg.norm(response, axis=0), _UNMOVED)
 
 
@@ -93,16 +102,3 @@ def growth_by_step(
         moved = np.linalg.eigvals(np.diag(values[near]) - change)
         found.append(moved[np.argmin(np.abs(moved - own))])
     return values[light], np.array(found, dtype=complex)
-
-
-def _with_right_growth(given: Candidate, request: Request, speed: float, chosen: Step) -> Step:
-    """Return a step, the same or a smaller one, by which growth changes by less than half."""
-    for _ in range(_HALVINGS):
-        own, found = growth_by_step(given, speed, chosen.size, request.highest)
-        shares = np.abs((found - own).real / own.real)
-        if shares.max(initial=0.0) <= GROWTH_CHANGE:
-            break
-        worst = int(np.argmax(shares))
-        smaller = chosen.size * max((GROWTH_CHANGE / shares[worst]) ** 0.5, 0.5)
-        chosen = Step(smaller, speed, float(own[worst].imag))
-    return chosen

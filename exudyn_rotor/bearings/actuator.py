@@ -1,23 +1,15 @@
 """Actuators of magnetic bearings: the force of one control axis by its current and the place.
 
-Linear, about the centre:
-
-    F = K_i i + K_s x                                                                      (1)
-
-Two opposite magnets, driven in differential mode with the bias current i_0:
-
-    F = k [I₊²/(s_0 − x)² − I₋²/(s_0 + x)²],   I± = i_0 ± i, between 0 and the limit,      (2)
-
-with ``k = ¼ μ_0 N² A cos α`` of N turns, the pole area A and the angle α between pole and axis. In
-the centre its derivatives are ``K_i = 4 k i_0/s_0²`` and ``K_s = 4 k i_0²/s_0³``. G. Schweitzer,
-E. H. Maslen (eds.), *Magnetic Bearings* (Springer, 2009), Sect. 4.1. Iron that saturates
-magnetically, hysteresis, eddy currents and leakage are left out: a limit of the current stands for
-the first. The voltage that limits the rate of the current is left out, too.
+Linear about the centre (1), or of two opposite magnets (2), driven in differential mode with the
+bias current i_0, ``k = ¼ μ_0 N² A cos α`` of N turns, the pole area A and the angle α between pole
+and axis: in the centre the derivatives are ``K_i = 4 k i_0/s_0²`` and ``K_s = 4 k i_0²/s_0³``.
+G. Schweitzer, E. H. Maslen (eds.), *Magnetic Bearings* (Springer, 2009), Sect. 4.1. Iron that
+saturates magnetically, hysteresis, eddy currents and leakage are left out: a limit of the current
+stands for the first. The voltage that limits the rate of the current is left out, too.
 """
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,31 +22,8 @@ _LEAST_GAP = 0.05  # of the gap in the centre: the magnets do not come closer
 _PLACES = np.linspace(0.0, 1.0 - _LEAST_GAP, 200)
 
 
-class Actuator(ABC):
-    """Force of a control axis by the current and the place."""
-
-    force_current: float
-    negative_stiffness: float
-
-    @abstractmethod
-    def law(self, current: float, place: float) -> float:
-        """Return the force along the control axis [N] by current [A] and place [m], unchecked."""
-
-    @abstractmethod
-    def slopes(self, current: float, place: float) -> tuple[float, float]:
-        """Return the derivatives of :meth:`law` by current [N/A] and place [N/m], unchecked."""
-
-    @abstractmethod
-    def _current_for(self, force: float) -> float:
-        """Return the current [A] that makes a force [N] in the centre."""
-
-    @abstractmethod
-    def _place_under(self, load: float, gain: float) -> float:
-        """Return where ``F(−gain x, x) + load = 0`` [m], next to the centre."""
-
-
 @dataclass(frozen=True)
-class LinearActuator(Actuator):
+class LinearActuator:
     """Actuator ``F = K_i i + K_s x`` (1) of a control axis.
 
     Parameters
@@ -79,26 +48,28 @@ class LinearActuator(Actuator):
     negative_stiffness: float
 
     def __post_init__(self) -> None:
-        checks.number(self.force_current, "force_current", "N/A", above=0.0)
-        checks.number(self.negative_stiffness, "negative_stiffness", "N/m", least=0.0)
+        checks.keep_numbers(self, {"force_current": "N/A"}, above=0.0)
+        checks.keep_numbers(self, {"negative_stiffness": "N/m"}, least=0.0)
 
     def law(self, current: float, place: float) -> float:
-        """Return the force (1) [N]."""
+        """Return the force (1) [N] by current [A] and place [m], unchecked."""
         return self.force_current * current + self.negative_stiffness * place
 
     def slopes(self, current: float, place: float) -> tuple[float, float]:
-        """Return K_i and K_s."""
+        """Return the derivatives of (1) by current [N/A] and place [N/m]: K_i and K_s."""
         return self.force_current, self.negative_stiffness
 
     def _current_for(self, force: float) -> float:
+        """Return the current [A] that makes a force [N] in the centre."""
         return force / self.force_current
 
     def _place_under(self, load: float, gain: float) -> float:
+        """Return where ``F(−gain x, x) + load = 0`` [m], next to the centre."""
         return load / (self.force_current * gain - self.negative_stiffness)
 
 
 @dataclass(frozen=True)
-class SaturatingActuator(Actuator):
+class SaturatingActuator:
     """Two opposite magnets (2) of a control axis.
 
     ``F = k (I₊²/(s_0 − x)² − I₋²/(s_0 + x)²)``, ``I± = i_0 ± i`` between 0 and the limit.
@@ -139,9 +110,8 @@ class SaturatingActuator(Actuator):
 
     def __post_init__(self) -> None:
         units = {"constant": "N m²/A²", "bias_current": "A", "gap": "m"}
-        for name, unit in units.items():
-            checks.number(getattr(self, name), name, unit, above=0.0)
-        checks.number(self.current_limit, "current_limit", "A", above=self.bias_current)
+        checks.keep_numbers(self, units, above=0.0)
+        checks.keep_numbers(self, {"current_limit": "A"}, above=self.bias_current)
 
     @property
     def force_current(self) -> float:
@@ -154,7 +124,7 @@ class SaturatingActuator(Actuator):
         return 4.0 * self.constant * self.bias_current**2 / self.gap**3
 
     def law(self, current: float, place: float) -> float:
-        """Return the force (2) [N]."""
+        """Return the force (2) [N] by current [A] and place [m], unchecked."""
         (pull, near), (push, far) = self._magnets(current, place)
         return self.constant * ((pull / near) ** 2 - (push / far) ** 2)
 
@@ -169,6 +139,7 @@ class SaturatingActuator(Actuator):
         return 2.0 * self.constant * sum(by_current), 2.0 * self.constant * sum(by_place)
 
     def _current_for(self, force: float) -> float:
+        """Return the current [A] that makes a force [N] in the centre."""
         most = max(self.bias_current, self.current_limit - self.bias_current)
         largest = self.law(most, 0.0)
         if not abs(force) < largest:
@@ -179,6 +150,8 @@ class SaturatingActuator(Actuator):
         return brentq(lambda i: self.law(i, 0.0) - force, -most, most, xtol=1e-15, rtol=1e-14)
 
     def _place_under(self, load: float, gain: float) -> float:
+        """Return where ``F(−gain x, x) + load = 0`` [m], next to the centre."""
+
         def left(place: float) -> float:
             return self.law(-gain * place, place) + load
 
@@ -202,3 +175,6 @@ class SaturatingActuator(Actuator):
             (min(max(bias + current, 0.0), limit), max(self.gap - place, least)),
             (min(max(bias - current, 0.0), limit), max(self.gap + place, least)),
         )
+
+
+Actuator = LinearActuator | SaturatingActuator

@@ -6,14 +6,9 @@ change, and the loss coefficient ξ at the inlet. With ``σ = λ L/c`` the press
     Δp = ½ ρ V² (1 + ξ + 2σ).                                                              (1)
 
 The leakage turns at half of the spin speed, so that in axes that turn with it, and with
-``T = L/V``, z = x + iy, ``n = 1 + ξ + 2σ``, the force on the rotor to second order in the frequency
-is
+``T = L/V``, z = x + iy, the force on the rotor to second order in the frequency is
 
     F = −(π R Δp/λ) [μ_0 + μ_1 T d + μ_2 T² d²] z,   d = d/dt − iΩ/2                       (2)
-
-    μ_0 = (1+ξ) σ²/n²
-    μ_1 = [(1+ξ)² σ + (1+ξ)(7/3 + 4/3 ξ) σ² + 10/3 (1+ξ) σ³ + 4/3 σ⁴]/n³
-    μ_2 = [1/3 (1+ξ)² (2ξ−1) σ + (1+ξ)(1+2ξ) σ² + 2(1+ξ) σ³ + 4/3 σ⁴]/n⁴
 
 This is the theory of H. F. Black, D. N. Jenssen, Proc. IMechE 184 (1970), and D. W. Childs,
 *Turbomachinery Rotordynamics* (1993), Ch. 4; the coefficients are integrated anew, which gives
@@ -37,12 +32,12 @@ import numpy as np
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, check_clearance
+from exudyn_rotor.bearings.bearing import Bearing, Force, Pair, check_clearance
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.calls import user_level
 
 _TURBULENT = 2000.0  # Reynolds number Ra, below which a leakage without spin may be laminar
-_LEAST = 1e-3  # of the axial velocity without friction, above which it is looked for first
+_LEAST = 1e-15  # of the axial velocity without friction: no leakage is so slow
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -140,23 +135,15 @@ class AnnularSeal(Bearing):
             friction = self._friction(velocity, speed) * self.length / self.clearance
             return share**2 * (1.0 + self.inlet_loss + 2.0 * friction) - 1.0
 
-        least = _LEAST
-        while left(least) > 0.0:  # long and narrow gaps; the term of friction falls as the velocity
-            least *= _LEAST
-        return free * brentq(left, least, 1.0, xtol=1e-15 * least, rtol=1e-14)
+        return free * brentq(left, _LEAST, 1.0, xtol=_LEAST**2, rtol=1e-14)
 
     def _friction(self, velocity: float, speed: float) -> float:
         """Return λ by (3)."""
         axial, around = (self._relative * v for v in (2.0 * velocity, self.radius * abs(speed)))
         return 0.079 * axial**-0.25 * (1.0 + (7.0 * around / (8.0 * axial)) ** 2) ** 0.375
 
-    def terms(self, speed: float) -> tuple[float, float, float]:
-        """Return what (2) multiplies z, d z and d² z by: [N/m], [N s/m], [kg].
-
-        Raises
-        ------
-        TypeError, ValueError
-        """
+    def _terms(self, speed: float) -> tuple[float, float, float]:
+        """Return what (2) multiplies z, d z and d² z by: [N/m], [N s/m], [kg]."""
         velocity, xi = self.axial_velocity(speed), self.inlet_loss
         friction, f = self._friction(velocity, speed), 1.0 + xi
         s = friction * self.length / self.clearance
@@ -179,31 +166,27 @@ class AnnularSeal(Bearing):
         ------
         TypeError, ValueError
         """
-        return self.terms(speed)[2]
+        return self._terms(speed)[2]
 
     def linearised(self) -> Support:
         """Return the support for linear analyses, with the inertia of the leakage."""
         return replace(super().linearised(), mass=self.added_mass)
 
-    def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _matrices(self, speed: float, load: np.ndarray) -> Pair:
         """Return stiffness and damping of (2), without its inertia."""
-        return tuple(X.copy() for X in _of_leakage(self, float(speed)))
+        return _of_leakage(self, float(speed))
 
     def clearance_along(self, direction: np.ndarray | None = None) -> float:
         """Return the clearance [m], which is the same in all directions."""
         return self.clearance
 
-    def law(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[float, float]:
+    def law(self, x: float, y: float, vx: float, vy: float, angle: float, speed: float) -> Force:
         """Return the force on the journal but for its inertia [N]."""
         K, D = _of_leakage(self, speed)
         fx, fy = -K @ (x, y) - D @ (vx, vy)
         return float(fx), float(fy)
 
-    def slopes(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def slopes(self, x: float, y: float, vx: float, vy: float, angle: float, speed: float) -> Pair:
         """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
         return _of_leakage(self, speed)
 
@@ -211,7 +194,8 @@ class AnnularSeal(Bearing):
 @lru_cache(maxsize=64)
 def _of_leakage(seal: AnnularSeal, speed: float) -> tuple[np.ndarray, np.ndarray]:
     """Return stiffness and damping; one speed is asked for at many instants."""
-    k, d, m = seal.terms(speed)
+    k, d, m = seal._terms(speed)
     turn, half = np.array([[0.0, 1.0], [-1.0, 0.0]]), 0.5 * speed
     stiffness = (k - half**2 * m) * np.eye(2) + half * d * turn
-    return stiffness, d * np.eye(2) + 2.0 * half * m * turn
+    damping = d * np.eye(2) + 2.0 * half * m * turn
+    return checks.read_only(stiffness), checks.read_only(damping)

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.controlled_support import ControlledSupport
-from exudyn_rotor.bearings.own_table import table_of
+from exudyn_rotor.bearings.controlled_support import ControlledSupport, table_of
 from exudyn_rotor.bearings.support import COEFFICIENTS, NoCoefficientsError, Support
 
 _REMEMBERED = 1000  # coefficients of a bearing
@@ -23,6 +22,8 @@ _DIFFERENCE, _STILL = 1e-4, 1e-6  # of a motion, which is at least that in SI un
 HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a bearing holds count
 
 Numbers = float | np.ndarray
+Force = tuple[float, float]  # on the journal along n1 and n2 [N]
+Pair = tuple[np.ndarray, np.ndarray]  # by place and by velocity
 LawWithTorque = Callable[[float, float, float, float, float, float], tuple[float, float, float]]
 
 
@@ -74,17 +75,10 @@ class LoadedBearing(ABC):
     """A bearing across the axis that holds its journal in an equilibrium under a static load.
 
     Components are along (n1, n2) of :attr:`SpinAxis.plane`, which stand still, from the centre of
-    the bearing, where the axis of the rotor at rest passes.
-
-    Attributes
-    ----------
-    interface : str
-        Interface of the rotor that is the journal.
-    load : ndarray, shape (2,), or None
-        Static load on the journal [N], about whose equilibrium linear analyses take the bearing;
-        see :func:`exudyn_rotor.bearing_loads`. Scenes do not need it.
-    carries : bool
-        Whether it takes a share of the rotor's weight.
+    the bearing, where the axis of the rotor at rest passes. Linear analyses take the bearing about
+    its equilibrium under the static `load` on the journal [N], see
+    :func:`exudyn_rotor.bearing_loads`; scenes do not need it. What `carries` takes a share of the
+    rotor's weight.
     """
 
     carries: ClassVar[bool] = True
@@ -177,11 +171,6 @@ class Bearing(LoadedBearing):
     Scenes ask for :attr:`law` and :meth:`slopes` in every step, harmonic balance for
     :meth:`law_along`, all without checks. Where the spin is free, scenes ask for `law_with_torque`:
     the force, and the torque on the journal about the axis [N m]; None of bearings without one.
-
-    Attributes
-    ----------
-    interface, load
-        See :class:`LoadedBearing`.
     """
 
     law_with_torque: ClassVar[LawWithTorque | None] = None
@@ -191,15 +180,11 @@ class Bearing(LoadedBearing):
         default_factory=lambda: Equilibria(_REMEMBERED), init=False, repr=False
     )
 
-    def law(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[float, float]:
+    def law(self, x: float, y: float, vx: float, vy: float, angle: float, speed: float) -> Force:
         """Return the force on the journal [N] by x, y, ẋ, ẏ, θ and Ω, anywhere, unchecked."""
         return self.law_with_torque(x, y, vx, vy, angle, speed)[:2]
 
-    def slopes(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def slopes(self, x: float, y: float, vx: float, vy: float, angle: float, speed: float) -> Pair:
         """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity.
 
         By central differences in this class.
@@ -213,9 +198,7 @@ class Bearing(LoadedBearing):
         found = np.array([np.subtract(*pair) for pair in ends]).T / (2.0 * steps)
         return found[:, :2], found[:, 2:]
 
-    def law_along(
-        self, motion: np.ndarray, angles: np.ndarray, speed: float
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def law_along(self, motion: np.ndarray, angles: np.ndarray, speed: float) -> Pair:
         """Return forces and their derivatives along motions (t, 4).
 
         Of displacements and velocities [m], [m/s], spin angles (t,) and the spin speed: forces
@@ -273,7 +256,7 @@ class Bearing(LoadedBearing):
 
     def _beyond(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[float, float]:
+    ) -> Force:
         """Return the force where there is no film, by the tangent of the last one.
 
         So Newton's method comes back from such places.
@@ -283,9 +266,7 @@ class Bearing(LoadedBearing):
         gx, gy = (self.slopes(a, b, vx, vy, angle, speed)[0] @ (x - a, y - b)).tolist()
         return fx - gx, fy - gy
 
-    def coefficients(
-        self, speed: float, load: ArrayLike | None = None
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def coefficients(self, speed: float, load: ArrayLike | None = None) -> Pair:
         """Return stiffness [N/m] and damping [N s/m] about the equilibrium, each (2, 2).
 
         Parameters and errors are those of :meth:`equilibrium`.
@@ -293,8 +274,8 @@ class Bearing(LoadedBearing):
         return self._matrices(checks.number(speed, "speed", "rad/s"), self._static_load(load))
 
     @abstractmethod
-    def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return stiffness and damping about the equilibrium, which the caller may change."""
+    def _matrices(self, speed: float, load: np.ndarray) -> Pair:
+        """Return stiffness and damping about the equilibrium."""
 
     def linearised(self) -> Support:
         """Return the support for linear analyses: the coefficients under the load at every speed.
@@ -330,17 +311,11 @@ class Linearised:
 
     def _value(self, speed: float) -> np.ndarray:
         bearing = self.bearing
-        return bearing._linear.at(speed, bearing._static_load(None), bearing.coefficients)[
-            self.index
-        ]
+        found = bearing._linear.at(speed, bearing._static_load(None), bearing.coefficients)
+        return found[self.index]
 
     def check_range(self, speed: float) -> None:
-        """Refuse a speed at which the bearing has no equilibrium.
-
-        Raises
-        ------
-        NoEquilibriumError
-        """
+        """Refuse a speed at which the bearing has no equilibrium."""
         try:
             self._value(speed)
         except _FAILED as error:

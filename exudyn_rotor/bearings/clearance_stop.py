@@ -1,16 +1,8 @@
 """Stop behind a clearance, with friction: rub in seals and back-up bearings.
 
-With the eccentricity e, its rate ė and the penetration δ = e − c > 0, the stop pushes inwards with
-
-    N = max(0, k δ + d δ ė/c),                                                             (1)
-
-whose damping begins at zero with the contact (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42
-(1975)), and the friction on a journal of the radius R at the spin speed Ω opposes the sliding
-
-    T = −μ N tanh(v_s/v_0),   v_s = R Ω + v_t,                                             (2)
-
-Coulomb's friction, smooth below the speed v_0. Dry backward whirl follows where friction
-overcomes the damping. Friction brakes the spin by the torque R T.
+The damping begins at zero with the contact (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42
+(1975)); friction is Coulomb's, smooth below the speed v_0. Dry backward whirl follows where it
+overcomes the damping. It brakes the spin by R T.
 """
 
 from __future__ import annotations
@@ -22,7 +14,7 @@ from typing import ClassVar
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, Numbers, turned
+from exudyn_rotor.bearings.bearing import Bearing, Numbers, Pair, turned
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -101,18 +93,14 @@ class ClearanceStop(Bearing):
         drag = self.friction * normal * tanh(sliding / self.slip_speed)
         return drag * ny - normal * nx, -drag * nx - normal * ny, -self.radius * drag
 
-    def slopes(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def slopes(self, x: float, y: float, vx: float, vy: float, angle: float, speed: float) -> Pair:
         """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
         if hypot(x, y) <= self.clearance:
             return np.zeros((2, 2)), np.zeros((2, 2))
         found = np.reshape(self._contact(x, y, vx, vy, speed)[2:], (2, 4))
         return found[:, :2], found[:, 2:]
 
-    def law_along(
-        self, motion: np.ndarray, angles: np.ndarray, speed: float
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def law_along(self, motion: np.ndarray, angles: np.ndarray, speed: float) -> Pair:
         """Return forces (t, 2) and less their derivatives (t, 2, 4); see :class:`Bearing`."""
         touching = np.hypot(*motion[:, :2].T) > self.clearance
         found = np.zeros((len(motion), 10))
@@ -145,6 +133,6 @@ class ClearanceStop(Bearing):
         force = [T * ny - N * nx, -T * nx - N * ny]
         return [*force, *by_place[:2], *by_rate[:2], *by_place[2:], *by_rate[2:]]
 
-    def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _matrices(self, speed: float, load: np.ndarray) -> Pair:
         """Return zeros, as of an open stop."""
         return np.zeros((2, 2)), np.zeros((2, 2))

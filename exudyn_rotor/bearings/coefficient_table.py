@@ -30,13 +30,8 @@ class CoefficientTable:
     """A coefficient over the spin speed, the frequency of the motion, or both.
 
     Between its points it is a piecewise cubic polynomial that does not overshoot (PCHIP), along
-    one axis after the other; beyond its ends it keeps the value there.
-
-    Attributes
-    ----------
-    speeds, frequencies : ndarray, shape (s,), (f,), or None
-        [rad/s]; None where the coefficient does not depend on it.
-    values : ndarray, shape (s, f, …), (s, …) or (f, …)
+    one axis after the other; beyond its ends it keeps the value there. Values have the shape
+    (s, f, …), without the axis of what they do not depend on.
     """
 
     speeds: np.ndarray | None
@@ -53,18 +48,13 @@ class CoefficientTable:
         values: ArrayLike,
         shapes: Sequence[tuple[int, ...]],
     ) -> CoefficientTable:
-        """Return a table of numbers or matrices of some `shapes`, checked; `name` is for refusals.
-
-        Raises
-        ------
-        TypeError, ValueError
-        """
+        """Return a table of numbers or matrices of some `shapes`, checked under a `name`."""
         if speeds is None and frequencies is None:
             raise ValueError(f"{name}: needs speeds, frequencies, or both [rad/s]")
         axes = [
             given
             if given is None
-            else checks.ascending(given, f"{name}: {axis} of its table", "rad/s", of_table=True)
+            else checks.ascending(given, f"{name}: {axis} of its table", "rad/s")
             for given, axis in ((speeds, "the speeds"), (frequencies, "the frequencies"))
         ]
         if axes[1] is not None and axes[1][0] < 0.0:
@@ -140,14 +130,7 @@ def _smooth(points: np.ndarray, values: np.ndarray) -> Callable[[float], np.ndar
 
 
 def read_columns(source: str | Path | Any) -> dict[str, np.ndarray | None]:
-    """Return axes and coefficients, named as for :meth:`Support.from_table`, of a table.
-
-    Raises
-    ------
-    TypeError, ValueError, OSError
-        For columns that are missing or unknown, values that are no numbers, rows that do not make a
-        full grid of speeds and frequencies, and a file that is not there.
-    """
+    """Return axes and coefficients, named as for :meth:`Support.from_table`, of a table."""
     axes: dict[str, np.ndarray] = {}
     entries: dict[tuple[str, int, int], np.ndarray] = {}
     for header, values in _columns(source).items():
@@ -205,10 +188,10 @@ def _columns(source: str | Path | Any) -> dict[str, np.ndarray]:
         )
     columns = {}
     for name, values in source.items():
+        what = f"source: {str(name)!r}"
         try:
-            columns[str(name)] = np.asarray(values, dtype=float)
+            numbers = np.asarray(values, dtype=float)
         except (TypeError, ValueError):
-            raise ValueError(f"source: {str(name)!r}: needs numbers, got other text") from None
-        if not np.all(np.isfinite(columns[str(name)])):
-            raise ValueError(f"source: {str(name)!r}: needs finite numbers in every row")
+            raise ValueError(f"{what}: needs numbers, got other text") from None
+        columns[str(name)] = checks.vector(numbers, what, size=None)
     return columns

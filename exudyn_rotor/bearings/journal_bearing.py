@@ -8,7 +8,7 @@ from math import hypot
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, Equilibria
+from exudyn_rotor.bearings.bearing import Bearing, Equilibria, Force, Pair
 from exudyn_rotor.bearings.film.film import FilmState, OilFilm
 
 
@@ -51,7 +51,7 @@ class JournalBearing(Bearing):
     film: OilFilm
     _equilibria: Equilibria[FilmState] = field(default_factory=Equilibria, init=False, repr=False)
     # of the last call: the next one begins with its cells, the pressure stays the same to rounding
-    _last: list[FilmState] = field(default_factory=list, init=False, repr=False)
+    _last: dict[tuple, FilmState] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -70,9 +70,7 @@ class JournalBearing(Bearing):
             return self.film.clearance
         return self.film.reach_along(direction, 0.0)
 
-    def law(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[float, float]:
+    def law(self, x: float, y: float, vx: float, vy: float, angle: float, speed: float) -> Force:
         """Return the force on the journal [N]; a film too thin for the grid goes on straight."""
         if hypot(x, y) > self.film_edge(x, y):
             return self._beyond(x, y, vx, vy, angle, speed)
@@ -85,9 +83,7 @@ class JournalBearing(Bearing):
         force = self.law(x, y, vx, vy, angle, speed)
         return *force, -self._film_at(*self._inside(x, y), vx, vy, speed).torque
 
-    def slopes(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def slopes(self, x: float, y: float, vx: float, vy: float, angle: float, speed: float) -> Pair:
         """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
         if hypot(x, y) > self.film_edge(x, y):
             return super().slopes(x, y, vx, vy, angle, speed)
@@ -95,23 +91,21 @@ class JournalBearing(Bearing):
 
     def _film_at(self, x: float, y: float, vx: float, vy: float, speed: float) -> FilmState:
         """Return the film; that of the last call, where it is the same."""
-        place, rate = np.array([x, y]), np.array([vx, vy])
-        empty = None
-        if self._last:
-            last = self._last[0]
-            same = np.array_equal(place, last.position) and np.array_equal(rate, last.velocity)
-            if same and speed == last.speed:
-                return last
-            empty = last.solution.empty
-        found = self.film.solved(place, rate, speed, empty)
-        self._last[:] = [found]
+        key = x, y, vx, vy, speed
+        found = self._last.get(key)
+        if found is None:
+            known = next(iter(self._last.values()), None)
+            empty = None if known is None else known.solution.empty
+            found = self.film.solved(np.array([x, y]), np.array([vx, vy]), speed, empty)
+            self._last.clear()
+            self._last[key] = found
         return found
 
     def _rest(self, speed: float, load: np.ndarray) -> np.ndarray:
         """Return where the film carries the load [m]."""
         return self._state(speed, load).position.copy()
 
-    def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _matrices(self, speed: float, load: np.ndarray) -> Pair:
         """Return the film's coefficients in equilibrium."""
         return self._state(speed, load).coefficients()
 

@@ -13,6 +13,7 @@ bending modes unstable whose node is between the two.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import cos, inf, sin
 from typing import ClassVar
 
@@ -22,7 +23,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.actuator import Actuator, SaturatingActuator
 from exudyn_rotor.bearings.bearing import LoadedBearing
 from exudyn_rotor.bearings.controlled_support import ControlledSupport
-from exudyn_rotor.bearings.pid_controller import PIDController
+from exudyn_rotor.bearings.pid_controller import PIDController, Realisation
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -89,15 +90,23 @@ class MagneticBearing(LoadedBearing):
         """Interface whose displacement is measured."""
         return self.interface if self.sensor is None else self.sensor
 
-    @property
-    def scale(self) -> float:
-        """Stiffness [N/m] with which own equations are multiplied, so that they are forces.
+    @cached_property
+    def realisation(self) -> Realisation:
+        """The controllers' equations in pairs along (n1, n2), times a stiffness, as forces.
 
-        ``K_i (P + D ω_a)``, in the centre: both directions of the coupling are alike then.
+        With ``K_i (P + D ω_a)``, in the centre, both directions of the coupling are alike.
         """
-        one = self.controller
-        gain = one.proportional + one.derivative * one.amplifier_frequency
-        return self.actuator.force_current * gain
+        given, both = self.controller, np.eye(2)
+        gain = given.proportional + given.derivative * given.amplifier_frequency
+        scale, one = self.actuator.force_current * gain, given.realisation()
+        return Realisation(
+            np.repeat(scale * one.inertia, 2),
+            scale * np.kron(one.damping, both),
+            scale * np.kron(one.stiffness, both),
+            scale * np.kron(one.place[:, None], both),
+            one.by_place,
+            one.by_rate,
+        )
 
     @property
     def control_axes(self) -> np.ndarray:
@@ -145,30 +154,30 @@ class MagneticBearing(LoadedBearing):
         states = self._states(load) if np.any(load) else [(0.0, 0.0)] * 2
         slopes = np.array([self.actuator.slopes(i, x) for x, i in states])
         damping, stiffness = self.coupling(slopes)
-        own, both = self.controller.realisation(), np.eye(2)
-        masses = np.repeat(self.scale * own.inertia, 2)
-        damping[4:, 4:] = self.scale * np.kron(own.damping, both)
-        stiffness[4:, 4:] = self.scale * np.kron(own.stiffness, both)
         by_current = self.control_axes.T @ (slopes[:, 0, None] * self.control_axes)
         static = self.controller.proportional * by_current + stiffness[:2, :2]
         return ControlledSupport(
-            self.interface, masses, lambda _: (stiffness, damping), static, self.sensor_interface
+            self.interface,
+            self.realisation.inertia,
+            lambda _: (stiffness, damping),
+            static,
+            self.sensor_interface,
         )
 
     def coupling(self, slopes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return damping and stiffness between the ports of :class:`ControlledSupport`.
-
-        Without the equations of the own coordinates themselves.
+        """Return damping and stiffness of the ports of :class:`ControlledSupport`.
 
         Parameters
         ----------
         slopes : ndarray, shape (2, 2)
             Derivatives of the force of each control axis by current [N/A] and place [N/m].
         """
-        turn, own, both = self.control_axes, self.controller.realisation(), np.eye(2)
+        turn, own = self.control_axes, self.realisation
         by_current, by_place = (turn.T @ (slopes[:, i, None] * turn) for i in (0, 1))
-        damping, stiffness = np.zeros((2, *[4 + 2 * len(own.inertia)] * 2))
-        stiffness[4:, 2:4] = -self.scale * np.kron(own.place[:, None], both)
+        damping, stiffness = np.zeros((2, *[4 + len(own.inertia)] * 2))
+        damping[4:, 4:] = own.damping
+        stiffness[4:, 4:] = own.stiffness
+        stiffness[4:, 2:4] = -own.place
         damping[:2, 4:] = np.kron(own.by_rate, by_current)
         stiffness[:2, 4:] = np.kron(own.by_place, by_current)
         stiffness[:2, :2] = -by_place

@@ -94,23 +94,15 @@ class PIDController:
     delay: float = 0.0
 
     def __post_init__(self) -> None:
-        for name, unit in (
-            ("proportional", "A/m"),
-            ("filter_frequency", "rad/s"),
-            ("amplifier_frequency", "rad/s"),
-        ):
-            checks.number(getattr(self, name), name, unit, above=0.0)
-        for name, unit in (("integral", "A/(m s)"), ("derivative", "A s/m"), ("delay", "s")):
-            checks.number(getattr(self, name), name, unit, least=0.0)
+        units = dict.fromkeys(("filter_frequency", "amplifier_frequency"), "rad/s")
+        checks.keep_numbers(self, {"proportional": "A/m"} | units, above=0.0)
+        units = {"integral": "A/(m s)", "derivative": "A s/m", "delay": "s"}
+        checks.keep_numbers(self, units, least=0.0)
 
     def realisation(self) -> Realisation:
         """Return equations (3) and (4) or (5), after (2) where there is a delay."""
-        w_f, w_a, P, D = (
-            self.filter_frequency,
-            self.amplifier_frequency,
-            self.proportional,
-            self.derivative,
-        )
+        w_f, w_a = self.filter_frequency, self.amplifier_frequency
+        P, D = self.proportional, self.derivative
         inertia, rates, places = [1.0 / w_f**2], [_BUTTERWORTH / w_f], [1.0]
         if self.integral:
             inertia, rates, places = [*inertia, 1.0 / w_a**2], [*rates, 1.0 / w_a], [*places, 0.0]

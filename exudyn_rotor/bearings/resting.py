@@ -53,14 +53,8 @@ class RigidBearing:
 Nonlinear = Bearing | MagneticBearing | RigidBearing
 
 
-def held() -> Resting:
-    """Return the equation of a journal that is held in the centre."""
-    return Resting(np.eye(2), _NONE, _NONE, np.zeros(2), is_rigid=True)
-
-
-def unloaded() -> Resting:
-    """Return the equation of a journal on which no force acts."""
-    return Resting(_NONE, _NONE, np.eye(2), np.zeros(2))
+HELD = Resting(np.eye(2), _NONE, _NONE, np.zeros(2), is_rigid=True)  # in the centre
+UNLOADED = Resting(_NONE, _NONE, np.eye(2), np.zeros(2))
 
 
 def starting_place(bearing: Nonlinear, speed: float, force: np.ndarray) -> np.ndarray:
@@ -82,7 +76,7 @@ def resting(
     A ValueError or ArithmeticError says that a film has no equilibrium under this force.
     """
     if isinstance(bearing, RigidBearing):
-        return held()
+        return HELD
     if isinstance(bearing, MagneticBearing):
         return _of_magnets(bearing, place, sensed)
     if isinstance(bearing, _FILMS):

@@ -31,7 +31,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.bearing import Bearing, Pair
 from exudyn_rotor.calls import kept
 from exudyn_rotor.solvers.line_search import step_share
 
@@ -145,15 +145,11 @@ class RollingBearing(Bearing):
         px, py = float(loads @ c), float(loads @ s)
         return -px - d * vx, -py - d * vy, self.cage_ratio * (x * py - y * px)
 
-    def slopes(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def slopes(self, x: float, y: float, vx: float, vy: float, angle: float, speed: float) -> Pair:
         """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
         return contacts(self, np.array([x, y]), angle)[2], self.damping * np.eye(2)
 
-    def law_along(
-        self, motion: np.ndarray, angles: np.ndarray, speed: float
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def law_along(self, motion: np.ndarray, angles: np.ndarray, speed: float) -> Pair:
         """Return forces (t, 2) and less their derivatives (t, 2, 4); see :class:`Bearing`."""
         _, force, stiffness = contacts(self, motion[:, :2], angles)
         damping = np.broadcast_to(self.damping * np.eye(2), stiffness.shape)
@@ -218,7 +214,7 @@ class RollingBearing(Bearing):
     def _rest(self, speed: float, load: np.ndarray) -> np.ndarray:
         return self.equilibrium(speed, load)
 
-    def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _matrices(self, speed: float, load: np.ndarray) -> Pair:
         """Return the mean stiffness over an element's passage, and the damping."""
         return _mean_stiffness(self, *load.tolist()).copy(), self.damping * np.eye(2)
 

@@ -9,7 +9,7 @@ turns with Ω + Ω_r. Under no load its speed follows from the shear of both fil
 
     Ω_r/Ω = 1/(1 + (μ_o R_o³ L_o c_i)/(μ_i R_i³ L_i c_o)),                                 (2)
 
-and under a load from the torques on it with the eccentricities ε of both films, by (3) of
+and under a load from the torques on it with the eccentricities ε of both films, by (1) of
 :mod:`exudyn_rotor.bearings.short_journal`, the moments of the pressure included. (2) is that of
 M. C. Shaw, T. J. Nussdorfer, *An analysis of the full-floating journal bearing*, NACA Report 866
 (1947).
@@ -17,7 +17,6 @@ M. C. Shaw, T. J. Nussdorfer, *An analysis of the full-floating journal bearing*
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import ClassVar, NamedTuple
@@ -222,29 +221,16 @@ class FloatingRingBearing:
         """
         return _ring(self, checks.number(speed, "speed", "rad/s"))
 
-    def torque(self, speed: float, ring_speed: float) -> float:
-        """Return the torque of both films on the ring [N m], from n1 to n2.
-
-        Parameters
-        ----------
-        speed, ring_speed : float
-            Of the journal and of the ring [rad/s].
-
-        Raises
-        ------
-        TypeError, ValueError
-        """
-        speed = checks.number(speed, "speed", "rad/s")
-        ring_speed = checks.number(ring_speed, "ring_speed", "rad/s")
+    def _torque(self, speed: float, ring_speed: float) -> float:
+        """Return the torque of both films on the ring [N m], from n1 to n2."""
         carried, slips = (speed + ring_speed, ring_speed), (speed - ring_speed, -ring_speed)
         total = 0.0
         for film, whirl, slip in zip((self.inner, self.outer), carried, slips, strict=True):
             e = film.equilibrium(whirl, self.load) if np.any(self.load) else np.zeros(2)
             ratio = np.hypot(*e) / film.clearance
-            shear = 2.0 * np.pi * film.viscosity * film.radius**3 * film.length / film.clearance
             # of the pressure, with the load on the journal, and on the ring as journal of the outer
             moment = 0.5 * (e[0] * self.load[1] - e[1] * self.load[0])
-            total += shear * slip / np.sqrt(1.0 - ratio**2) + moment
+            total += film._shear * slip / np.sqrt(1.0 - ratio**2) + moment
         return float(total)
 
     def linearised(self) -> SeriesSupport:
@@ -267,32 +253,25 @@ def _ring(bearing: FloatingRingBearing, speed: float) -> RingState:
         return RingState(0.0, 0.0, 0.0)
 
     def left(share: float) -> float:
-        return bearing.torque(speed, share * speed) * np.sign(speed)
+        return bearing._torque(speed, share * speed) * np.sign(speed)
 
-    share = _root(left, bearing)
-    whirl = {"inner": (1.0 + share) * speed, "outer": share * speed}
-    ratios = (
-        getattr(bearing, name).eccentricity_ratio(each, bearing.load)
-        for name, each in whirl.items()
-    )
-    return RingState(share * speed, *ratios)
-
-
-def _root(left: Callable[[float], float], bearing: FloatingRingBearing) -> float:
-    low, high = _EDGE, 1.0 - _EDGE
-    while low < high:  # a ring that hardly turns does not carry in its outer film
+    low, high, first = _EDGE, 1.0 - _EDGE, None
+    while first is None and low < high:
         try:
             first = left(low)
-        except ValueError:
+        except ValueError:  # a ring that hardly turns does not carry in its outer film
             low *= 2.0
-            continue
-        if first <= 0.0:
-            break
-        return brentq(left, low, high, xtol=1e-14, rtol=1e-13)
-    raise NoEquilibriumError(
-        f"bearing at {bearing.interface!r}: no speed of the ring at which its films carry the load "
-        "and their torques balance"
+    if first is None or first <= 0.0:
+        raise NoEquilibriumError(
+            f"bearing at {bearing.interface!r}: no speed of the ring at which its films carry the "
+            "load and their torques balance"
+        )
+    share = brentq(left, low, high, xtol=1e-14, rtol=1e-13)
+    ratio_in, ratio_out = (
+        film.eccentricity_ratio(whirl * speed, bearing.load)
+        for film, whirl in ((bearing.inner, 1.0 + share), (bearing.outer, share))
     )
+    return RingState(share * speed, ratio_in, ratio_out)
 
 
 @dataclass(frozen=True, eq=False)

@@ -38,7 +38,7 @@ from typing import ClassVar
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, Numbers, check_clearance, turned
+from exudyn_rotor.bearings.bearing import Bearing, Force, Numbers, Pair, check_clearance, turned
 
 _REST = 1e-6  # of Ω: the rate w of a journal at rest
 THINNEST = 1.0 - 0.01  # of the clearance: beyond, a film goes on by its tangent
@@ -160,9 +160,7 @@ class ShortFilmBearing(Bearing):
         """Return the clearance [m], which is the same in all directions."""
         return self.clearance
 
-    def law(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[float, float]:
+    def law(self, x: float, y: float, vx: float, vy: float, angle: float, speed: float) -> Force:
         """Return the force on the journal [N]; a film thinner than c/100 goes on by its tangent."""
         size, k, c = self._size, self.centring_stiffness, self.clearance
         if hypot(x, y) > THINNEST * c:
@@ -170,9 +168,7 @@ class ShortFilmBearing(Bearing):
         fx, fy = film_force(x / c, y / c, vx / c, vy / c, speed if self._turns else 0.0)
         return size * fx - k * x, size * fy - k * y
 
-    def slopes(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def slopes(self, x: float, y: float, vx: float, vy: float, angle: float, speed: float) -> Pair:
         """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
         c, whirl = self.clearance, speed if self._turns else 0.0
         if hypot(x, y) > THINNEST * c:
@@ -182,9 +178,7 @@ class ShortFilmBearing(Bearing):
         found[[0, 1], [0, 1]] += self.centring_stiffness
         return found[:, :2], found[:, 2:]
 
-    def law_along(
-        self, motion: np.ndarray, angles: np.ndarray, speed: float
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def law_along(self, motion: np.ndarray, angles: np.ndarray, speed: float) -> Pair:
         """Return forces (t, 2) and less their derivatives (t, 2, 4); see :class:`Bearing`."""
         inside = np.hypot(*motion[:, :2].T) <= THINNEST * self.clearance
         if not inside.all():

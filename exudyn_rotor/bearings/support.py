@@ -258,7 +258,8 @@ class Support:
     @property
     def couples(self) -> bool:
         """True when a 6 × 6 matrix couples displacement and rotation."""
-        return any(_size(getattr(self, name)) == 6 for name in ("stiffness", "damping", "mass"))
+        given = (getattr(self, name) for name in _GIVEN)
+        return any(np.shape(getattr(one, "values", one))[-2:] == (6, 6) for one in given)
 
     @property
     def _tables(self) -> list[CoefficientTable]:
@@ -336,8 +337,10 @@ class Support:
 def _pair(speed: ArrayLike, frequency: ArrayLike | None) -> tuple[Any, Any]:
     """Return spin speeds and frequencies, by default those of unbalance, checked."""
     if np.ndim(speed):
-        speed = checks.array(speed, "speed")
-        return speed, np.abs(speed) if frequency is None else checks.array(frequency, "frequency")
+        speed = checks.vector(speed, "speed", "rad/s", None)
+        if frequency is None:
+            return speed, np.abs(speed)
+        return speed, checks.vector(frequency, "frequency", "rad/s", len(speed))
     checks.number(speed, "speed", "rad/s")
     if frequency is None:
         return speed, abs(speed)
@@ -376,18 +379,9 @@ def _coefficient(
     return array if array.ndim else float(array)
 
 
-def _size(value: Coefficient) -> int:
-    """Return how many rows the matrices of a coefficient have; 0 for numbers and functions."""
-    values = value.values if isinstance(value, CoefficientTable) else value
-    return 0 if callable(value) or np.ndim(values) < 2 else np.shape(values)[-1]
-
-
 def acts(value: Coefficient) -> bool:
     """Return whether a coefficient is not zero; a function is taken for one that is not."""
-    if isinstance(value, float):
-        return value != 0.0
-    given = value.values if isinstance(value, CoefficientTable) else value
-    return callable(value) or bool(np.any(given))
+    return callable(value) or bool(np.any(getattr(value, "values", value)))
 
 
 def varies(value: Coefficient) -> bool:

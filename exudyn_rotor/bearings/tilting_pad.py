@@ -27,8 +27,8 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, Equilibria, Linearised
-from exudyn_rotor.bearings.controlled_support import ControlledSupport
+from exudyn_rotor.bearings.bearing import Bearing, Equilibria, Force, Linearised, Pair
+from exudyn_rotor.bearings.controlled_support import ControlledSupport, impedance
 from exudyn_rotor.bearings.film.film import FilmState, OilFilm
 from exudyn_rotor.bearings.film.pads import direction
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
@@ -103,9 +103,7 @@ class TiltingPadBearing(Bearing):
         if self.film.pads[0].closed:
             raise ValueError(f"film: bearing at {self.interface!r}: needs pads with gaps between")
 
-    def law(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[float, float]:
+    def law(self, x: float, y: float, vx: float, vy: float, angle: float, speed: float) -> Force:
         """Refuse: the force depends on the pads' tilts, too."""
         raise ValueError(
             f"bearing at {self.interface!r}: tilting pads have no force by place and velocity "
@@ -143,7 +141,7 @@ class TiltingPadBearing(Bearing):
         """
         return -self._state(speed, self._static_load(load)).shifts / self.film.radius
 
-    def _matrices(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _matrices(self, speed: float, load: np.ndarray) -> Pair:
         """Return stiffness and damping of (2), of pads with inertia by (1)."""
         Z = self._state(speed, load).impedance(abs(speed), self.pad_mass)
         return Z.real, Z.imag / abs(speed)
@@ -185,14 +183,7 @@ class TiltingPadBearing(Bearing):
             )
         soft = min(mass * speed**2, _HELD * float(np.abs(whole).max()))
         held = np.array([soft, 4.0 * np.sqrt(soft * mass)])  # overdamped: no vibration of its own
-        count = len(state.states)
-        total = np.zeros((2, 2 + count, 2 + count))
-        for pad, (each, t) in enumerate(zip(state.states, self.tangents, strict=True)):
-            seen = np.eye(2, 2 + count)
-            seen[:, 2 + pad] = -t
-            film = held[:, None, None] * np.outer(t, t) if each is None else each.coefficients()
-            total += [seen.T @ X @ seen for X in film]
-        return total
+        return state.ports(held)
 
     def _state(self, speed: float, load: np.ndarray) -> _Pads:
         """Return the pads in equilibrium."""
@@ -225,12 +216,13 @@ class TiltingPadBearing(Bearing):
         raise refused
 
 
-def _shift_of_pad(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float) -> float:
+def _shift_of_pad(pad: JournalBearing, place: np.ndarray, t: np.ndarray, speed: float) -> float:
     """Return s [m] of a pad whose film has no part along t; NaN where no tilt makes it carry.
 
     Over all tilts: where the moment about the pivot rises through zero. A ValueError says that the
     film is pressed thinner than its grid resolves.
     """
+    film = pad.film
     pressed = ValueError(
         f"load: presses the film of a pad below {film.thinnest:.3g} m, which its grid does not "
         "resolve; give more nodes, or a smaller load"
@@ -241,13 +233,9 @@ def _shift_of_pad(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float)
     high = np.min(-room[lever < 0.0] / lever[lever < 0.0], initial=np.inf)
     if not low < high:
         raise pressed
-    empty = None
 
     def moment(s: float) -> float:
-        nonlocal empty
-        state = film.solved(place - s * t, np.zeros(2), speed, empty)
-        empty = state.solution.empty
-        return float(t @ state.force)
+        return float(t @ pad._film_at(*(place - s * t), 0.0, 0.0, speed).force)
 
     # beside that of a film whose edges are equally thick, next to which a light pad is
     even = float((place - film.pads[0].center) @ t)
@@ -262,7 +250,7 @@ def _shift_of_pad(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float)
             raise pressed
         return np.nan
     s = brentq(moment, tried[rises[0]], tried[rises[0] + 1], xtol=_ROOT * film.radius)
-    stiffness = film.solved(place - s * t, np.zeros(2), speed, empty).coefficients()[0]
+    stiffness = pad._film_at(*(place - s * t), 0.0, 0.0, speed).coefficients()[0]
     return s if t @ stiffness @ t > 0.0 else np.nan  # where no pressure is left
 
 
@@ -270,7 +258,7 @@ def _shift_of_pad(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float)
 class _Pads:
     """Pads at one place of the journal, each tilted so that it obeys (1)."""
 
-    films: list[OilFilm]
+    pads: list[JournalBearing]
     tangents: np.ndarray
     speed: float
     place: np.ndarray
@@ -280,28 +268,28 @@ class _Pads:
     @classmethod
     def of(cls, bearing: TiltingPadBearing, speed: float, place: np.ndarray) -> _Pads:
         """Return pads with films of their own, the journal at a place [m]."""
-        films, tangents = [each.film for each in bearing.pad_bearings], bearing.tangents
-        pairs = list(zip(films, tangents, strict=True))
-        shifts = [_shift_of_pad(film, place, t, speed) for film, t in pairs]
+        pads, tangents = bearing.pad_bearings, bearing.tangents
+        pairs = list(zip(pads, tangents, strict=True))
+        shifts = [_shift_of_pad(pad, place, t, speed) for pad, t in pairs]
         states = [
-            None if np.isnan(s) else film.solved(place - s * t, np.zeros(2), speed)
-            for (film, t), s in zip(pairs, shifts, strict=True)
+            None if np.isnan(s) else pad._film_at(*(place - s * t), 0.0, 0.0, speed)
+            for (pad, t), s in zip(pairs, shifts, strict=True)
         ]
-        return cls(films, tangents, speed, place, np.array(shifts), states)
+        return cls(pads, tangents, speed, place, np.array(shifts), states)
 
     def together(self, speed: float, load: np.ndarray) -> _Pads | None:
         """Return the equilibrium at a speed, by Newton's method for journal and tilts at once.
 
         None where it does not end, a film vanishes or is too thin, and where absent pads carry.
         """
-        place, shifts, states, still = self.place, self.shifts, list(self.states), np.zeros(2)
-        films, present = self.films, [pad for pad, state in enumerate(states) if state is not None]
-        small = _STILL * min(film.clearance for film in films)
+        place, shifts, states = self.place, self.shifts, list(self.states)
+        present = [pad for pad, state in enumerate(states) if state is not None]
+        small = _STILL * min(pad.film.clearance for pad in self.pads)
         for _ in range(_STEPS):
             left, total, moved = load.copy(), np.zeros((2, 2)), np.full((len(states), 3), np.nan)
             for pad in present:
-                film, t, empty = films[pad], self.tangents[pad], states[pad].solution.empty
-                states[pad] = film.solved(place - shifts[pad] * t, still, speed, empty)
+                t = self.tangents[pad]
+                states[pad] = self.pads[pad]._film_at(*(place - shifts[pad] * t), 0.0, 0.0, speed)
                 force, stiffness = states[pad].force, states[pad].coefficients()[0]
                 rise, lever = t @ stiffness @ t, stiffness @ t
                 if not rise > _LOOSE * np.abs(stiffness).max():
@@ -320,21 +308,30 @@ class _Pads:
             place, shifts = place + share * move, shifts + share * tilting
         else:
             return None
-        for film, t, state in zip(films, self.tangents, states, strict=True):
-            thin = state is not None and state.heights.min() < film.thinnest
-            if thin or (state is None and not np.isnan(_shift_of_pad(film, place, t, speed))):
+        for pad, t, state in zip(self.pads, self.tangents, states, strict=True):
+            thin = state is not None and state.heights.min() < pad.film.thinnest
+            if thin or (state is None and not np.isnan(_shift_of_pad(pad, place, t, speed))):
                 return None
         return replace(self, speed=speed, place=place, shifts=shifts, states=states)
 
-    def impedance(self, whirl: float, mass: float = 0.0) -> np.ndarray:
-        """Return Z_b of (2) at a frequency [rad/s], shape (2, 2); of pads with a mass I/R² [kg].
+    def ports(self, held: np.ndarray | None = None) -> np.ndarray:
+        """Return stiffness and damping between journal and shifts, (2, 2 + p, 2 + p).
 
-        By (1) the mass takes ``mass whirl²`` from ``tᵀZ t``.
+        Of present pads, or of all, the shifts of absent ones `held` by stiffness and damping (2,).
         """
-        total = np.zeros((2, 2), dtype=complex)
-        for state, t in zip(self.states, self.tangents, strict=True):
-            if state is not None:
-                K, C = state.coefficients()
-                Z = K + 1j * whirl * C
-                total += Z - np.outer(Z @ t, t @ Z) / (t @ Z @ t - mass * whirl**2)
+        pairs = zip(self.states, self.tangents, strict=True)
+        pads = [(state, t) for state, t in pairs if state is not None or held is not None]
+        total = np.zeros((2, 2 + len(pads), 2 + len(pads)))
+        for pad, (state, t) in enumerate(pads):
+            seen = np.eye(2, 2 + len(pads))
+            seen[:, 2 + pad] = -t
+            film = (
+                np.multiply.outer(held, np.outer(t, t)) if state is None else state.coefficients()
+            )
+            total += [seen.T @ X @ seen for X in film]
         return total
+
+    def impedance(self, whirl: float, mass: float = 0.0) -> np.ndarray:
+        """Return Z_b of (2) at a frequency [rad/s], shape (2, 2); of pads with a mass I/R² [kg]."""
+        K, D = self.ports()
+        return impedance(K, D, np.full(len(K) - 2, mass), [whirl])[0]

@@ -151,18 +151,15 @@ def _draw_rotor(SC: exudyn.SystemContainer, path: Path) -> None:
     from matplotlib import pyplot
 
     settings = SC.visualizationSettings
-    settings.view0.scene.drawCoordinateSystem = 0
-    settings.general.showSolverInformation = False
-    settings.general.showSolutionInformation = False
-    settings.view0.window.showComputationInfo = False
-    settings.view0.scene.showFaceEdges = False
-    settings.view0.scene.showMeshEdges = False
-    for group in (settings.connectors, settings.markers, settings.loads, settings.sensors):
-        group.show = False
+    general, view = settings.general, settings.view0
+    general.showSolverInformation = general.showSolutionInformation = False
+    view.window.showComputationInfo = view.scene.showFaceEdges = view.scene.showMeshEdges = False
+    view.scene.drawCoordinateSystem = 0
+    for items in ("connectors", "markers", "loads", "sensors", "nodes"):
+        getattr(settings, items).show = False
     settings.bodies.deformationScaleFactor = MAGNIFICATION
     settings.contour.outputVariable = exudyn.OutputVariableType.DisplacementLocal
     settings.contour.outputVariableComponent = -1
-    settings.nodes.show = False
     view = RotationMatrixZ(-0.6) @ RotationMatrixX(1.25)
     image = ShowImage(SC, size=(1400, 900), modelRotation=view, show=False)
     pyplot.imsave(path, image, format="png")

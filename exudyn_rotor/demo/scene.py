@@ -17,8 +17,7 @@ from exudyn.itemInterface import MarkerSuperElementPosition, MarkerSuperElementR
 from exudyn.rigidBodyUtilities import InertiaCuboid
 from netgen import occ
 
-from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor.rotor_items import virtual_nodes
+from exudyn_rotor.multibody.rotor.rotor_items import Carrier
 from exudyn_rotor.solid_rotor import SolidRotor
 
 AddRotor = Callable[[exudyn.MainSystem, FEMinterface], dict]
@@ -35,7 +34,6 @@ def disc_on_shaft(max_element_size: float, safety: float = 2.0) -> ngsolve.Mesh:
 
     `safety` is the radius of the curves over the length of the elements there.
     """
-    checks.number(max_element_size, "max_element_size", "m", above=0.0)
     shaft = occ.Cylinder(occ.Pnt(-0.3, 0, 0), occ.X, 0.015, 0.6)
     disc = occ.Cylinder(occ.Pnt(0.03, 0, 0), occ.X, 0.12, 0.04)
     solid = shaft + disc
@@ -47,7 +45,6 @@ def disc_on_shaft(max_element_size: float, safety: float = 2.0) -> ngsolve.Mesh:
 
 def unbalanced_model(mode_count: int, max_element_size: float, safety: float = 2.0) -> FEMinterface:
     """Return the FE model with an unbalance of 8 g at the disc's rim, and its free modes."""
-    checks.count(mode_count, "mode_count", least=1)
     fem = FEMinterface()
     fem.ImportMeshFromNGsolve(
         disc_on_shaft(max_element_size, safety),
@@ -81,27 +78,21 @@ def add_3d_rotor_with_virtual_nodes(
     modes, places = body.modeBasis, {}
     for name, interface in model.interfaces.items():
         motion = interface.mean_motion(model.node_count) @ modes
-        points, columns = virtual_nodes(interface.reference, interface.radius, motion)
-        if markers == "position":
-            points, columns = interface.reference[None, :], motion[:3]
-        places[name] = list(range(len(body.xRef) // 3, len(body.xRef) // 3 + len(points)))
+        place = Carrier(None, interface.reference, motion, interface.radius)
+        points, columns = place.virtual_nodes(markers)
+        places[name] = len(body.xRef) // 3 + np.arange(len(points))
         body.xRef = np.append(body.xRef, points)
         body.modeBasis = np.vstack([body.modeBasis, columns])
     items = body.AddObjectFFRFreducedOrder(
         mbs, name="rotor", initialAngularVelocity=[START_SPEED, 0, 0], gravity=GRAVITY
     )
     kind = MarkerSuperElementPosition if markers == "position" else MarkerSuperElementRigid
-    made = {
-        f"rotor:{name}": mbs.AddMarker(
-            kind(
-                bodyNumber=items["oFFRFreducedOrder"],
-                meshNodeNumbers=nodes,
-                weightingFactors=[1.0 / len(nodes)] * len(nodes),
-            )
-        )
-        for name, nodes in places.items()
-    }
-    return made | {"FFRFReducedOrderObjectDict": items}
+    made = {"FFRFReducedOrderObjectDict": items}
+    for name, nodes in places.items():
+        weights = [1.0 / len(nodes)] * len(nodes)
+        seen = {"meshNodeNumbers": nodes.tolist(), "weightingFactors": weights}
+        made[f"rotor:{name}"] = mbs.AddMarker(kind(bodyNumber=items["oFFRFreducedOrder"], **seen))
+    return made
 
 
 def add_fixed_axis_rotor(translation: str) -> AddRotor:

@@ -3,8 +3,25 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from typing import NamedTuple
 
 import numpy as np
+
+ABOUT_AXIS = 5  # row of the first interface's rotation about e
+
+
+class Springs(NamedTuple):
+    """Springs and dampers of a connection at a motion.
+
+    Deformations ξ (m,), their derivatives B (m, 12) by the motion, stiffnesses k (m,) and damping
+    coefficients d (m,), and the derivative k′ of each stiffness by row `ABOUT_AXIS`.
+    """
+
+    xi: np.ndarray
+    B: np.ndarray
+    k: np.ndarray
+    d: np.ndarray
+    slope: float = 0.0
 
 
 class Connection(ABC):
@@ -23,24 +40,12 @@ class Connection(ABC):
         return 1.0
 
     @abstractmethod
-    def forces(self, x: np.ndarray, x_t: np.ndarray) -> np.ndarray:
-        """Return forces and moments on both interfaces, shape (12,)."""
-
-    @abstractmethod
-    def tangent(self, x: np.ndarray, x_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return −∂f/∂x and −∂f/∂ẋ for Newton's method, each (12, 12)."""
+    def springs(self, x: np.ndarray, x_t: np.ndarray) -> Springs:
+        """Return the springs and dampers at a motion."""
 
     @abstractmethod
     def transmitted(self, x: np.ndarray, x_t: np.ndarray) -> float:
         """Return what is transmitted: force of a mesh [N], torque on the second rotor [N m]."""
-
-    @abstractmethod
-    def energy(self, x: np.ndarray) -> float:
-        """Return the elastic energy [J]."""
-
-    @abstractmethod
-    def loss(self, x: np.ndarray, x_t: np.ndarray) -> float:
-        """Return the power lost by damping [W]."""
 
     @abstractmethod
     def check_places(self, apart: np.ndarray, axis: np.ndarray) -> None:
@@ -48,3 +53,25 @@ class Connection(ABC):
 
         By its place from the first one [m] and its axis, each (3,), in axes of the first rotor.
         """
+
+    def forces(self, x: np.ndarray, x_t: np.ndarray) -> np.ndarray:
+        """Return forces and moments on both interfaces, shape (12,)."""
+        xi, B, k, d, slope = self.springs(x, x_t)
+        total = -B.T @ (k * xi + d * (B @ x_t))
+        total[ABOUT_AXIS] -= 0.5 * slope * (xi @ xi)  # by which energy is conserved
+        return total
+
+    def tangent(self, x: np.ndarray, x_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return −∂f/∂x and −∂f/∂ẋ for Newton's method but for how B and k vary, each (12, 12)."""
+        _, B, k, d, _ = self.springs(x, x_t)
+        return B.T @ (k[:, None] * B), B.T @ (d[:, None] * B)
+
+    def energy(self, x: np.ndarray) -> float:
+        """Return the elastic energy [J]."""
+        xi, _, k, *_ = self.springs(x, 0.0 * x)
+        return float(0.5 * k @ xi**2)
+
+    def loss(self, x: np.ndarray, x_t: np.ndarray) -> float:
+        """Return the power lost by damping [W]."""
+        _, B, _, d, _ = self.springs(x, x_t)
+        return float(d @ (B @ x_t) ** 2)

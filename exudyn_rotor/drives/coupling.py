@@ -19,11 +19,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.drives.connection import Connection
+from exudyn_rotor.drives.connection import Connection, Springs
 from exudyn_rotor.solid.places import SAME_PLACE
 from exudyn_rotor.theory.rotating_axes import axial_rotation, axial_skew
 
@@ -77,17 +76,17 @@ class FlexibleCoupling(Connection):
     def __post_init__(self) -> None:
         checks.keep_numbers(self, {"torsion": "N m/rad"}, above=0.0)
         checks.keep_numbers(self, {"axial": "N/m"}, least=0.0)
-        for name, unit in (("lateral", "N/m"), ("angular", "N m/rad")):
-            checks.keep(self, **{name: _pair(getattr(self, name), name, unit)})
+        lateral = checks.one_or_each(self.lateral, "lateral", "N/m", 2, least=0.0)
+        angular = checks.one_or_each(self.angular, "angular", "N m/rad", 2, least=0.0)
         damping = checks.vector(self.damping, "damping", size=4)
-        if np.any(damping < 0.0):
-            raise ValueError(f"damping: needs four numbers ≥ 0, got {damping.tolist()}")
+        damping = checks.one_or_each(damping, "damping", "", 4, least=0.0)
+        checks.keep(self, lateral=lateral, angular=angular, damping=damping)
         for name in ("misalignment", "runout"):
             checks.keep(self, **{name: checks.vector(getattr(self, name), name, size=4)})
         K = np.array([*self.lateral, self.axial, *self.angular, self.torsion])
         fixed, turning = np.zeros((2, 6))
         fixed[list(_ACROSS)], turning[list(_ACROSS)] = self.misalignment, self.runout
-        checks.keep(self, damping=damping, _K=K, _D=damping[[0, 0, 1, 2, 2, 3]])
+        checks.keep(self, _K=K, _D=damping[[0, 0, 1, 2, 2, 3]])
         checks.keep(self, _fixed=fixed, _turning=turning)
 
     def support(self, interface: str) -> Support:
@@ -106,39 +105,17 @@ class FlexibleCoupling(Connection):
         parts = (self._K[:3], self._D[:3], self._K[3:], self._D[3:])
         return Support(interface, *map(np.diag, parts), frame="rotor")
 
-    # -------------------------------------------------------------- law
-
-    def _deformation(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return ξ (6,) of (1) and its derivative by x (6, 12)."""
+    def springs(self, x: np.ndarray, x_t: np.ndarray) -> Springs:
+        """Return six springs and dampers, deformed by ξ of (1)."""
         R = np.kron(np.eye(2), axial_rotation(x[5]))
         apart = x[6:] - x[:6] + self._fixed
         by_motion = np.hstack([-R.T, R.T])
         by_motion[:, 5] -= R.T @ axial_skew(6) @ apart
-        return R.T @ apart - self._turning, by_motion
-
-    def forces(self, x: np.ndarray, x_t: np.ndarray) -> np.ndarray:
-        """Return forces and moments on both interfaces, shape (12,)."""
-        xi, B = self._deformation(x)
-        return -B.T @ (self._K * xi + self._D * (B @ x_t))
-
-    def tangent(self, x: np.ndarray, x_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return −∂f/∂x and −∂f/∂ẋ but for how the axes turn with the first shaft."""
-        _, B = self._deformation(x)
-        return B.T @ (self._K[:, None] * B), B.T @ (self._D[:, None] * B)
+        return Springs(R.T @ apart - self._turning, by_motion, self._K, self._D)
 
     def transmitted(self, x: np.ndarray, x_t: np.ndarray) -> float:
         """Return the torque on the second rotor [N m]."""
         return float(self.forces(x, x_t)[11])
-
-    def energy(self, x: np.ndarray) -> float:
-        """Return the elastic energy [J]."""
-        xi, _ = self._deformation(x)
-        return float(0.5 * xi @ (self._K * xi))
-
-    def loss(self, x: np.ndarray, x_t: np.ndarray) -> float:
-        """Return the power lost by damping [W]."""
-        rate = self._deformation(x)[1] @ x_t
-        return float(rate @ (self._D * rate))
 
     def check_places(self, apart: np.ndarray, axis: np.ndarray) -> None:
         """Refuse rotors that are not on one axis, at one place."""
@@ -152,13 +129,3 @@ class FlexibleCoupling(Connection):
                 "other: a flexible coupling needs both rotors on one axis, and the second is "
                 f"{np.hypot(axis[0], axis[1]):.3g} rad off; a small angle is misalignment=…"
             )
-
-
-def _pair(value: ArrayLike, name: str, unit: str) -> np.ndarray:
-    """Return two stiffnesses, given as one or two."""
-    given = checks.array(value, name, unit)
-    if given.shape not in ((), (2,)):
-        raise ValueError(f"{name}: needs a number or two [{unit}], got {checks.shown(value)}")
-    if np.any(given < 0.0):
-        raise ValueError(f"{name}: needs numbers ≥ 0 [{unit}], got {checks.shown(value)}")
-    return checks.read_only(np.broadcast_to(given, 2))

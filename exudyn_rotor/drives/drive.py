@@ -1,14 +1,8 @@
 """Torques on a shaft by its spin speed: motors at steady supply, drag, and curves.
 
-Induction motor, by Kloss's formula (M. Kloss, Archiv für Elektrotechnik 5 (1916) 59):
-
-    T = 2 T_b/(s/s_b + s_b/s),   s = 1 − Ω/Ω_s,                                             (1)
-
-direct-current motor with separate excitation (W. Leonhard, Control of Electrical Drives, ch. 5):
-
-    T = T_0 (1 − Ω/Ω_0).                                                                   (2)
-
-Transients of the currents are left out: they are over within some periods of the supply.
+M. Kloss, Archiv für Elektrotechnik 5 (1916) 59, for induction motors; W. Leonhard, Control of
+Electrical Drives, ch. 5, for direct-current motors with separate excitation. Transients of the
+currents are left out: they are over within some periods of the supply.
 """
 
 from __future__ import annotations
@@ -100,7 +94,7 @@ class TorqueCurve(Drive):
         table = checks.items(self.curve, "curve", needed)
         if len(table) != 2:
             raise ValueError(f"curve: needs {needed}, got {checks.shown(self.curve)}")
-        speeds = checks.ascending(table[0], "curve: its speeds", "rad/s", of_table=True)
+        speeds = checks.ascending(table[0], "curve: its speeds", "rad/s")
         torques = checks.vector(table[1], "curve: its torques", "N m", size=len(speeds))
         object.__setattr__(self, "curve", (speeds, torques))
 
@@ -165,7 +159,7 @@ class Drag(Drive):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class InductionMotor(Drive):
-    """Induction motor by Kloss's formula (1); a generator above its synchronous speed.
+    """Induction motor by Kloss's formula; a generator above its synchronous speed.
 
     ``T = 2 T_b/(s/s_b + s_b/s)`` at the slip ``s = 1 − Ω/Ω_s``.
 
@@ -210,7 +204,9 @@ class InductionMotor(Drive):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DirectCurrentMotor(Drive):
-    """Direct-current motor: a torque that falls linearly with the speed (2).
+    """Direct-current motor: a torque that falls linearly with the speed.
+
+    ``T = T_0 (1 − Ω/Ω_0)``.
 
     Parameters
     ----------

@@ -19,16 +19,14 @@ that goes with it conserves energy.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from math import atan, cos, pi, sin, tan
 
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.drives.connection import Connection
+from exudyn_rotor.drives.connection import ABOUT_AXIS, Connection, Springs
 
-ABOUT_AXIS = 5  # row of the first gear's rotation about e
 _SAME_RATIO = 1e-6  # of radii and numbers of teeth
 _SAME_PLACE = 1e-3  # of the centre distance
 
@@ -92,9 +90,7 @@ class GearMesh(Connection):
 
     def __post_init__(self) -> None:
         radii = checks.vector(self.radii, "radii", "m", size=2)
-        if np.any(radii <= 0.0):
-            raise ValueError(f"radii: needs two numbers [m] > 0, got {radii.tolist()}")
-        checks.keep(self, radii=radii)
+        checks.keep(self, radii=checks.one_or_each(radii, "radii", "m", 2, above=0.0))
         checks.keep_numbers(self, {"stiffness": "N/m"}, above=0.0)
         checks.keep_numbers(self, {"damping": "N s/m"}, least=0.0)
         checks.keep_numbers(self, {"pressure_angle": "rad"}, above=0.0, below=0.5 * pi)
@@ -104,13 +100,25 @@ class GearMesh(Connection):
             raise ValueError(f"flank: needs 1 or -1, got {self.flank}")
         if self.backlash is not None:
             checks.keep_numbers(self, {"backlash": "m"}, least=0.0)
-        if self.teeth is not None:
-            checks.keep(self, teeth=self._checked_teeth())
-        directions = {s: self._direction(s) for s in (1, -1)}
-        checks.keep(self, variation=self._checked_variation(), _directions=directions)
+        self._check_teeth()
+        sides = (self.flank,) if self.backlash is None else (self.flank, -self.flank)
+        flanks = np.array([self._direction(side) for side in sides])
+        checks.keep(self, _flanks=checks.read_only(flanks))
 
-    def _checked_teeth(self) -> np.ndarray:
+    def _check_teeth(self) -> None:
+        amplitudes = checks.vector(self.variation, "variation", size=None)
+        checks.keep(self, variation=amplitudes)
+        if np.abs(amplitudes).sum() >= 1.0:
+            raise ValueError(
+                "variation: needs amplitudes whose sum is below 1, or the stiffness may vanish, "
+                f"got {checks.shown(amplitudes.tolist())}"
+            )
+        if self.teeth is None and amplitudes.size:
+            raise ValueError("variation: needs the numbers of teeth; give teeth=[…, …]")
+        if self.teeth is None:
+            return
         teeth = checks.whole_numbers(self.teeth, "teeth", least=1)
+        checks.keep(self, teeth=teeth)
         if teeth.shape != (2,):
             raise ValueError(f"teeth: needs two whole numbers, got {len(teeth)}")
         if abs(teeth[0] * self.radii[1] / (teeth[1] * self.radii[0]) - 1.0) > _SAME_RATIO:
@@ -118,18 +126,6 @@ class GearMesh(Connection):
                 f"teeth: {teeth[0]} to {teeth[1]} is not the ratio of the radii, "
                 f"{self.radii[0]:g} to {self.radii[1]:g} m; give radii in the ratio of the teeth"
             )
-        return teeth
-
-    def _checked_variation(self) -> np.ndarray:
-        amplitudes = checks.vector(self.variation, "variation", size=None)
-        if amplitudes.size and self.teeth is None:
-            raise ValueError("variation: needs the numbers of teeth; give teeth=[…, …]")
-        if np.abs(amplitudes).sum() >= 1.0:
-            raise ValueError(
-                "variation: needs amplitudes whose sum is below 1, or the stiffness may vanish, "
-                f"got {checks.shown(amplitudes.tolist())}"
-            )
-        return amplitudes
 
     @property
     def direction(self) -> np.ndarray:
@@ -138,7 +134,7 @@ class GearMesh(Connection):
         Rows: displacement of the first gear along (n1, n2, e) of the first rotor, rotation about
         them, then the same of the second gear in the same axes.
         """
-        return self._directions[self.flank]
+        return self._flanks[0]
 
     @property
     def center_distance(self) -> float:
@@ -159,7 +155,7 @@ class GearMesh(Connection):
         normal = normal - flank * sin(base_helix) * axis
         lever = np.cross(radial, normal) / cos(alpha)
         first, second = self.radii
-        return checks.read_only(np.hstack([normal, first * lever, -normal, second * lever]))
+        return np.hstack([normal, first * lever, -normal, second * lever])
 
     def matrices(self) -> tuple[np.ndarray, np.ndarray]:
         """Return mean stiffness and damping matrix, each (12, 12), in the rows of `direction`."""
@@ -179,63 +175,32 @@ class GearMesh(Connection):
             raise ValueError("teeth: the mesh frequency needs their numbers; give teeth=[…, …]")
         return float(abs(self.teeth[0] * speed))
 
-    # -------------------------------------------------------------- law
+    def springs(self, x: np.ndarray, x_t: np.ndarray) -> Springs:
+        """Return a spring and damper for each flank in reach; without backlash for the one.
 
-    def _stiffness_at(self, x: np.ndarray) -> tuple[float, float]:
-        """Return k and its derivative by the rotation of the first gear."""
-        if not self.variation.size:
-            return self.stiffness, 0.0
-        orders = self.teeth[0] * np.arange(1, len(self.variation) + 1)
-        c, s = np.cos(orders * x[ABOUT_AXIS]), np.sin(orders * x[ABOUT_AXIS])
-        share, slope = 1.0 + self.variation @ c, -(self.variation * orders) @ s
-        return self.stiffness * float(share), self.stiffness * float(slope)
-
-    def _contacts(
-        self, x: np.ndarray, x_t: np.ndarray, k: float
-    ) -> Iterator[tuple[np.ndarray, float, float, float]]:
-        """Yield v, δ, δ̇ and N of each flank in reach; without backlash of the one."""
-        if self.backlash is None:
-            depth, rate = float(self.direction @ x), float(self.direction @ x_t)
-            yield self.direction, depth, rate, k * depth + self.damping * rate
-            return
-        for v in self._directions.values():
-            depth, rate = float(v @ x) - 0.5 * self.backlash, float(v @ x_t)
-            if depth > 0.0:
-                yield v, depth, rate, max(0.0, k * depth + self.damping * rate)
-
-    def forces(self, x: np.ndarray, x_t: np.ndarray) -> np.ndarray:
-        """Return forces and moments on both interfaces, shape (12,)."""
-        k, slope = self._stiffness_at(x)
-        total = np.zeros(12)
-        for v, depth, _, push in self._contacts(x, x_t, k):
-            total -= push * v
-            total[ABOUT_AXIS] -= 0.5 * slope * depth**2
-        return total
-
-    def tangent(self, x: np.ndarray, x_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return −∂f/∂x and −∂f/∂ẋ but for how the stiffness varies, which is small beside it."""
-        k, _ = self._stiffness_at(x)
-        each, always = self._contacts(x, x_t, k), self.backlash is None
-        touching = (v for v, *_, push in each if always or push)
-        both = sum((np.outer(v, v) for v in touching), np.zeros((12, 12)))
-        return k * both, self.damping * both
+        A flank that would pull has the damping that leaves no force.
+        """
+        share, slope = 1.0, 0.0
+        if self.variation.size:
+            orders = self.teeth[0] * np.arange(1, len(self.variation) + 1)
+            angles = orders * x[ABOUT_AXIS]
+            share += float(self.variation @ np.cos(angles))
+            slope -= float((self.variation * orders) @ np.sin(angles))
+        k, B, xi = self.stiffness * share, self._flanks, self._flanks @ x
+        d = np.full(len(B), self.damping)
+        if self.backlash is not None:
+            near = xi > 0.5 * self.backlash
+            B, xi, d = B[near], xi[near] - 0.5 * self.backlash, d[near]
+            rate = B @ x_t
+            pulls = k * xi + d * rate < 0.0
+            d[pulls] = -k * xi[pulls] / rate[pulls]
+        return Springs(xi, B, np.full(len(B), k), d, self.stiffness * slope)
 
     def transmitted(self, x: np.ndarray, x_t: np.ndarray) -> float:
         """Return the force along the line of action, negative on the other flank."""
-        k, _ = self._stiffness_at(x)
-        each = self._contacts(x, x_t, k)
-        return sum((push if v is self.direction else -push for v, _, _, push in each), start=0.0)
-
-    def energy(self, x: np.ndarray) -> float:
-        """Return the elastic energy [J]."""
-        k, _ = self._stiffness_at(x)
-        return sum((0.5 * k * d**2 for _, d, *_ in self._contacts(x, 0.0 * x, k)), start=0.0)
-
-    def loss(self, x: np.ndarray, x_t: np.ndarray) -> float:
-        """Return the power lost by damping [W]."""
-        k, _ = self._stiffness_at(x)
-        each = self._contacts(x, x_t, k)
-        return sum(((push - k * depth) * rate for _, depth, rate, push in each), start=0.0)
+        xi, B, k, d, _ = self.springs(x, x_t)
+        sides = self.flank * np.sign(B[:, ABOUT_AXIS])
+        return float(sides @ (k * xi + d * (B @ x_t)))
 
     def check_places(self, apart: np.ndarray, axis: np.ndarray) -> None:
         """Refuse axes that are not parallel, or elsewhere than the gears say."""

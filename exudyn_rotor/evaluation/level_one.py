@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
+from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.modal.whirl import Content, damping_of
 from exudyn_rotor.linear.model.build import linear_model
@@ -24,7 +24,6 @@ from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import motions_over
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, storable, text_table
-from exudyn_rotor.theory.stiffening import CHOICES
 from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:
@@ -146,17 +145,10 @@ class StabilityLevelOne(Result):
     def __post_init__(self) -> None:
         super().__post_init__()
         checks.choice(self.machine, "machine", MACHINES)
-        checks.number(self.anticipated, "anticipated", "N/m", above=0.0)
-        checks.number(self.speed, "speed", "rad/s", above=0.0)
-        for name in ("threshold", "critical_speed_ratio", "gas_density"):
-            if getattr(self, name) is not None:
-                checks.number(getattr(self, name), name, least=0.0)
 
     @property
     def anticipated_decrement(self) -> float:
         """Log decrement under the anticipated cross-coupling."""
-        if self.anticipated in self.applied:  # beside it may be infinite ones
-            return float(self.log_decrement[self.applied == self.anticipated][0])
         return float(np.interp(self.anticipated, self.applied, self.log_decrement))
 
     @property
@@ -319,9 +311,7 @@ def stability_level_one(
     supports = given_supports(supports)
     if not supports:
         raise ValueError("supports: needs the bearings of the rotor, got none")
-    check_interfaces(supports, target.interfaces)
     checks.choice(machine, "machine", MACHINES)
-    checks.choice(stiffening, "stiffening", CHOICES)
     if critical_speed_ratio is not None:
         checks.number(critical_speed_ratio, "critical_speed_ratio", above=0.0)
     if gas_density is not None:

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear.response.loads import Unbalance
+from exudyn_rotor.linear.static.static_response import bearing_loads
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 
@@ -102,6 +103,8 @@ def standard_unbalances(
 def bearing_masses(rotor: ReducedRotor | SolidRotor, bearings: Sequence[str]) -> np.ndarray:
     """Return the masses that two bearings carry at rest, by the lever rule along the axis.
 
+    See :func:`bearing_loads` for more bearings, and their loads.
+
     Parameters
     ----------
     rotor : ReducedRotor or SolidRotor
@@ -131,12 +134,7 @@ def bearing_masses(rotor: ReducedRotor | SolidRotor, bearings: Sequence[str]) ->
     array([1., 3.])
     """
     checks.instance(rotor, "rotor", (ReducedRotor, SolidRotor))
-    names = checks.different(checks.labels(bearings, "bearings", rotor.interfaces), "bearings")
+    names = checks.labels(bearings, "bearings", rotor.interfaces)
     if len(names) != 2:
         raise ValueError(f"bearings: needs two interfaces, got {checks.shown(bearings)}")
-    mass = rotor.invariants.mass if isinstance(rotor, ReducedRotor) else rotor.total_mass
-    left, right = (rotor.interfaces[name].reference @ rotor.axis.direction for name in names)
-    if left == right:
-        raise ValueError(f"bearings: {names[0]!r} and {names[1]!r} are at one place of the axis")
-    share = (rotor.center_of_mass @ rotor.axis.direction - left) / (right - left)
-    return mass * np.array([1.0 - share, share])
+    return bearing_loads(rotor, names, rotor.axis.plane[:, 0])[:, 0]

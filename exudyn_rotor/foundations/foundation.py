@@ -137,11 +137,7 @@ class Foundation:
             raise ValueError(
                 "points: needs the motion of one point or more, which carries supports"
             )
-        checks.mapping(self.places, "places", "the position of each point")
-        places = {
-            name: checks.vector(place, f"places: {name!r}", "m")
-            for name, place in self.places.items()
-        }
+        places = _positions(self.places, "places")
         for name in places.keys() - points.keys():
             raise ValueError(f"places: {name!r} is none of the points {', '.join(points)}")
         object.__setattr__(self, "points", checks.read_only_mapping(points))
@@ -181,8 +177,7 @@ class Foundation:
         moments = checks.symmetric(moments, "inertia", "kg m²", size=3)
         _check_definite(moments, "inertia: needs a positive definite matrix [kg m²]")
         center = checks.vector(center, "center", "m")
-        checks.mapping(points, "points", "the position of each point")
-        places = {n: checks.vector(p, f"points: {n!r}", "m") for n, p in points.items()}
+        places = _positions(points, "points")
         M = scipy.linalg.block_diag(mass * np.eye(3), moments)
         held = []
         for mount in checks.instances(mounts, "mounts", Mount):
@@ -219,17 +214,10 @@ class Foundation:
         places, participation
             See :class:`Foundation`.
         """
-        omega = checks.vector(frequencies, "frequencies", "rad/s", size=None)
-        zeta = _per_mode(damping_ratios, "damping_ratios", len(omega))
-        m = _per_mode(masses, "masses", len(omega))
-        for values, name, good in (
-            (omega, "frequencies", omega > 0.0),
-            (zeta, "damping_ratios", (zeta >= 0.0) & (zeta <= 1.0)),
-            (m, "masses", m > 0.0),
-        ):
-            if not np.all(good):
-                needed = "from 0 to 1" if values is zeta else "> 0"
-                raise ValueError(f"{name}: needs numbers {needed}, got {checks.shown(values)}")
+        count = np.size(frequencies)
+        omega = checks.one_or_each(frequencies, "frequencies", "rad/s", count, above=0.0)
+        zeta = checks.one_or_each(damping_ratios, "damping_ratios", "", count, least=0.0, most=1.0)
+        m = checks.one_or_each(masses, "masses", "kg", count, above=0.0)
         matrices = m, 2.0 * zeta * omega * m, omega**2 * m
         known = {} if places is None else places
         return cls(*map(np.diag, matrices), points, known, participation)
@@ -261,7 +249,7 @@ class Foundation:
         """
         checks.instance(solid, "solid", (SolidRotor, ReducedRotor))
         mounts = checks.instances(mounts, "mounts", Mount)
-        checks.mapping(points, "points", "the position of each point")
+        places = _positions(points, "points")
         named = [("points", name) for name in points] + [("mounts", m.at) for m in mounts]
         for what, name in named:
             if not isinstance(name, str) or name not in solid.interfaces:
@@ -281,7 +269,6 @@ class Foundation:
             )
         held = [(mount, solid.interfaces[mount.at].motion) for mount in mounts]
         K, D = _on_mounts(solid.invariants.K, solid.invariants.D, held)
-        places = {n: checks.vector(p, f"points: {n!r}", "m") for n, p in points.items()}
         motions = {
             name: _of_rigid(place - solid.interfaces[name].reference)
             @ solid.interfaces[name].motion
@@ -374,9 +361,9 @@ class Foundation:
         return self.points[name]
 
 
-def _per_mode(given: ArrayLike, name: str, count: int) -> np.ndarray:
-    values = checks.array(given, name)
-    return np.full(count, values) if values.ndim == 0 else checks.vector(given, name, size=count)
+def _positions(given: Mapping[str, ArrayLike], name: str) -> dict[str, np.ndarray]:
+    checks.mapping(given, name, "the position of each point")
+    return {n: checks.vector(place, f"{name}: {n!r}", "m") for n, place in given.items()}
 
 
 def _of_rigid(arm: np.ndarray) -> np.ndarray:
@@ -425,13 +412,9 @@ def _check_definite(matrix: np.ndarray, needed: str) -> None:
 
 def _in_three_axes(value: float | ArrayLike, name: str, unit: str) -> np.ndarray:
     given = checks.array(value, name, unit)
-    if given.shape not in ((), (3,), (3, 3)):
-        raise ValueError(
-            f"{name}: needs a number, three numbers or a 3 × 3 matrix [{unit}], got shape "
-            f"{given.shape}"
-        )
-    matrix = given if given.ndim == 2 else np.diag(np.broadcast_to(given, 3))
-    matrix = checks.symmetric(matrix, name, unit, size=3)
+    if given.ndim < 2:
+        given = np.diag(checks.one_or_each(given, name, unit, 3, least=0.0))
+    matrix = checks.symmetric(given, name, unit, size=3)
     if np.linalg.eigvalsh(matrix)[0] < -1e-9 * np.abs(matrix).max():
         raise ValueError(f"{name}: needs values ≥ 0 [{unit}], got {checks.shown(given)}")
     return matrix

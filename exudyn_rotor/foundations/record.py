@@ -7,6 +7,7 @@ from os import PathLike
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.interpolate import BSpline, make_interp_spline
 
 from exudyn_rotor import checks
 from exudyn_rotor.storage import read_rows
@@ -54,12 +55,7 @@ class BaseRecord:
         times = checks.vector(self.times, "times", "s", size=None)
         if times.size < 2:
             raise ValueError(f"times: needs two or more [s], got {checks.shown(times)}")
-        steps = np.diff(times)
-        if np.any(steps <= 0.0):
-            at = int(np.argmax(steps <= 0.0))
-            raise ValueError(
-                f"times: needs ascending times [s], got {times[at]:g} and then {times[at + 1]:g}"
-            )
+        steps = np.diff(checks.ascending(times, "times", "s"))
         uneven = np.abs(steps - steps.mean()).max()
         if uneven > _UNEVEN * steps.mean():
             raise ValueError(
@@ -135,7 +131,7 @@ class BaseRecord:
         They are those of least squares in the velocity.
         """
         t = self.times - self.times[0]
-        velocity = np.vstack([np.zeros(3), np.cumsum(_mean_steps(self), axis=0)])
+        velocity = self._curve.antiderivative()(self.times)
         drift = np.linalg.lstsq(np.column_stack([t, t**2]), velocity, rcond=None)[0]
         smooth = self.accelerations - drift[0] - 2.0 * np.outer(t, drift[1])
         corrected = BaseRecord(self.times, smooth)
@@ -148,20 +144,11 @@ class BaseRecord:
     def integrals(self, times: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
         """Return velocity and displacement of the ground, from rest, each (t, 3)."""
         times = checks.vector(times, "times", "s", size=None)
-        a, h = self.accelerations, self.step
-        v = np.vstack([np.zeros(3), np.cumsum(_mean_steps(self), axis=0)])
-        moved = h * v[:-1] + h**2 * (a[:-1] / 3.0 + a[1:] / 6.0)
-        u = np.vstack([np.zeros(3), np.cumsum(moved, axis=0)])
-        past = np.maximum(times - self.times[-1], 0.0)[:, None]
-        inside = np.clip(times, self.times[0], self.times[-1]) - self.times[0]
-        index = np.minimum((inside / h).astype(int), len(a) - 2)
-        s = (inside - index * h)[:, None]
-        slope = (a[index + 1] - a[index]) / h
-        velocity = v[index] + s * a[index] + s**2 / 2.0 * slope
-        place = u[index] + s * v[index] + s**2 / 2.0 * a[index] + s**3 / 6.0 * slope
-        return velocity, place + past * velocity
+        inside = np.clip(times, *self.times[[0, -1]])
+        velocity, place = (self._curve.antiderivative(n)(inside) for n in (1, 2))
+        return velocity, place + (times - inside)[:, None] * velocity
 
-
-def _mean_steps(record: BaseRecord) -> np.ndarray:
-    """Return the change of velocity in every step, shape (n − 1, 3)."""
-    return 0.5 * record.step * (record.accelerations[1:] + record.accelerations[:-1])
+    @property
+    def _curve(self) -> BSpline:
+        """The acceleration over time, linear between the samples."""
+        return make_interp_spline(self.times, self.accelerations, k=1)

@@ -94,11 +94,11 @@ class PeriodicSystem:
         return PeriodicSystem(self.speed, basis.T @ self.M @ basis, D, K, H)
 
 
-def at_angle(terms: Terms, theta: float) -> np.ndarray:
-    """Return a matrix at a spin angle [rad]."""
-    if len(terms) == 1:
+def at_angle(terms: Terms, theta: float | np.ndarray) -> np.ndarray:
+    """Return a matrix at a spin angle [rad], or matrices at angles, stacked."""
+    if len(terms) == 1 and np.ndim(theta) == 0:
         return terms[0].real
-    return sum(X * np.exp(1j * n * theta) for n, X in terms.items()).real
+    return sum(np.multiply.outer(np.exp(1j * n * theta), X) for n, X in terms.items()).real
 
 
 def add(
@@ -125,13 +125,9 @@ def without_rounding(terms: Terms) -> dict[int, np.ndarray]:
     """Return Fourier terms without those that are rounding beside the largest; 0 always stays."""
     if len(terms) == 1 and 0 in terms:
         return dict(terms)
-    largest = max((np.abs(X).max(initial=0.0) for X in terms.values()), default=0.0)
-    kept = {
-        n: X for n, X in terms.items() if n == 0 or np.abs(X).max(initial=0.0) > _ROUNDING * largest
-    }
-    if 0 not in kept:
-        kept[0] = np.zeros_like(next(iter(terms.values())).real)
-    return kept
+    sizes = {n: np.abs(X).max(initial=0.0) for n, X in terms.items()}
+    least = _ROUNDING * max(sizes.values())
+    return {n: X for n, X in terms.items() if n == 0 or sizes[n] > least}
 
 
 def stacked(motions: Sequence[Terms]) -> dict[int, np.ndarray]:
@@ -149,27 +145,25 @@ def difference(one: Terms, other: Terms) -> dict[int, np.ndarray]:
     return {n: one.get(n, 0.0) - other.get(n, 0.0) for n in orders}
 
 
-def congruent(U: Terms, X: np.ndarray, V: Terms | None = None) -> dict[int, np.ndarray]:
-    """Return the Fourier terms of ``Uᵀ(θ) X V(θ)``, V = U by default.
+def congruent(U: Terms, X: np.ndarray) -> dict[int, np.ndarray]:
+    """Return the Fourier terms of ``Uᵀ(θ) X U(θ)``, of a matrix (p, p) or a stack (s, p, p).
 
-    With V = U the symmetric and the skew part of X stay exactly that: the rounding of a stiff
-    support would else be a circulatory force. Of a stack X (s, p, p), with s matrices each.
+    The symmetric and the skew part of X stay exactly that: the rounding of a stiff support would
+    else be a circulatory force.
     """
-    if V is not None:
-        return _products(U, X, V, -np.inf)
     result: dict[int, np.ndarray] = {}
     acting = np.any(X, axis=(*range(X.ndim - 2), -1)) | np.any(X, axis=(*range(X.ndim - 2), -2))
     U, X = {n: Y[acting] for n, Y in U.items()}, X[..., acting, :][..., acting]
     for sign in (1.0, -1.0):
         part = 0.5 * (X + sign * _transposed(X))
         if np.any(part):
-            for n, Y in _products(U, part, U, 0).items():
+            for n, Y in products(U, part, U, 0).items():
                 Y = 0.5 * (Y + sign * _transposed(Y))
                 add(result, {n: Y, -n: Y.conj()} if n else {0: Y})
     return result
 
 
-def _products(U: Terms, X: np.ndarray, V: Terms, least: float) -> dict[int, np.ndarray]:
+def products(U: Terms, X: np.ndarray, V: Terms, least: float = -np.inf) -> dict[int, np.ndarray]:
     """Return the Fourier terms of ``Uᵀ(θ) X V(θ)`` from the order `least` on."""
     result: dict[int, np.ndarray] = {}
     for a, left in U.items():
@@ -227,11 +221,9 @@ class States(NamedTuple):
 
 def states_of(system: PeriodicSystem) -> States:
     """Return the first-order form of a system, or of a stack."""
-    M, k = system.M, system.size
-    root = None
-    if np.any(np.eye(k) != M):  # Lᵀx are mass-orthonormal coordinates
-        root = _transposed(np.linalg.inv(np.linalg.cholesky(M)))
-    D, K = _terms(system, root)
+    k, inverse = system.size, np.linalg.inv(np.linalg.cholesky(system.M))
+    root = _transposed(inverse)  # to mass-orthonormal coordinates
+    D, K = ({n: inverse @ X @ root for n, X in each.items()} for each in (system.D, system.K))
     symmetric = 0.5 * (K[0] + _transposed(K[0]))
     squares, V = np.linalg.eigh(symmetric)
     omega = np.sqrt(np.abs(squares))
@@ -248,7 +240,7 @@ def states_of(system: PeriodicSystem) -> States:
     A[0][..., k + diagonal, diagonal] -= squares / omega
     A[0][..., diagonal, k + diagonal] = omega
     shape = np.zeros((*V.shape[:-1], 2 * k))
-    shape[..., :k] = (V if root is None else root @ V) / omega[..., None, :]
+    shape[..., :k] = root @ V / omega[..., None, :]
     return States(A, shape)
 
 
@@ -256,58 +248,37 @@ def _transposed(X: np.ndarray) -> np.ndarray:
     return np.swapaxes(X, -1, -2)
 
 
-def _terms(system: PeriodicSystem, root: np.ndarray | None) -> tuple[dict, dict]:
-    """Return damping and stiffness per unit of mass; at rest the sum of all harmonics."""
-    D, K = system.D, system.K
-    if np.ndim(system.speed) == 0 and system.speed == 0.0:
-        _, D, K = system.matrices()
-        D, K = {0: D}, {0: K}
-    if root is None:
-        return dict(D), dict(K)
-    across = _transposed(root)
-    return tuple({n: across @ X @ root for n, X in terms.items()} for terms in (D, K))
-
-
 def free_directions(stack: PeriodicSystem) -> np.ndarray:
     """Return motions that neither stiffness nor damping resist at the first and last speed.
 
     Columns, mass-orthonormal, shape (k, f). Coordinates by themselves come as they are.
     """
-    k, M = stack.size, stack.M if stack.M.ndim == 2 else stack.M[0]
+    M = stack.M if stack.M.ndim == 2 else stack.M[0]
     ends = [0, -1] if len(stack.speed) > 1 else [0]
     matrices = [X[i] for terms in (stack.D, stack.K) for X in terms.values() for i in ends]
     parts = [part for X in matrices for part in (X.real, X.imag) if np.any(part)]
-    if not parts:
-        return _orthonormal(np.eye(k), M)
-    rows, columns = (np.max([np.abs(X).max(axis=axis) for X in parts], axis=0) for axis in (1, 0))
-    size = np.maximum(rows, columns)
-    alone = size <= _FREE * size.max()
-    scale = 1.0 / np.sqrt(np.where(alone, 1.0, size))
-    stack = np.vstack([(scale[:, None] * X * scale)[:, ~alone] for X in parts])
-    _, values, vectors = np.linalg.svd(stack, full_matrices=False)
-    free = np.zeros((k, int(alone.sum()) + int((values <= _FREE * values[0]).sum())))
-    free[np.flatnonzero(alone), np.arange(int(alone.sum()))] = 1.0
-    combined = vectors[values <= _FREE * values[0]].T
-    free[~alone, int(alone.sum()) :] = scale[~alone, None] * combined
-    return _orthonormal(free, M)
+    free = np.eye(stack.size)
+    if parts:
+        size = np.max([np.abs(X).max(axis=axis) for X in parts for axis in (0, 1)], axis=0)
+        alone = size <= _FREE * size.max()
+        scale = 1.0 / np.sqrt(np.where(alone, 1.0, size))
+        acting = np.where(alone, 0.0, scale)
+        rows = np.vstack([acting[:, None] * X * acting for X in parts])
+        free = scale[:, None] * others(np.linalg.qr(rows, mode="r").T, _FREE)
+    if not free.shape[1]:
+        return free
+    return la.solve_triangular(la.cholesky(free.T @ M @ free, lower=True), free.T, lower=True).T
 
 
-def _orthonormal(columns: np.ndarray, M: np.ndarray) -> np.ndarray:
-    if not columns.shape[1]:
-        return columns
-    return la.solve_triangular(
-        la.cholesky(columns.T @ M @ columns, lower=True), columns.T, lower=True
-    ).T
-
-
-def others(columns: np.ndarray) -> np.ndarray:
+def others(columns: np.ndarray, rounding: float | None = None) -> np.ndarray:
     """Return what is orthogonal to columns (k, f), orthonormal, as columns (k, k − f).
 
-    Coordinates that the columns do not touch stay as they are.
+    Coordinates that the columns do not touch stay as they are. Singular values of columns are zero
+    up to the share `rounding` of the largest.
     """
     size = np.abs(columns).max(axis=1, initial=0.0)
     touched = np.flatnonzero(size > 1e-12 * size.max(initial=0.0))
-    rest = la.null_space(columns[touched].T)
+    rest = la.null_space(columns[touched].T, rcond=rounding)
     untouched = np.setdiff1d(np.arange(len(columns)), touched)
     basis = np.zeros((len(columns), len(untouched) + rest.shape[1]))
     basis[untouched, np.arange(len(untouched))] = 1.0

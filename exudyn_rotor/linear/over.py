@@ -46,8 +46,16 @@ def motions_over(
     with tqdm(total=len(speeds), desc=label or None, disable=not progress) as bar:
         given = {"held": held, "least_stable": least_stable, "told": bar.update}
         found = motions_in(model, model.at_all(speeds), method, tolerance, **given)
-    if not model.over_frequency:
-        _warn_of_lost(found.lost)
+    if found.lost:
+        speeds = ", ".join(f"{speed:.4g}" for speed in found.lost[:5])
+        warnings.warn(
+            "the harmonics of an uneven rotor on uneven supports do not converge for all motions "
+            f"at {speeds}{' …' * (len(found.lost) > 5)} rad/s, which are NaN there: at a speed "
+            "that is small beside the difference of the frequencies in the rotor's two planes "
+            "they are too many",
+            UserWarning,
+            stacklevel=user_level(),
+        )
     return found
 
 
@@ -72,10 +80,9 @@ def motions_in(
         found = own_motions(model, stack)
         if warns:
             model.warn_beyond(met(model, found))
-        return found if basis is None else found.in_all(basis, neutral)
-    if basis is not None:
-        stack = stack.projected(basis)
-    found = motions_of(stack, method, tolerance, **given)
+    else:
+        stack = stack if basis is None else stack.projected(basis)
+        found = motions_of(stack, method, tolerance, **given)
     return found if basis is None else found.in_all(basis, neutral)
 
 
@@ -84,17 +91,13 @@ def forced_over(
     speed: float,
     loads: Terms,
     frequencies: np.ndarray,
-    *,
-    held: np.ndarray | None = None,
     **options: Any,
 ) -> dict[int, np.ndarray]:
     """Return the harmonics (s, k) of steady motions under loads of frequencies (s,) [rad/s].
 
-    At one speed [rad/s], in motions of a basis `held` where one is given. The harmonic n of the
-    loads, (k,), has the frequencies plus n times the speed, and the coefficients of these. The
-    `options` are those of :func:`forced_motions`.
+    At one speed [rad/s]. The harmonic n of the loads, (k,), has the frequencies plus n times the
+    speed, and the coefficients of these. The `options` are those of :func:`forced_motions`.
     """
-    options |= {"held": held}
     if not model.over_frequency:
         return forced_motions(model.at(speed), loads, frequencies, **options)
     found = {}
@@ -103,20 +106,6 @@ def forced_over(
         stack = model.at_all(np.full(len(rates), speed), rates)
         found |= forced_motions(stack, {n: load}, frequencies, **options)
     return found
-
-
-def _warn_of_lost(speeds: Sequence[float]) -> None:
-    """Warn of speeds at which motions of periodic equations were not found."""
-    if not speeds:
-        return
-    shown = ", ".join(f"{speed:.4g}" for speed in speeds[:5]) + (" …" if len(speeds) > 5 else "")
-    warnings.warn(
-        f"the harmonics of an uneven rotor on uneven supports do not converge for all motions at "
-        f"{shown} rad/s, which are NaN there: at a speed that is small beside the difference of "
-        "the frequencies in the rotor's two planes they are too many",
-        UserWarning,
-        stacklevel=user_level(),
-    )
 
 
 @dataclass(frozen=True, eq=False)

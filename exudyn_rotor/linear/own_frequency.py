@@ -1,13 +1,8 @@
 """Free motions on supports whose coefficients depend on the frequency of the motion itself.
 
-At a given spin speed the k motions of the equations with the coefficients of a frequency ω have
-eigenvalues, in the order of |Im λ|. That of the place j is found where
-
-    |Im λ_j(ω)| = ω,
-
-by the textbook's convention that coefficients of steady motions hold for growing and decaying ones.
-In this order |Im λ_j| is continuous in ω, so that each place has such a frequency between two
-at which the difference changes its sign; of several the lowest is taken.
+Coefficients of steady motions are taken for growing and decaying ones. With the coefficients of a
+frequency ω the k motions at a spin speed have eigenvalues λ_j in the order of |Im λ|, in which they
+are continuous in ω: the motion j is found where ``|Im λ_j(ω)| − ω`` first changes its sign.
 """
 
 from __future__ import annotations
@@ -17,7 +12,7 @@ import warnings
 import numpy as np
 
 from exudyn_rotor.calls import user_level
-from exudyn_rotor.linear.equations import PeriodicSystem, joined
+from exudyn_rotor.linear.equations import PeriodicSystem
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.solve.motions import REAL, Motions, joined_motions, motions_of
 
@@ -66,7 +61,7 @@ def _at_speed(model: LinearModel, speed: float) -> Motions:
     wanted = np.unique([*ends, min(max(abs(speed), ends[0]), ends[1])])
     samples, parts = np.zeros(0), []
     for sweep in range(_MOST):
-        systems = joined([model.at(speed, float(each)) for each in wanted])
+        systems = model.at_all(np.full(len(wanted), speed), wanted)
         parts.append(motions_of(systems if basis is None else systems.projected(basis)))
         samples = np.concatenate([samples, wanted])
         values = np.concatenate([part.values for part in parts])

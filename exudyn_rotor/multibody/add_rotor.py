@@ -16,12 +16,12 @@ from exudyn_rotor.multibody.full.add_full import add_full, check_memory, make_fu
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.plan import (
     LOCKINGS,
-    LockedForce,
     Plan,
     Setup,
     add_nodes,
     check_free_names,
     color_of,
+    in_space,
     main_system,
     make_plan,
     marker_kinds,
@@ -30,7 +30,7 @@ from exudyn_rotor.multibody.rotor.plan import (
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.rotor_items import finished, flexible_body
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.reduction.reduced_rotor import ModeShapes, ReducedRotor
 from exudyn_rotor.solid.rotor import LOSS_LEFT_OUT
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.formulation import (
@@ -83,6 +83,7 @@ def add_rotor(
         The formulation; see :class:`exudyn_rotor.Formulation`. `spin` as a number is a constant
         speed [rad/s]; translation ``'auto'`` is ``'free'``, or ``'none'`` for a rotor that its
         stiffness matrix holds (:func:`exudyn_rotor.theory.formulation.suited_translation`).
+        In a plane that is skew to the inertial axes ``'in-plane'`` is ``'free'``, the same motion.
     spin_coupling : {'full', 'frozen'}
         For a free spin. ``'frozen'`` leaves out how the deflection changes the moment of inertia
         about the axis, with the forces that belong to it, so that energy stays conserved: the mass
@@ -199,21 +200,16 @@ def add_rotor(
     checks.instance(rotor, "rotor", (ReducedRotor, SolidRotor), how)
     full = isinstance(rotor, SolidRotor)
     checks.choice(stiffening, "stiffening", CHOICES)
-    formulation = Formulation(
-        suited_translation(translation, rotor.grounded), spin, drive, spin_coupling
-    )
+    turn = np.eye(3) if rotation is None else checks.rotation(rotation)
+    axis = turn @ rotor.axis.direction
+    asked = suited_translation(translation, rotor.grounded)
+    formulation = in_space(Formulation(asked, spin, drive, spin_coupling), axis)
     setup = Setup(
         name=None if name is None else checks.label(name, "name"),
         formulation=formulation,
         stiffening=stiffening,
         placement=placement(
-            formulation,
-            rotor.axis.direction,
-            position,
-            rotation,
-            initial_velocity,
-            initial_angle,
-            initial_speed,
+            formulation, axis, position, turn, initial_velocity, initial_angle, initial_speed
         ),
         modal_coordinates=modal_coordinates,
         modal_velocities=modal_velocities,
@@ -226,44 +222,35 @@ def add_rotor(
     )
     check_free_names(mbs, setup)
     if full:
-        return _add_solid(mbs, rotor, setup)
-    return _add_reduced(mbs, rotor, setup)
+        check_memory(rotor)
+        if stiffening in ("auto", "full"):
+            rotor = with_chosen_prestress(rotor, None)
+        has_stress, has_loss = rotor.carried_prestress is not None, bool(rotor.structural_damping)
+    else:
+        has_stress, has_loss = rotor.invariants.K2 is not None, rotor.invariants.H is not None
+    setup = replace(setup, stiffening=chosen_level(stiffening, has_stress))
+    plan = make_full_plan(rotor, setup) if full else make_plan(rotor, setup)
+    if not full and stiffening == "auto" and plan.stiffening == "tilt":
+        warn_of_left_out(rotor.invariants, setup.placement.speed, 3)
+    if has_loss:
+        warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=2)
+    return add_full(mbs, plan) if full else _add_reduced(mbs, plan, rotor.shapes)
 
 
-def _add_reduced(mbs: exudyn.MainSystem, reduced: ReducedRotor, setup: Setup) -> RotorBody:
-    by_default = setup.stiffening == "auto"
-    level = chosen_level(setup.stiffening, reduced.invariants.K2 is not None)
-    plan = make_plan(reduced, replace(setup, stiffening=level))
-    if by_default and level == "tilt":
-        warn_of_left_out(reduced.invariants, setup.placement.speed, 4)
-    if reduced.invariants.H is not None:
-        warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=3)
-    rigid, modes = add_nodes(mbs, plan)
+def _add_reduced(mbs: exudyn.MainSystem, plan: Plan, shapes: ModeShapes | None) -> RotorBody:
+    nodes = list(add_nodes(mbs, plan))
     # first of all objects, as in scripts that know it by its number
-    item = flexible_body(
-        plan, [rigid, modes], plan.motion.invariants.S, reduced.shapes, setup.name or ""
-    )
+    item = flexible_body(plan, nodes, plan.motion.invariants.S, shapes, plan.name or "")
     marker_body = mbs.AddObject(item)
-    physics = mbs.AddObject(_equations(plan, [rigid, modes]))
+    physics = mbs.AddObject(_equations(plan, nodes))
     return finished(
         RotorBody,
         mbs,
         plan,
-        nodes={"rigid": rigid, "modes": modes},
+        nodes=dict(zip(("rigid", "modes"), nodes, strict=True)),
         objects={"physics": physics, "marker_body": marker_body},
-        mesh_node_count=0 if reduced.shapes is None else len(reduced.shapes.nodes),
+        mesh_node_count=0 if shapes is None else len(shapes.nodes),
     )
-
-
-def _add_solid(mbs: exudyn.MainSystem, rotor: SolidRotor, setup: Setup) -> FullRotorBody:
-    check_memory(rotor)
-    if setup.stiffening in ("auto", "full"):
-        rotor = with_chosen_prestress(rotor, None)
-    level = chosen_level(setup.stiffening, rotor.carried_prestress is not None)
-    plan = make_full_plan(rotor, replace(setup, stiffening=level))
-    if rotor.structural_damping:
-        warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=3)
-    return add_full(mbs, plan)
 
 
 def _equations(plan: Plan, nodes: list) -> ObjectGenericODE2:
@@ -276,11 +263,17 @@ def _equations(plan: Plan, nodes: list) -> ObjectGenericODE2:
     mass, functions = layout.spread(motion.mass_matrix(0.0, rest), layout.lock_mass), {}
     force = np.zeros(layout.size)
     force[layout.unknowns] = constant.force
-    if not motion.is_constant or guide is not None:
+    if not motion.is_constant:
         kernel = Kernel(motion, layout.unknowns, layout.size)
         if kernel.rows.size:
             mass, functions["massMatrixUserFunction"] = _varying_mass(mass, kernel, layout.size)
-        functions["forceUserFunction"] = _forces(kernel, guide)
+
+        def forces(mbs, t, item, q, q_t):
+            found = kernel.forces(t, q, q_t)
+            # Exudyn takes a list faster than an array
+            return (found if guide is None else found + guide(t)).tolist()
+
+        functions["forceUserFunction"] = forces
         # even where it is zero: without it, Exudyn differentiates the object numerically with all
         # its matrices, and calls the user force for every coordinate
         functions["jacobianUserFunction"] = lambda mbs, t, item, q, q_t, factor_q, factor_v: (
@@ -295,16 +288,6 @@ def _equations(plan: Plan, nodes: list) -> ObjectGenericODE2:
         **functions,
         visualization=VObjectGenericODE2(show=False),
     )
-
-
-def _forces(kernel: Kernel, guide: LockedForce | None) -> Callable:
-    """Return the user function of the forces, with those that `guide` locked coordinates."""
-    # Exudyn takes a list faster than an array
-    if guide is None:
-        return lambda mbs, t, item, q, q_t: kernel.forces(t, q, q_t).tolist()
-    if not kernel.has_forces:
-        return lambda mbs, t, item, q, q_t: guide(t).tolist()
-    return lambda mbs, t, item, q, q_t: (guide(t) + kernel.forces(t, q, q_t)).tolist()
 
 
 def _varying_mass(

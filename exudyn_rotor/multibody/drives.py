@@ -24,11 +24,11 @@ from exudyn_rotor.multibody.supports.connector import (
     SYMBOLIC,
     Body,
     Connector,
-    Force,
     SceneLaw,
+    Tangent,
     check_body,
 )
-from exudyn_rotor.multibody.supports.ends import Base, BaseEnd, GroundEnd, RotorEnd, Seat
+from exudyn_rotor.multibody.supports.ends import Base, BaseEnd, RotorEnd, Seat
 from exudyn_rotor.multibody.supports.native import set_symbolic_force
 from exudyn_rotor.solid.places import off_place
 from exudyn_rotor.theory.formulation import ConstantSpeed
@@ -145,23 +145,23 @@ def add_drive(
             raise ValueError("base: a drive on the whole rotor has none; give at='…', an interface")
         added = _on_the_spin(body, drive)
     else:
-        check_turning_interface(body, at, "at")
-        made = DriveConnector(drive, RotorEnd(body, at), Seat.of(body, at, base).end(body.mbs))
+        seat = _turning_seat(body, at, "at", base)
+        made = DriveConnector(drive, RotorEnd(body, at), seat.end)
         number = body.mbs.AddObject(made.item())
         added = SceneDrive(body, (number,), (PYTHON,), made, drive, at)
     body.drives.append(added)
     return added
 
 
-def check_turning_interface(body: Body, name: str, argument: str) -> None:
-    """Refuse what is no interface of the rotor, or has no rotation."""
-    known = body.selection.source.interfaces
-    (name,) = checks.labels(checks.label(name, argument), argument, known)
-    if known[name].radius == 0.0:
+def _turning_seat(body: Body, name: str, argument: str, base: Base | None = None) -> Seat:
+    """Return where a torque acts; refuse what is no interface of a rotor, or has no rotation."""
+    interfaces = body.selection.source.interfaces
+    if interfaces[checks.choice(name, argument, interfaces)].radius == 0.0:
         raise ValueError(
             f"{argument}: {name!r} is a single node, which has no rotation; make the interface of "
             "three nodes or more"
         )
+    return Seat.of(body, name, base)
 
 
 def _on_the_spin(body: Body, drive: Drive) -> SceneDrive:
@@ -196,12 +196,12 @@ class DriveConnector(Connector):
         """Return the torque on the rotor."""
         return 0.0, 0.0, 0.0, (0.0, 0.0, float(self._law(self.speed, t)))
 
-    def tangent(self, t: float) -> Force:
-        """Return the torque, its derivative by the speed, and the row (1, size)."""
+    def tangent(self, t: float) -> Tangent:
+        """Return the derivative of the torque by the speed, with the row (1, size)."""
         torque, step = self._law(self.speed, t), SPEED_STEP * max(abs(self.speed), 1.0)
         damping = np.array([[(torque - self._law(self.speed + step, t)) / step]])
         rows = self.rows()[5:], self.rate_rows()[5:]
-        return Force(np.array([torque]), *rows, 0.0 * damping, damping)
+        return *rows, 0.0 * damping, damping
 
 
 @dataclass(frozen=True, eq=False)
@@ -235,7 +235,7 @@ class SceneConnection(SceneLaw):
         """
         law, made = self.connection, self.connector
         made.read(*made.state(self.body.mbs, configuration))
-        x, x_t = made.motion()
+        x, x_t = made.motion
         return law.transmitted(x, x_t), law.energy(x), law.loss(x, x_t)
 
     def __str__(self) -> str:
@@ -311,8 +311,9 @@ def connect_rotors(
     -15.0
     """
     checks.instance(connection, "connection", Connection, "GearMesh is one")
-    first = _checked_end(body, at, "body", "at")
-    second = _checked_end(other, other_at, "other", "other_at")
+    check_body(body, "body")
+    check_body(other, "other")
+    first, second = _turning_seat(body, at, "at"), _turning_seat(other, other_at, "other_at")
     if other.mbs is not body.mbs or other is body:
         raise ValueError("other: needs another rotor of the same system")
     apart = off_place(second.place - first.place, first.leeway, second.leeway)
@@ -325,12 +326,6 @@ def connect_rotors(
     for rotor in (body, other):
         rotor.drives.append(added)
     return added
-
-
-def _checked_end(body: Body, at: str, argument: str, place: str) -> Seat:
-    check_body(body, argument)
-    check_turning_interface(body, at, place)
-    return Seat.of(body, at, None)
 
 
 def _check_speeds(connection: Connection, body: Body, other: Body, sense: float) -> None:
@@ -354,41 +349,32 @@ class RotorConnector(Connector):
     """
 
     def __init__(self, connection: Connection, end: RotorEnd, other: RotorEnd) -> None:
-        super().__init__(end, GroundEnd())
-        self._law, self._other = connection, other
-        self.nodes = (*end.nodes, *other.nodes)
-        self.size = end.size + other.size
+        super().__init__(end, other)
+        self._law = connection
         self._into = np.kron(np.eye(2), end.axes.T @ other.axes)
 
-    def read(self, q: list[float], q_t: list[float]) -> None:
-        """Take the motion of both ends from coordinates and their rates."""
-        first = self.end.size
-        self.end.read(q[:first], q_t[:first])
-        self._other.read(q[first:], q_t[first:])
-
+    @property
     def motion(self) -> tuple[np.ndarray, np.ndarray]:
         """Return motion and rate of both ends, each (12,)."""
-        pairs = zip(self.end.motion, self._other.motion, strict=True)
+        pairs = zip(self.end.motion, self.base.motion, strict=True)
         return tuple(np.concatenate([one, self._into @ two]) for one, two in pairs)
 
     def rows(self) -> np.ndarray:
         """Return the rows J (12, size) of both ends."""
-        return block_diag(self.end.rows(), self._into @ self._other.rows())
+        return block_diag(self.end.rows(), self._into @ self.base.rows())
 
     def rate_rows(self) -> np.ndarray:
         """Return the derivative (12, size) of the rates of both ends by the coordinates."""
-        return block_diag(self.end.rate_rows(), self._into @ self._other.rate_rows())
+        return block_diag(self.end.rate_rows(), self._into @ self.base.rate_rows())
 
     def wrench(self, t: float) -> tuple[np.ndarray]:
         """Return the forces on all coordinates."""
-        return (self._law.forces(*self.motion()) @ self.rows(),)
+        return (self._law.forces(*self.motion) @ self.rows(),)
 
     def pull(self, forces: np.ndarray) -> list[float]:
         """Return the forces on all coordinates as a list."""
         return forces.tolist()
 
-    def tangent(self, t: float) -> Force:
-        """Return the law's forces on both ends, its tangent, and rows (12, size)."""
-        x, x_t = self.motion()
-        rows = self.rows(), self.rate_rows()
-        return Force(self._law.forces(x, x_t), *rows, *self._law.tangent(x, x_t))
+    def tangent(self, t: float) -> Tangent:
+        """Return the law's tangent, with rows (12, size) of both ends."""
+        return self.rows(), self.rate_rows(), *self._law.tangent(*self.motion)

@@ -22,12 +22,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import scipy.linalg
 
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.linear.equations import UnconvergedError
-from exudyn_rotor.nonlinear.rest import Rest
+from exudyn_rotor.nonlinear.rest import Coupling, Rest, Waves
 
 _PER_WAVE = 8  # points of the grid in the shortest wave
 _FEWEST = 32  # points over a phase
@@ -54,7 +53,7 @@ class Laws:
     def along(
         self, motion: np.ndarray, phi: np.ndarray, theta: np.ndarray, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return forces f (t, b, 2) along a motion (t, b, 4), and −∂f (t, b, 2, 4).
+        """Return forces f (t, b, 2) along a motion (t, b, 4), and ∂g (t, b, 2, 4).
 
         Cages of rolling bearings stand where the second phase φ says.
         """
@@ -64,7 +63,9 @@ class Laws:
             angles = ratio * (phi / self.passes if turns else theta)
             found.append(bearing.law_along(motion[:, b], angles, ratio * speed))
         forces, slopes = zip(*found, strict=True)
-        return np.stack(forces, axis=1), np.stack(slopes, axis=1)
+        k, d = (each.reshape(-1, 2)[..., None] * np.eye(2) for each in (self.springs, self.dampers))
+        both = np.concatenate([k, d], axis=-1)
+        return np.stack(forces, axis=1), both - np.stack(slopes, axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +86,7 @@ class Balance:
     @cached_property
     def nu(self) -> np.ndarray:
         """Their frequencies (h,) [rad/s]."""
-        return self.rest.frequencies(self.orders)
+        return self.orders @ np.array(self.rest.rates)
 
     @cached_property
     def points(self) -> tuple[int, int]:
@@ -118,6 +119,10 @@ class Balance:
         grid = values.reshape(*self.points, *values.shape[1:])
         return np.fft.fft2(grid, axes=(0, 1)) / np.prod(self.points)
 
+    def harmonics(self, values: np.ndarray) -> np.ndarray:
+        """Return the harmonics (h, …) up to K and N of values (t, …)."""
+        return self.spectrum(values)[self._places]
+
     def motion(self, c: np.ndarray) -> np.ndarray:
         """Return displacements and velocities (t, b, 4) at the points of harmonics (h, d)."""
         q, v = self.values(c), self.values(1j * self.nu[:, None] * c)
@@ -129,8 +134,7 @@ class Balance:
         f, slopes = self.laws.along(motion, *self.phases, self.rest.speed)
         k, d = (each.reshape(-1, 2) for each in (self.laws.springs, self.laws.dampers))
         g = f + k * motion[..., :2] + d * motion[..., 2:]
-        both = np.concatenate([k[:, :, None] * np.eye(2), d[:, :, None] * np.eye(2)], axis=-1)
-        return g.reshape(len(g), -1), both - slopes
+        return g.reshape(len(g), -1), slopes
 
     @cached_property
     def given(self) -> np.ndarray:
@@ -143,9 +147,10 @@ class Balance:
         return found
 
     @cached_property
-    def receptances(self) -> dict:
+    def receptances(self) -> dict[int, Coupling]:
         """H^p, with their places."""
-        return self.rest.receptances(self.reach)
+        rest = self.rest
+        return rest.unloaded.receptances(rest.rates, rest.revolutions, self.reach)
 
     def answered(self, g: np.ndarray) -> np.ndarray:
         """Return ``H g`` (h, d, …) for harmonics (h, d, …)."""
@@ -159,27 +164,19 @@ class Balance:
 
     def residual(self, c: np.ndarray) -> np.ndarray:
         """Return R (h, d)."""
-        g = self.spectrum(self.forces(c)[0])[self._places]
-        return c - self.given - self.answered(g)
+        return c - self.given - self.answered(self.harmonics(self.forces(c)[0]))
 
-    def linearised(self, c: np.ndarray, mean: bool = False) -> tuple[np.ndarray, np.ndarray]:
-        """Return R (h, d) and its derivative (hd, hd); by the mean of ∂g alone, if `mean`."""
+    def linearised(self, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return R (h, d) and its derivative (hd, hd)."""
         h, d = c.shape
         g, slopes = self.forces(c)
         spectrum = self.spectrum(slopes)
         k, n = self.orders.T
         A, B = self.points
         across = (k[:, None] - k) % A, (n[:, None] - n) % B
-        if mean:
-            spectrum[1:], spectrum[:, 1:] = 0.0, 0.0
-        each = spectrum[across]  # (h, h, b, 2, 4)
-        each = each[..., :2] + 1j * self.nu[:, None, None, None] * each[..., 2:]
-        G = np.zeros((h, d, h, d), dtype=complex)
-        for b in range(d // 2):
-            pair = slice(2 * b, 2 * b + 2)
-            G[:, pair, :, pair] = each[:, :, b].transpose(0, 2, 1, 3)
+        G = _by_displacement(spectrum[across], self.nu)
         J = np.eye(h * d) - self.answered(G).reshape(h * d, h * d)
-        left = c - self.given - self.answered(self.spectrum(g)[self._places])
+        left = c - self.given - self.answered(self.harmonics(g))
         return left, J
 
     def solved(self, c: np.ndarray, tolerance: float = 1e-10) -> np.ndarray:
@@ -187,13 +184,14 @@ class Balance:
         stuck = 0
         for _ in range(_MOST_ITERATIONS):
             left, J = self.linearised(c)
-            step = real_part_of(_divided(J, left.ravel()).reshape(c.shape))
+            try:
+                step = real_part_of(np.linalg.solve(J, left.ravel()).reshape(c.shape))
+            except np.linalg.LinAlgError:
+                break
             size, share = np.linalg.norm(left), 1.0
-            while np.linalg.norm(self.residual(c - share * step)) > size:
+            while share >= _LEAST_SHARE and np.linalg.norm(self.residual(c - share * step)) > size:
                 share *= 0.5
-                if share < _LEAST_SHARE:
-                    stuck += 1
-                    break
+            stuck += share < _LEAST_SHARE
             if stuck > _MOST_STUCK:
                 break
             c = c - share * step
@@ -201,18 +199,15 @@ class Balance:
                 return c
         raise UnconvergedError("no steady motion of these frequencies was found")
 
-    def coordinates(self, c: np.ndarray) -> dict[tuple[int, int], np.ndarray]:
+    def coordinates(self, c: np.ndarray) -> Waves:
         """Return the harmonics (k,) of all coordinates of the rest, of both signs."""
-        g = self.spectrum(self.forces(c)[0])[self._places]
-        return self.rest.coordinates(g, self.orders)
+        return self.rest.coordinates(self.harmonics(self.forces(c)[0]), self.orders)
 
     def holds(self, c: np.ndarray) -> bool:
         """Return whether laws and rest hold the mean place of a motion: not in a clearance."""
-        slopes = self.forces(c)[1].mean(axis=0)[..., :2]
-        mean = scipy.linalg.block_diag(*slopes)
-        K, N = self.reach
+        mean = _by_displacement(self.forces(c)[1].mean(axis=0), np.zeros(1))[:, 0]
         rows, _, H = self.receptances[0]
-        H = H[list(rows).index(K * (2 * N + 1) + N)]
+        H = H[list(rows).index(len(c) // 2)]
         return bool(np.linalg.norm(np.eye(len(mean)) - H @ mean, -2) > _FREE)
 
     # ------------------------------------------------------------ errors
@@ -232,10 +227,7 @@ class Balance:
         A, B = self.points
         spectrum = np.where(out[:, None], self.spectrum(g)[k % A, n % B], 0.0)
         moved = np.where(out[:, None], beyond.answered(spectrum) + beyond.given, 0.0)
-        mean, G = slopes.mean(axis=0), np.zeros((len(k), c.shape[1], c.shape[1]), dtype=complex)
-        for b in range(len(mean)):
-            pair = slice(2 * b, 2 * b + 2)
-            G[:, pair, pair] = mean[b, :, :2] + 1j * beyond.nu[:, None, None] * mean[b, :, 2:]
+        G = _by_displacement(slopes.mean(axis=0), beyond.nu).swapaxes(0, 1)
         rows, _, H = beyond.receptances[0]
         J = np.eye(c.shape[1]) - H @ G[rows]
         moved = np.linalg.solve(J, moved[rows][..., None])[..., 0]
@@ -243,6 +235,16 @@ class Balance:
         size = max(np.linalg.norm(c[whirls]), _STILL * np.linalg.norm(c), 1e-300)
         by_spin = np.abs(n) > N
         return tuple(float(np.linalg.norm(moved[one]) / size) for one in (~by_spin, by_spin))
+
+
+def _by_displacement(slopes: np.ndarray, nu: np.ndarray) -> np.ndarray:
+    """Return derivatives (…, d, h, d) by harmonics of displacements, of slopes (…, h, b, 2, 4)."""
+    each = slopes[..., :2] + 1j * nu[:, None, None, None] * slopes[..., 2:]
+    *rest, h, count, _, _ = each.shape
+    found = np.zeros((*rest, count, 2, h, count, 2), dtype=complex)
+    for b in range(count):
+        found[..., b, :, :, b, :] = each[..., b, :, :].swapaxes(-3, -2)
+    return found.reshape(*rest, 2 * count, h, 2 * count)
 
 
 def orders_of(reach: tuple[int, int]) -> np.ndarray:
@@ -264,10 +266,3 @@ def padded(c: np.ndarray, reach: tuple[int, int], wanted: tuple[int, int]) -> np
 def real_part_of(c: np.ndarray) -> np.ndarray:
     """Return harmonics (h, …) of a real motion: rounding that is not real would grow."""
     return 0.5 * (c + c[::-1].conj())
-
-
-def _divided(J: np.ndarray, b: np.ndarray) -> np.ndarray:
-    try:
-        return np.linalg.solve(J, b)
-    except np.linalg.LinAlgError:
-        raise UnconvergedError("no steady motion of these frequencies was found") from None

@@ -22,8 +22,9 @@ from functools import cached_property
 
 import numpy as np
 
+from exudyn_rotor.linear.equations import PeriodicSystem, Terms
 from exudyn_rotor.nonlinear.balance import Balance
-from exudyn_rotor.nonlinear.rest import Unloaded
+from exudyn_rotor.nonlinear.rest import real_rows
 
 _A = np.array([[0.25, 0.25 - np.sqrt(3.0) / 6.0], [0.25 + np.sqrt(3.0) / 6.0, 0.25]])  # Gauss
 _PER_CYCLE = 6  # steps in a cycle of the fastest motion on the laws
@@ -47,16 +48,15 @@ class Beside:
     c: np.ndarray
 
     @cached_property
-    def _rest(self) -> Unloaded:
-        rest, (K, N) = self.balance.rest.unloaded.for_stability, self.balance.reach
-        first, second = self.balance.rest.rates
-        waves = K * abs(first) + N * abs(second)
-        return rest.up_to(_STATIC * waves) if waves else rest
+    def _rest(self) -> tuple[PeriodicSystem, Terms]:
+        """Equations and C of the rest, as far as it is slow."""
+        waves = np.abs(self.balance.reach) @ np.abs(self.balance.rest.rates)
+        return self.balance.rest.unloaded.for_stability.up_to(_STATIC * waves or np.inf)
 
     @cached_property
     def _places(self) -> np.ndarray:
         """Orthonormal motions (p, r) that laws act on."""
-        _, sizes, V = np.linalg.svd(self._rest.rows, full_matrices=False)
+        _, sizes, V = np.linalg.svd(real_rows(self._rest[1]), full_matrices=False)
         return V[sizes > _DEPENDENT * sizes[0]]
 
     def _changes(self, phi: np.ndarray, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -65,17 +65,11 @@ class Beside:
         k, n = balance.orders.T
         waves = np.exp(1j * (np.outer(phi, k) + np.outer(theta / rest.revolutions, n)))
         q, v = (waves @ self.c).real, (waves @ (1j * balance.nu[:, None] * self.c)).real
-        motion = np.stack([q, v], axis=1).reshape(len(q), 2, -1, 2).transpose(0, 2, 1, 3)
-        motion = motion.reshape(len(q), -1, 4)
-        laws = balance.laws
-        slopes = laws.along(motion, phi, theta, rest.speed)[1]
-        pairs = [
-            each.reshape(-1, 2)[:, :, None] * np.eye(2) for each in (laws.springs, laws.dampers)
-        ]
-        G, G_t = slopes[..., :2] - pairs[0], slopes[..., 2:] - pairs[1]
-        C = np.zeros((len(q), len(laws.springs), len(self._places)), dtype=complex)
-        C_t = np.zeros_like(C)
-        for m, U in self._rest.journals.items():
+        motion = np.concatenate([each.reshape(len(q), -1, 2) for each in (q, v)], axis=-1)
+        slopes = -balance.laws.along(motion, phi, theta, rest.speed)[1]
+        G, G_t = slopes[..., :2], slopes[..., 2:]
+        C, C_t = np.zeros((2, len(q), self.c.shape[1], len(self._places)), dtype=complex)
+        for m, U in self._rest[1].items():
             part = np.exp(1j * m * theta)[:, None, None] * (U @ self._places.T)
             C, C_t = C + part, C_t + 1j * m * rest.speed * part
         shape = len(q), -1, 2, len(self._places)
@@ -91,7 +85,7 @@ class Beside:
         bearings as they stand at the worst angle of the cage, over 1 s.
         """
         rest, (K, N) = self.balance.rest, self.balance.reach
-        system, P = self._rest.system, self._places
+        (system, _), P = self._rest, self._places
         M, D, Ks = system.matrices()
         pulled = np.linalg.solve(M, P.T)
         period, second = self._period()
@@ -103,12 +97,11 @@ class Beside:
         fastest = np.sqrt(reach * np.abs(stiffness).sum(axis=2).max())
         slow = abs(rest.rates[0]) * _SLOW < fastest and not N and self.balance.laws.passes
         if slow or not period:
-            found = []
-            for K1, D1 in zip(stiffness, damping, strict=True):
-                A = _states(M, D + P.T @ D1 @ P, Ks + P.T @ K1 @ P)
-                found.append(np.linalg.eigvals(A))
-            values = max(found, key=lambda each: each.real.max())
-            return np.exp(values), 1.0
+            found = [
+                np.linalg.eigvals(_states(M, D + P.T @ D1 @ P, Ks + P.T @ K1 @ P))
+                for K1, D1 in zip(stiffness, damping, strict=True)
+            ]
+            return np.exp(max(found, key=lambda each: each.real.max())), 1.0
         K0, D0 = stiffness.mean(axis=0), damping.mean(axis=0)
         waves = K * abs(second) + N * abs(rest.rates[1])
         rate = max(_PER_CYCLE * fastest, _PER_WAVE * waves)
@@ -134,21 +127,17 @@ class Beside:
         rest, (K, N) = self.balance.rest, self.balance.reach
         first, second = rest.rates
         turn = 2.0 * np.pi
-        spins = bool(N) or len(self._rest.journals) > 1 or 0 not in self._rest.journals
+        spins = bool(N) or [*self._rest[1]] != [0]
         if not K:
             return (turn / abs(second) if second else 0.0), first
         if not spins or not second:
             return (turn / abs(first) if first else 0.0), first
-        ratio, best = abs(first / second), (np.inf, 1, 1)
-        for n in range(1, _TURNS + 1):
-            m = max(round(n * ratio), 1)
-            off = abs(m / (n * ratio) - 1.0)
-            best = min(best, (off, m, n))
-            if off <= _NEAR:
-                break
-        _, m, n = best
-        period = n * turn / abs(second)
-        return period, np.sign(first) * m * turn / period
+        turns = np.arange(1, _TURNS + 1)
+        passes = np.maximum(np.round(turns * abs(first / second)), 1.0)
+        off = np.maximum(np.abs(passes / (turns * abs(first / second)) - 1.0), _NEAR)
+        best = np.argmin(off)  # the first of those that are near enough
+        period = turns[best] * turn / abs(second)
+        return period, np.sign(first) * passes[best] * turn / period
 
     def growth(self, is_free: bool = False) -> tuple[float, complex]:
         """Return the largest growth [1/s], and its multiplier; without the shift in time, if free.

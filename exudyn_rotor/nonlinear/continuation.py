@@ -237,37 +237,35 @@ class Family:
         self.lost.append(f"{point.value:.6g}")
 
     def _next(self, point: Point, step: float) -> tuple:
-        """Return changes of the motion, the next point, measured, and the step after it.
+        """Return changes of the motion, the next point, measured, and the step after it."""
+        while step > _SHORTEST:
+            try:
+                return self._stepped(point, step)
+            except FAILS:
+                step *= 0.5
+        raise UnconvergedError("a branch ends")
+
+    def _stepped(self, point: Point, step: float) -> tuple:
+        """Return what :meth:`_next` does, by a step of a length.
 
         A step over a change that is not found between its ends has gone to another branch.
         """
-        while step > _SHORTEST:
-            (tc, tp), row = point.tangent, self._row(point.tangent, point.c)
-            c, p = point.c + step * tc, point.p + step * tp
-            try:
-                balance = self.balance(p, point.balance.reach)
-                after, count = self.corrected(
-                    replace(point, c=c, p=p, balance=balance, kind="computed"), row
-                )
-                is_far = self._length(after.c - c, after.p - p, point.c) > _BESIDE * step
-                after = self.refined(after)
-            except FAILS:
-                step *= 0.5
-                continue
-            like = self.widened(point, after.balance.reach).tangent
-            row = self._row(like, point.c)
-            turn = np.vdot(row[0], after.tangent[0]).real + row[1] @ after.tangent[1]
-            if step > _SMOOTH and (is_far or turn < _TURN):
-                step *= 0.5
-                continue
-            after = self.measure(after)
-            changes = self._changes(point, after)
-            if step > _SMOOTH and changes is None:
-                step *= 0.5
-                continue
-            factor = np.clip(_WANTED / count, 0.5, 2.0) * (0.7 if turn < 0.97 else 1.0)
-            return *(changes or ()), after, min(factor * step, _LONGEST)
-        raise UnconvergedError("a branch ends")
+        (tc, tp), row = point.tangent, self._row(point.tangent, point.c)
+        c, p = point.c + step * tc, point.p + step * tp
+        start = replace(point, c=c, p=p, balance=self.balance(p, point.balance.reach))
+        after, count = self.corrected(replace(start, kind="computed"), row)
+        is_far = self._length(after.c - c, after.p - p, point.c) > _BESIDE * step
+        after = self.refined(after)
+        row = self._row(self.widened(point, after.balance.reach).tangent, point.c)
+        turn = np.vdot(row[0], after.tangent[0]).real + row[1] @ after.tangent[1]
+        if step > _SMOOTH and (is_far or turn < _TURN):
+            raise UnconvergedError("another branch")
+        after = self.measure(after)
+        changes = self._changes(point, after)
+        if step > _SMOOTH and changes is None:
+            raise UnconvergedError("another branch")
+        factor = np.clip(_WANTED / count, 0.5, 2.0) * (0.7 if turn < 0.97 else 1.0)
+        return *(changes or ()), after, min(factor * step, _LONGEST)
 
     def aside(self, point: Point) -> tuple[Point, int] | None:
         """Return a solution beside a crossing, on the branch of a longer period.
@@ -310,11 +308,6 @@ class Family:
         start = replace(b, c=a.c + share * chord[0], p=p, balance=self.balance(p, reach))
         return start, self._row(chord, a.c)
 
-    def _between(self, first: Point, second: Point, share: float) -> Point:
-        """Return the solution at a share of the way between two."""
-        start, row = self._chord(first, second, share)
-        return self.corrected(start, row)[0]
-
     def _changes(self, first: Point, second: Point) -> list[Point] | None:
         """Return folds, or else changes of stability, between two points; None if not found."""
         if first.tangent[1][-1] * second.tangent[1][-1] < 0.0:
@@ -327,17 +320,16 @@ class Family:
     def _change(
         self, first: Point, second: Point, of: Callable[[Point], float], kind: str
     ) -> list[Point] | None:
-        ends = {0.0: of(first), 1.0: of(second)}
+        ends = {0.0: first, 1.0: second}
 
-        def at(share: float) -> float:
-            return ends[share] if share in ends else of(self._between(first, second, share))
+        def between(share: float) -> Point:
+            return ends.get(share) or self.corrected(*self._chord(first, second, share))[0]
 
         try:
-            share = brentq(at, 0.0, 1.0, xtol=_IN_PARAMETER)
-            found = self.measure(self._between(first, second, share))
+            found = between(brentq(lambda share: of(between(share)), 0.0, 1.0, xtol=_IN_PARAMETER))
+            return [replace(self.measure(found), kind=kind, error=second.error)]
         except FAILS:
             return None
-        return [replace(found, kind=kind, error=second.error)]
 
     def _landed(self, first: Point, second: Point, values: np.ndarray) -> Iterator[Point]:
         """Yield the solutions at wanted values between two points, in their order."""

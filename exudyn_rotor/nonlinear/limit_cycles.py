@@ -17,14 +17,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.given import Given, given_supports
+from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.build import Target
 from exudyn_rotor.linear.response.loads import At, HarmonicForce, checked_places
 from exudyn_rotor.linear.stability.thresholds import StabilityThresholds
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.nonlinear.balance import Balance, orders_of, padded
+from exudyn_rotor.nonlinear.balance import Balance, padded
 from exudyn_rotor.nonlinear.collect import collected
 from exudyn_rotor.nonlinear.continuation import Family, Point
 from exudyn_rotor.nonlinear.periodic_response import warn_of
@@ -102,8 +102,6 @@ def limit_cycles(
     """
     speeds = checks.ascending_from_zero(speeds, "speeds")
     checks.instance(onset, "onset", StabilityThresholds, "stability_threshold(…) makes one")
-    loads = checks.instances(loads, "loads", HarmonicForce)
-    gravity = checks.vector(gravity, "gravity", "m/s²")
     tolerance = checks.tolerance(tolerance)
     asked = checked_places(at)
     begins = np.flatnonzero(onset.onset)
@@ -111,12 +109,12 @@ def limit_cycles(
         raise ValueError("onset: the rotor does not turn unstable in its range; give a wider one")
     speed = float(onset.values[begins[0]])
     frequency = float(onset.frequencies_inertial[begins[0]])
-    given = as_lists(target, body, given_supports(supports), foundation, gravity, loads, stiffening)
+    given = as_lists(target, body, supports, foundation, gravity, loads, stiffening)
     problem = Problem.of(given, unbalances=(), own=False, speed=speed, highest=speed)
-    if problem.standing is None or problem.laws.passes or not problem.laws.bearings:
+    if problem.standing is None or problem.laws.passes:
         raise ValueError(
-            "supports: need one film or more, and a round rotor without rolling bearings, whose "
-            "spin would be a second frequency"
+            "target, supports: need a round rotor without rolling bearings, whose spin would be a "
+            "second frequency"
         )
 
     def balance(p: np.ndarray, reach: tuple[int, int]) -> Balance:
@@ -126,14 +124,12 @@ def limit_cycles(
         mean, phi = _hopf(problem, frequency, speed)
         p = np.array([frequency, speed])
         spans = np.array([p[0], max(np.ptp(speeds), 0.1 * p[1])])
-        orders = orders_of(_BEGIN)
-        first = (orders == (1, 0)).all(axis=1), (orders == (-1, 0)).all(axis=1)
-        wave = np.zeros((len(orders), phi.size), dtype=complex)
-        wave[first[0]], wave[first[1]] = phi, phi.conj()
-        turned = np.sign(orders[:, :1]) * 1j * wave
+        wave, turned = (
+            padded(np.array([one.conj(), 0.0 * one, one]), (1, 0), _BEGIN)
+            for one in (phi, 1j * phi)
+        )
         family = Family(balance, spans, problem.size, tolerance, _MOST, (turned, _BEGIN))
-        c = _FIRST * family.size / np.linalg.norm(phi) * wave
-        c[~np.any(orders, axis=1)] += mean
+        c = _FIRST * family.size / np.linalg.norm(phi) * wave + padded(mean, (0, 0), _BEGIN)
         row = wave / np.linalg.norm(wave), np.zeros(2)
         try:
             start = family.corrected(Point(c, p, balance(p, _BEGIN)), row)[0]
@@ -142,13 +138,13 @@ def limit_cycles(
         limits = min(speeds[0], _BELOW * p[1]), speeds[-1]
         found = list(family.followed(start, speeds, limits=limits))
         warn_of(family, found)
-        return collected(found, np.zeros(len(found), int), "spin speed [rad/s]", asked)
+        return collected([found], "spin speed [rad/s]", asked)
 
 
 def _hopf(problem: Problem, frequency: float, speed: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the mean place (d,) and φ of (1) at a limit of stability."""
+    """Return the mean place (1, d) and φ (d,) of (1) at a limit of stability."""
     try:
-        mean = problem.at_rest(speed)[1]
+        mean = problem.at_rest(speed)
     except UnconvergedError as error:
         raise ValueError(f"onset: no equilibrium at {speed:g} rad/s ({error})") from error
     balance = problem.balance(speed, (1, 0), whirl=frequency)
@@ -157,4 +153,4 @@ def _hopf(problem: Problem, frequency: float, speed: float) -> tuple[np.ndarray,
     _, sizes, V = np.linalg.svd(J[2 * d :, 2 * d :])  # of the harmonic 1
     if sizes[-1] > _NEUTRAL * sizes[0]:
         raise ValueError(f"onset: at {speed:g} rad/s no whirl begins; are the supports the same?")
-    return mean[0], V[-1].conj()
+    return mean, V[-1].conj()

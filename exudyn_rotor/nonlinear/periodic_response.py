@@ -16,7 +16,7 @@ from exudyn_rotor.bearings.support import NoCoefficientsError
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import UnconvergedError
-from exudyn_rotor.linear.model.build import Target, warn_of_left_out_stiffening
+from exudyn_rotor.linear.model.build import Target, warn_of_omissions
 from exudyn_rotor.linear.response.loads import At, HarmonicForce, Unbalance, checked_places
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.nonlinear.balance import Balance
@@ -148,15 +148,13 @@ def periodic_response(
     [True, False, True]
     """
     unbalances = checks.instances(unbalances, "unbalances", Unbalance)
-    loads = checks.instances(loads, "loads", HarmonicForce)
-    gravity = checks.vector(gravity, "gravity", "m/s²")
     tolerance = checks.tolerance(tolerance)
     revolutions = checks.count(revolutions, "revolutions", least=1)
     checks.flag(own, "own")
     checks.flag(follow, "follow")
     asked = checked_places(at)
     values, speed = _checked_parameter(values, over, speed)
-    given = as_lists(target, body, given_supports(supports), foundation, gravity, loads, stiffening)
+    given = as_lists(target, body, supports, foundation, gravity, loads, stiffening)
     if callable(over) and given.supports:
         raise ValueError("supports: come from over=…, a function; leave them out")
     make = partial(Problem.of, unbalances=unbalances, own=own, revolutions=revolutions)
@@ -170,22 +168,16 @@ def periodic_response(
         highest = values[-1] if over == "speed" else speed
         lowest = next(iter(values[values > 0.0]), 0.0) if over == "speed" else speed
         one = make(given, speed=lowest, highest=highest)
-        if not one.laws.bearings:
-            raise ValueError(
-                "supports: none has a nonlinear law; unbalance_response takes linear ones"
-            )
-        warn_of_left_out_stiffening(one.model, highest)
+        warn_of_omissions(one.model, highest)
 
         def problem_at(value: float) -> Problem:
             return one
 
-    def balance(p: np.ndarray, reach: tuple[int, int], **changes) -> Balance:
+    def balance(p: np.ndarray, reach: tuple[int, int], more: float = 1.0) -> Balance:
         value = float(p[-1])
-        if over == "speed":
-            return problem_at(value).balance(value, reach, **changes)
-        if over == "unbalance":
-            return problem_at(value).balance(speed, reach, unbalance=value, **changes)
-        return problem_at(value).balance(speed, reach, **changes)
+        unbalance = more * value if over == "unbalance" else more
+        at = value if over == "speed" else speed
+        return problem_at(value).balance(at, reach, unbalance=unbalance)
 
     first = problem_at(float(values[0]))
     span = np.array([np.ptp(values) or abs(values[0]) or 1.0])
@@ -194,14 +186,10 @@ def periodic_response(
         (_MOST[0], _MOST_WITH_PASSES if first.laws.passes else _MOST[1] * revolutions),
     )  # fmt: skip
     with one_thread():
-        branches = _branches(family, problem_at, values) if follow and len(values) > 1 else None
-        if branches is None:
-            branches = [_one_by_one(family, problem_at, values)]
-        found = [point for branch in branches for point in branch]
-        warn_of(family, found, follow)
-        numbers = np.repeat(np.arange(len(branches)), [len(each) for each in branches])
-        label = _LABELS.get(over, "parameter") if isinstance(over, str) else "parameter"
-        return collected(found, numbers, label, asked)
+        search = _branches if follow and len(values) > 1 else _one_by_one
+        branches = search(family, problem_at, values)
+        warn_of(family, [point for branch in branches for point in branch], follow)
+        return collected(branches, "parameter" if callable(over) else _LABELS[over], asked)
 
 
 def _checked_parameter(
@@ -222,9 +210,9 @@ def _first(family: Family, problem: Problem, value: float) -> Point:
     """Return the solution at a value, from where a search begins without another solution."""
     p = np.array([value])
     lost: Exception = UnconvergedError("no steady motion was found")
-    for balance, c in problem.starts(lambda reach, **more: family.balance(p, reach, **more)):
+    for balance, c in problem.starts(partial(family.balance, p)):
         try:
-            start = Point(balance.solved(c), p, family.balance(p, balance.reach), kind="value")
+            start = Point(balance.solved(c), p, balance, kind="value")
             start = family.refined(start)
             if start.balance.holds(start.c):
                 return start
@@ -288,8 +276,8 @@ def _of_longer_periods(
 
 def _one_by_one(
     family: Family, problem_at: Callable[[float], Problem], values: np.ndarray
-) -> list[Point]:
-    """Return a solution at each value that has one, beginning with the one before."""
+) -> list[list[Point]]:
+    """Return one branch: a solution at each value that has one, beginning with the one before."""
     found: list[Point] = []
     lost = None
     for value in map(float, values):
@@ -304,7 +292,7 @@ def _one_by_one(
             family.lost.append(f"{value:g}")
     if not found:
         raise ValueError(f"values: no steady motion was found at any ({lost})") from lost
-    return found
+    return [found]
 
 
 def warn_of(family: Family, found: Sequence[Point], follow: bool = True) -> None:

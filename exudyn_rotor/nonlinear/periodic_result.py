@@ -9,17 +9,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.linear.response.response import DIRECTIONS
+from exudyn_rotor.linear.response.response import DIRECTIONS, AtPlaces
 from exudyn_rotor.multibody.full.full_body import reduced_body
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState, spin_at_start
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState
 from exudyn_rotor.nonlinear.run_start import state_in_scene
-from exudyn_rotor.results import Result, numbers, storable, text_table, words
+from exudyn_rotor.results import numbers, storable, text_table, words
 from exudyn_rotor.units import IN_HERTZ, Units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-KINDS = ("computed", "value", "fold", "doubling", "torus", "branching")
 _POINTS = 64  # over a phase at least, where the largest motion is looked for
 _PER_WAVE = 8
 _SAME = 1e-9  # relative difference of values that is rounding
@@ -29,7 +28,7 @@ _MARKERS = {"fold": "D", "doubling": "^", "torus": "s", "branching": "P"}
 
 @storable
 @dataclass(frozen=True, eq=False)
-class PeriodicResponse(Result):
+class PeriodicResponse(AtPlaces):
     """Branches of steady motions ``u = Re Σ a_kn exp i(kφ + nθ/r)``, in axes that stand still.
 
     θ is the spin angle; the second phase φ is of the ball pass, or of a limit cycle; it has no
@@ -100,7 +99,6 @@ class PeriodicResponse(Result):
     array([1.e-05])
     """
 
-    places: tuple[str, ...] = words("places")
     values: np.ndarray = numbers("abscissa")
     branches: np.ndarray = numbers("abscissa", dtype=int, least=0)
     kinds: tuple[str, ...] = words("abscissa")
@@ -152,7 +150,7 @@ class PeriodicResponse(Result):
             For no number, or a value at which there is no point.
         """
         value = checks.number(value, "value")
-        wanted = np.array([kind == "value" for kind in self.kinds], dtype=bool)
+        wanted = np.array(self.kinds) == "value"
         near = np.abs(self.values - value) <= _SAME * max(abs(value), 1e-300)
         found = np.flatnonzero(near & wanted)
         if not found.size:
@@ -181,9 +179,8 @@ class PeriodicResponse(Result):
         order = checks.count(passing, "passing"), round(turns)
         if abs(turns - order[1]) > _SAME:
             raise ValueError(f"spin: needs a multiple of 1/{self.revolutions}, got {spin:g}")
-        at = np.flatnonzero((self.orders == order).all(axis=1))
         column = self.motion[:, self._at(place), :, DIRECTIONS.index(direction)]
-        return column[:, at[0]] if at.size else np.zeros(len(self.values), dtype=complex)
+        return column[:, (self.orders == order).all(axis=1)].sum(axis=1)
 
     def displacement(self, point: int, time: ArrayLike, place: str | None = None) -> np.ndarray:
         """Return the displacement over time along (n1, n2), shape (t, 2) [m].
@@ -207,12 +204,9 @@ class PeriodicResponse(Result):
 
     def amplitudes(self, place: str | None = None) -> np.ndarray:
         """Return the largest distance from the mean place, shape (p,) [m]."""
-        seen = self._over_phases(place)
-        mean = self.motion[:, self._at(place), self._constant(), :2].real.sum(axis=1)
+        seen, constant = self._over_phases(place), ~np.any(self.orders, axis=1)
+        mean = self.motion[:, self._at(place), constant, :2].real.sum(axis=1)
         return np.linalg.norm(seen - mean[:, None], axis=-1).max(axis=1)
-
-    def _constant(self) -> np.ndarray:
-        return ~np.any(self.orders, axis=1)
 
     def _over_phases(self, place: str | None) -> np.ndarray:
         """Return displacements along (n1, n2) on a grid over both phases, (p, t, 2)."""
@@ -247,7 +241,7 @@ class PeriodicResponse(Result):
             For another rotor or foundation, controllers or pads, or a system not assembled.
         """
         reduced_body(body)
-        angle = spin_at_start(body)[0] if angle is None else checks.number(angle, "angle", "rad")
+        angle = body.placement.angle if angle is None else checks.number(angle, "angle", "rad")
         point = self._point(point)
         if self.coordinates is None:
             raise ValueError(
@@ -262,11 +256,6 @@ class PeriodicResponse(Result):
     def _point(self, point: int) -> int:
         return checks.count(point, "point", most=len(self.values) - 1)
 
-    def _at(self, place: str | None) -> int:
-        if place is None:
-            return 0
-        return self.places.index(checks.choice(place, "place", self.places))
-
     # ------------------------------------------------------------ tables and pictures
 
     def _shown(self, units: str) -> tuple[np.ndarray, str]:
@@ -277,55 +266,41 @@ class PeriodicResponse(Result):
         return unit.speeds(self.values), self.label.replace("rad/s", unit.speed)
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
-        """Return motions and forces as columns, one row for each point and place."""
+        """Return motions and forces as columns, one row for each point."""
         values, label = self._shown(units)
-        count, rows = len(self.places), len(self.values)
-        parts = [
-            {
-                label: values,
-                "branch": self.branches,
-                "kind": np.array(self.kinds),
-                "place": np.full(rows, place),
-                "amplitude [m]": self.amplitudes(place),
-            }
-            for place in self.places
-        ]
-        columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-        ends = {}
+        columns = {label: values, "branch": self.branches, "kind": np.array(self.kinds)}
+        columns |= {f"amplitude, {place} [m]": self.amplitudes(place) for place in self.places}
         for b, name in enumerate(self.bearings):
-            ends |= {
+            columns |= {
                 f"force, {name} [N]": self.forces[:, b],
                 f"gap, {name} [m]": self.gaps[:, b],
                 f"element load, {name} [N]": self.element_loads[:, b],
                 f"open, {name}": self.open_shares[:, b],
             }
-        ends |= {
+        return columns | {
             "second frequency [Hz]": IN_HERTZ * self.rates[:, 0],
             "error": self.errors,
             "growth [1/s]": self.growth,
             "stable": self.stable,
         }
-        return columns | {name: np.tile(each, count) for name, each in ends.items()}
 
     def table(self, place: str | None = None, *, units: str = "rpm") -> str:
         """Return motions at one place as text: wanted values and changes of the motion."""
         values, label = self._shown(units)
         name = self.places[self._at(place)]
-        gaps = np.where(np.isfinite(self.gaps), self.gaps, np.inf).min(axis=1, initial=np.inf)
-        states = np.where(self.stable, "stable", "unstable")
+        kinds = np.array(self.kinds)
         columns = {
             label: values,
             "branch": self.branches,
             "amplitude [m]": self.amplitudes(name),
             "force [N]": self.forces.max(axis=1),
-            "gap [m]": np.where(np.isfinite(gaps), gaps, np.nan),
+            "gap [m]": np.fmin.reduce(self.gaps, axis=1),
             "growth [1/s]": self.growth,
-            "motion": np.array(
-                [kind if kind in _MARKERS else state
-                 for kind, state in zip(self.kinds, states, strict=True)]
+            "motion": np.where(
+                np.isin(kinds, [*_MARKERS]), kinds, np.where(self.stable, "stable", "unstable")
             ),
-        }  # fmt: skip
-        shown = np.array([kind != "computed" for kind in self.kinds], dtype=bool)
+        }
+        shown = kinds != "computed"
         lines = text_table({title: column[shown] for title, column in columns.items()})
         return "\n".join([name, *lines])
 
@@ -356,7 +331,7 @@ class PeriodicResponse(Result):
                 word, line = ("stable", "-") if stable[part[0]] else ("unstable", "--")
                 ax.plot(values[shown], amplitudes[shown], line, color=color, label=word)
         for kind, marker in _MARKERS.items():
-            at = np.array([each == kind for each in self.kinds], dtype=bool)
+            at = np.array(self.kinds) == kind
             if at.any():
                 ax.plot(values[at], amplitudes[at], marker, color="k", mfc="w", label=kind)
         ax.set_xlabel(label)

@@ -23,7 +23,7 @@ from exudyn_rotor.linear.response.loads import (
     total,
     unbalance_load,
 )
-from exudyn_rotor.nonlinear.balance import Balance, Laws, padded, real_part_of
+from exudyn_rotor.nonlinear.balance import Balance, Laws, padded
 from exudyn_rotor.nonlinear.rest import Rest, Unloaded, of_both_signs
 from exudyn_rotor.nonlinear.scene import Listed
 from exudyn_rotor.reduction.reduced_rotor import ModeKind
@@ -38,24 +38,17 @@ _ANY_SIZE = 1e-12  # m, of motions without a clearance
 _NOT_ACROSS = (ModeKind.AXIAL.value, ModeKind.SPIN.value)
 
 
-def parted(given: Sequence[Given]) -> tuple[list[Bearing], list[Given]]:
-    """Return the supports whose laws are nonlinear, and all others."""
-    laws, linear = [], []
-    for one in given:
-        if not isinstance(one, Bearing) or isinstance(one, AnnularSeal):
-            linear.append(one)
-            continue
-        if isinstance(one, TiltingPadBearing):
-            raise ValueError(
-                f"supports: the bearing at {one.interface!r} has no force by place and velocity "
-                "alone: its pads have motions of their own; give the linear coefficients, "
-                "bearing.linearised()"
-            )
-        laws.append(one)
-    return laws, linear
+def _is_law(one: Given) -> bool:
+    """Return whether a support has a nonlinear law."""
+    if isinstance(one, TiltingPadBearing):
+        raise ValueError(
+            f"supports: the bearing at {one.interface!r} has no force by place and velocity alone: "
+            "its pads have motions of their own; give the linear coefficients, bearing.linearised()"
+        )
+    return isinstance(one, Bearing) and not isinstance(one, AnnularSeal)
 
 
-def passes_of(laws: Sequence[Bearing], ratios: Sequence[float]) -> float:
+def _passes(laws: Sequence[Bearing], ratios: Sequence[float]) -> float:
     """Return how many elements pass the load in a revolution, the same for all; 0 without any."""
     pairs = zip(laws, ratios, strict=True)
     found = [r * one.count * one.cage_ratio for one, r in pairs if isinstance(one, RollingBearing)]
@@ -68,21 +61,17 @@ def passes_of(laws: Sequence[Bearing], ratios: Sequence[float]) -> float:
     return found[0] if found else 0.0
 
 
-def springs_of(laws: Sequence[Bearing], speeds: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
-    """Return k₀ [N/m] and d₀ [N s/m] in place of laws, of the size of theirs, (d,) each."""
-    found = []
-    for one, speed in zip(laws, speeds, strict=True):
-        gap = one.clearance_along()
-        where = _INSIDE * gap if np.isfinite(gap) else 0.0
-        if isinstance(one, RollingBearing):
-            where = one.clearance + _DEPTH * one.element_radius
-        elif not one.carries and hasattr(one, "stiffness"):
-            found.append((one.stiffness, 0.0))
-            continue
-        slopes = one.law_along(np.array([[where, 0.0, 0.0, 0.0]]), np.zeros(1), speed)[1][0]
-        k, d = np.linalg.norm(slopes[:, :2], 2), abs(np.trace(slopes[:, 2:])) / 2.0
-        found.append((max(k, 0.1 * d * abs(speed)), d))
-    return tuple(np.repeat(np.array(found).reshape(-1, 2), 2, axis=0).T)
+def _spring(one: Bearing, speed: float) -> tuple[float, float]:
+    """Return k₀ [N/m] and d₀ [N s/m] in place of a law, of the size of its own."""
+    gap = one.clearance_along()
+    where = _INSIDE * gap if np.isfinite(gap) else 0.0
+    if isinstance(one, RollingBearing):
+        where = one.clearance + _DEPTH * one.element_radius
+    elif not one.carries and hasattr(one, "stiffness"):
+        return one.stiffness, 0.0
+    slopes = one.law_along(np.array([[where, 0.0, 0.0, 0.0]]), np.zeros(1), speed)[1][0]
+    k, d = np.linalg.norm(slopes[:, :2], 2), abs(np.trace(slopes[:, 2:])) / 2.0
+    return max(k, 0.1 * d * abs(speed)), d
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,17 +145,15 @@ class Problem:
         reach: tuple[int, int],
         *,
         unbalance: float = 1.0,
-        more: float = 1.0,
         whirl: float | None = None,
     ) -> Balance:
-        """Return the equations at a speed.
+        """Return the equations at a speed, with a factor of the unbalance.
 
-        With a factor of the unbalance, times `more`, and with a frequency of the second phase
-        other than that of the ball pass [rad/s].
+        The second phase has the frequency `whirl` [rad/s], or that of the ball pass.
         """
         loads = dict(self.static)
         for n, F in self.unbalance.items():
-            loads[n] = loads.get(n, 0.0) + more * unbalance * speed**2 * F
+            loads[n] = loads.get(n, 0.0) + unbalance * speed**2 * F
         first = self.laws.passes * speed if whirl is None else whirl
         rates = first, speed / self.revolutions
         rest = Rest(self._unloaded(speed), rates, self.revolutions, loads)
@@ -179,18 +166,13 @@ class Problem:
 
     # ------------------------------------------------------------ where a search begins
 
-    def at_rest(self, speed: float) -> tuple[Balance, np.ndarray]:
+    def at_rest(self, speed: float) -> np.ndarray:
         """Return the mean place of the journals under static loads, c (1, d)."""
         balance = self.balance(speed, (0, 0), unbalance=0.0)
-        load = (self.laws.springs * balance.given[0].real).reshape(-1, 2)
-        guess = [
-            _resting(one, ratio * speed, f)
-            for one, ratio, f in zip(self.laws.bearings, self.laws.ratios, load, strict=True)
-        ]
-        tried = [np.ravel(guess)[None] + 0j, np.zeros_like(balance.given), balance.given]
-        for c in tried:
+        pressed = self._pressed(balance.given.real, speed) + 0j
+        for c in (pressed, np.zeros_like(balance.given), balance.given):
             try:
-                return balance, balance.solved(c)
+                return balance.solved(c)
             except UnconvergedError as failed:
                 lost = failed
         raise lost
@@ -198,40 +180,31 @@ class Problem:
     def starts(self, of: Callable[..., Balance]) -> Iterator[tuple[Balance, np.ndarray]]:
         """Yield equations and harmonics, each nearer by more work, from which a search may lead.
 
-        `of` makes the equations at the wanted speed; it takes K and N, and options.
+        `of` makes the equations at the wanted speed; it takes K and N, and a factor of the
+        unbalance.
         """
         balance = of(self.reach)
         try:
-            _, mean = self.at_rest(balance.rest.speed)
-            c = padded(mean, (0, 0), balance.reach)
-            left, J = balance.linearised(c, mean=True)
-            yield balance, c - real_part_of(np.linalg.solve(J, left.ravel()).reshape(c.shape))
+            c = padded(self.at_rest(balance.rest.speed), (0, 0), balance.reach)
             yield balance, c
-        except (UnconvergedError, np.linalg.LinAlgError):
+        except UnconvergedError:
             pass
-        if self.unbalance:
-            yield of(self.reach), self._by_less_unbalance(of)
+        if self.unbalance:  # a rotor that unbalance alone presses: the whirl of a larger one
+            most = of(self.reach, _MORE_UNBALANCE[0])
+            c = most.harmonics(self._pressed(most.values(most.given), most.rest.speed))
+            for more in _MORE_UNBALANCE:
+                c = of(self.reach, more).solved(c, _ROUGH)
+            yield balance, c
 
-    def _by_less_unbalance(self, of: Callable[..., Balance]) -> np.ndarray:
-        """Return the whirl that a larger one becomes: of rotors that unbalance alone presses."""
-        c = None
-        for more in _MORE_UNBALANCE:
-            balance = of(self.reach, more=more)
-            c = balance.solved(self._pressed(balance) if c is None else c, _ROUGH)
-        return c
-
-    def _pressed(self, balance: Balance) -> np.ndarray:
-        """Return harmonics of a motion in which each load is on one element, wherever it is."""
-        loads = (self.laws.springs * balance.values(balance.given)).reshape(
-            -1, len(self.laws.bearings), 2
-        )
+    def _pressed(self, moved: np.ndarray, speed: float) -> np.ndarray:
+        """Return places (t, d) where the journals rest under what moves the springs (t, d)."""
+        loads = self.laws.springs * moved
         places = np.zeros_like(loads)
         for b, (one, ratio) in enumerate(zip(self.laws.bearings, self.laws.ratios, strict=True)):
-            for place, load in zip(places[:, b], loads[:, b], strict=True):
-                place[:] = _resting(one, ratio * balance.rest.speed, load)
-        k, n = balance.orders.T
-        A, B = balance.points
-        return balance.spectrum(places.reshape(len(places), -1))[k % A, n % B]
+            pair = slice(2 * b, 2 * b + 2)
+            for place, load in zip(places[:, pair], loads[:, pair], strict=True):
+                place[:] = _resting(one, ratio * speed, load)
+        return places
 
 
 def _resting(one: Bearing, speed: float, load: np.ndarray) -> np.ndarray:
@@ -247,29 +220,33 @@ def _resting(one: Bearing, speed: float, load: np.ndarray) -> np.ndarray:
 
 def _with_stand_ins(model: LinearModel, speed: float) -> tuple[LinearModel, Laws]:
     """Return a model with springs and dampers in place of the laws, and these, up to a speed."""
-    bearings, names, ratios, linear = [], [], [], {}
+    laws, linear = [], {}
     for rotor, given in model.supports.items():
-        laws, linear[rotor] = parted(given)
-        bearings += laws
-        names += [f"{rotor}:{one.interface}" if rotor else one.interface for one in laws]
-        ratios += [model.ratios[rotor]] * len(laws)
-    springs, dampers = springs_of(bearings, [ratio * speed for ratio in ratios])
-    for one, name, k, d in zip(bearings, names, springs[::2], dampers[::2], strict=True):
-        rotor = name.rpartition(":")[0] if "" not in model.rotors else ""
-        linear[rotor].insert(0, Support(one.interface, k, d))
-    laws = Laws(bearings, names, ratios, springs, dampers, passes_of(bearings, ratios))
+        ratio, linear[rotor] = model.ratios[rotor], []
+        for one in given:
+            if not _is_law(one):
+                linear[rotor].append(one)
+                continue
+            name = f"{rotor}:{one.interface}" if rotor else one.interface
+            k, d = _spring(one, ratio * speed)
+            laws.append((one, name, ratio, k, d))
+            linear[rotor].append(Support(one.interface, k, d))
+    if not laws:
+        raise ValueError("supports: none has a nonlinear law; unbalance_response takes linear ones")
+    bearings, names, ratios, k, d = zip(*laws, strict=True)
+    laws = Laws(
+        bearings, names, ratios, np.repeat(k, 2), np.repeat(d, 2), _passes(bearings, ratios)
+    )
     return replace(model, supports=linear), laws
 
 
 def _constant(model: LinearModel, speed: float) -> tuple[LinearModel, LinearModel | None]:
     """Return a model whose equations are constant, and one in axes that stand still."""
     model.check_without_frequency("a periodic motion")
-    constant = model.at(speed).is_constant
+    constant, turning = model.at(speed).is_constant, model.for_responses
     standing = model if constant and not model.turns else None
-    if standing and len(model.rotors) > 1:  # no axes turn with all of them
-        return model, standing
-    turning = model.for_responses
-    if turning.at(speed).is_constant:
+    several = len(model.rotors) > 1  # no axes turn with all of them
+    if turning.at(speed).is_constant and not (standing and several):
         return turning, standing
     if not constant:
         raise ValueError(

@@ -15,7 +15,7 @@ rotor has.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -26,6 +26,7 @@ from exudyn_rotor.linear.equations import PeriodicSystem, Terms, difference, sta
 from exudyn_rotor.linear.model.linear_model import ON_FOUNDATION, LinearModel
 
 Coupling = tuple[np.ndarray, np.ndarray, np.ndarray]  # rows, columns, H (h, d, d)
+Waves = dict[tuple[int, int], np.ndarray]  # by harmonics (k, n)
 _SMALL = 1e-12  # share of a receptance or a motion that is rounding
 _DEPENDENT = 1e-8  # of singular values of static motions
 
@@ -64,16 +65,14 @@ class Unloaded:
     # the same in axes that stand still, of a round rotor: there what laws do to motions beside a
     # steady one changes little, and not at all on a circle
     standing: LinearModel | None = None
-    within: np.ndarray | None = None  # (r', r) Columns of fewer motions, see :meth:`up_to`
-    known: dict = field(default_factory=dict, repr=False)  # receptances
 
     @cached_property
     def for_stability(self) -> Unloaded:
         """The rest in axes that stand still, if it can be."""
         return Unloaded(self.standing, self.names, self.speed) if self.standing else self
 
-    def up_to(self, frequency: float) -> Unloaded:
-        """Return the rest in its motions up to a frequency [rad/s], and static ones of the others.
+    def up_to(self, frequency: float) -> tuple[PeriodicSystem, Terms]:
+        """Return equations and C of motions up to a frequency [rad/s], and static ones of others.
 
         Faster motions follow the forces of the laws as springs do: of them the basis keeps what
         they yield to constant forces.
@@ -81,17 +80,18 @@ class Unloaded:
         M, _, K = self.system.matrices()
         squares, shapes = eigh(0.5 * (K + K.T), 0.5 * (M + M.T))
         fast = squares > frequency**2
-        yields = shapes[:, fast] @ ((self.rows @ shapes[:, fast]) / squares[fast]).T
+        felt = real_rows(self.journals) @ shapes[:, fast]
+        yields = shapes[:, fast] @ (felt / squares[fast]).T
         static = orth(yields, rcond=_DEPENDENT) if np.any(yields) else yields[:, :0]
         if static.shape[1] >= np.sum(fast):
-            return self
-        return replace(self, within=np.hstack([shapes[:, ~fast], static]), known={})
+            return self.system, self.journals
+        within = np.hstack([shapes[:, ~fast], static])
+        return self.system.projected(within), {n: C @ within for n, C in self.journals.items()}
 
     @cached_property
     def basis(self) -> np.ndarray:
         """Motions that something resists, (k, r)."""
-        resists = resisted(self.model)
-        return resists if self.within is None else resists @ self.within
+        return resisted(self.model)
 
     @cached_property
     def system(self) -> PeriodicSystem:
@@ -101,13 +101,47 @@ class Unloaded:
     @cached_property
     def journals(self) -> Terms:
         """C (d, r)."""
-        found = _journals(self.model, tuple(self.names), bool(self.speed))
-        return found if self.within is None else {n: C @ self.within for n, C in found.items()}
+        return _journals(self.model, tuple(self.names), bool(self.speed))
 
-    @cached_property
-    def rows(self) -> np.ndarray:
-        """All parts of C as real rows: what laws feel of the motions."""
-        return np.vstack([np.vstack([C.real, C.imag]) for C in self.journals.values()])
+    def answer(self, nu: np.ndarray, F: np.ndarray) -> np.ndarray:
+        """Return ``Z⁻¹ F`` at frequencies (h,), F (r, m) or (h, r, m)."""
+        M, D, K = self.system.matrices()
+        nu = nu[:, None, None]
+        Z = K + 1j * nu * D - nu**2 * M
+        for n, H in self.system.H:
+            Z = Z + 1j * np.sign(nu - n * self.speed) * H
+        return np.linalg.solve(Z, F.astype(complex))
+
+    @kept
+    def receptances(
+        self, rates: tuple[float, float], revolutions: int, reach: tuple[int, int]
+    ) -> dict[int, Coupling]:
+        """Return H^p of (1) by p, for all harmonics up to K and N, in their order."""
+        K, N = reach
+        waves = sorted(self.journals)
+        C = np.concatenate([self.journals[m] for m in waves])
+        wide = N + revolutions * max(map(abs, waves))
+        n = np.arange(-wide, wide + 1)
+        orders = np.array([(k, each) for k in range(K + 1) for each in n if k or each >= 0])
+        half = C @ self.answer(orders @ np.array(rates), C.T)
+        d = len(C) // len(waves)
+        known = half.reshape(len(orders), len(waves), d, len(waves), d)
+        # those of −k, −n are conjugates, with opposite m
+        turned = known[::-1, ::-1, :, ::-1].conj()
+        known = np.concatenate([turned[:-1], known]).reshape(
+            2 * K + 1, 2 * wide + 1, len(waves), d, len(waves), d
+        )
+        inside, found = np.arange(-N, N + 1), {}
+        for b, m in enumerate(waves):
+            for a, other in enumerate(waves):
+                p = m + other
+                columns = inside[np.abs(inside + revolutions * p) <= N]
+                H = known[:, columns + revolutions * m + wide][:, :, a, :, b].reshape(-1, d, d)
+                place = (np.arange(2 * K + 1)[:, None] * (2 * N + 1) + columns + N).ravel()
+                found[p] = place + revolutions * p, place, H + (found[p][2] if p in found else 0.0)
+        sizes = {p: np.abs(H).max(initial=0.0) for p, (_, _, H) in found.items()}
+        least = _SMALL * max(sizes.values())
+        return {p: each for p, each in found.items() if p == 0 or sizes[p] > least}
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,97 +158,43 @@ class Rest:
         """Ω [rad/s]."""
         return self.unloaded.speed
 
-    def frequencies(self, orders: np.ndarray) -> np.ndarray:
-        """Return ν (h,) of harmonics (k, n) (h, 2) [rad/s]."""
-        return orders @ np.array(self.rates)
-
-    def _stiffness(self, nu: np.ndarray) -> np.ndarray:
-        """Return Z (h, r, r) at frequencies (h,)."""
-        M, D, K = self.unloaded.system.matrices()
-        nu = nu[:, None, None]
-        Z = K + 1j * nu * D - nu**2 * M
-        for n, H in self.unloaded.system.H:
-            Z = Z + 1j * np.sign(nu - n * self.speed) * H
-        return Z
-
-    def moved(self) -> dict[tuple[int, int], np.ndarray]:
+    def moved(self) -> Waves:
         """Return q⁰ (d,) by its harmonics (0, n)."""
-        found: dict[tuple[int, int], np.ndarray] = {}
-        for n, x in self._loaded.items():
+        found: Waves = {}
+        for (k, n), x in self._motion(self._given()).items():
             for m, C in self.unloaded.journals.items():
-                order = 0, self.revolutions * (n + m)
+                order = k, n + self.revolutions * m
                 found[order] = found.get(order, 0.0) + C @ x
         return found
 
-    @cached_property
-    def _loaded(self) -> dict[int, np.ndarray]:
-        """The motion (r,) under the loads alone, by harmonics of θ."""
-        orders = [n for n, F in self.loads.items() if np.any(F)]
-        if not orders:
-            return {}
-        F = np.array([self.unloaded.basis.T @ self.loads[n] for n in orders])
-        Z = self._stiffness(self.speed * np.array(orders))
-        return dict(zip(orders, np.linalg.solve(Z, F[..., None])[..., 0], strict=True))
-
-    def receptances(self, reach: tuple[int, int]) -> dict[int, Coupling]:
-        """Return H^p of (1) by p, for all harmonics up to K and N, in their order."""
-        key = reach, self.rates, self.revolutions
-        if key not in self.unloaded.known:
-            self.unloaded.known[key] = self._receptances(reach)
-        return self.unloaded.known[key]
-
-    def _receptances(self, reach: tuple[int, int]) -> dict[int, Coupling]:
-        K, N = reach
-        waves = sorted(self.unloaded.journals)
-        C = np.concatenate([self.unloaded.journals[m] for m in waves])
-        wide = N + self.revolutions * max(map(abs, waves))
-        n = np.arange(-wide, wide + 1)
-        orders = np.array([(k, each) for k in range(K + 1) for each in n if k or each >= 0])
-        Z = self._stiffness(self.frequencies(orders))
-        half = C @ np.linalg.solve(Z, C.T.astype(complex))
-        d = len(C) // len(waves)
-        known = half.reshape(len(orders), len(waves), d, len(waves), d)
-        # those of −k, −n are conjugates, with opposite m
-        turned = known[::-1, ::-1, :, ::-1].conj()
-        known = np.concatenate([turned[:-1], known]).reshape(
-            2 * K + 1, 2 * wide + 1, len(waves), d, len(waves), d
-        )
-        inside, found = np.arange(-N, N + 1), {}
-        for b, m in enumerate(waves):
-            for a, other in enumerate(waves):
-                p = m + other
-                columns = inside[np.abs(inside + self.revolutions * p) <= N]
-                H = known[:, columns + self.revolutions * m + wide][:, :, a, :, b]
-                place = (np.arange(2 * K + 1)[:, None] * (2 * N + 1) + columns + N).ravel()
-                H = H.reshape(-1, d, d)
-                if p in found:
-                    H = H + found[p][2]
-                found[p] = place + self.revolutions * p, place, H
-        largest = max((np.abs(H).max(initial=0.0) for *_, H in found.values()), default=0.0)
-        return {
-            p: each
-            for p, each in found.items()
-            if p == 0 or np.abs(each[2]).max(initial=0.0) > _SMALL * largest
-        }
-
-    def coordinates(
-        self, forces: np.ndarray, orders: np.ndarray
-    ) -> dict[tuple[int, int], np.ndarray]:
+    def coordinates(self, forces: np.ndarray, orders: np.ndarray) -> Waves:
         """Return the motion (k,) under loads and forces g (h, d), by all harmonics."""
-        loads: dict[tuple[int, int], np.ndarray] = {}
+        loads = self._given()
         for (k, n), g in zip(orders.tolist(), forces, strict=True):
             for m, C in self.unloaded.journals.items():
                 order = k, n + self.revolutions * m
                 loads[order] = loads.get(order, 0.0) + C.T @ g
-        for n, F in self.loads.items():
-            order = 0, self.revolutions * n
-            loads[order] = loads.get(order, 0.0) + self.unloaded.basis.T @ F
-        keys = [order for order in loads if order >= (0, 0)]
-        Z = self._stiffness(self.frequencies(np.array(keys)))
-        F = np.array([loads[order] for order in keys], dtype=complex)
-        x = np.linalg.solve(Z, F[..., None])[..., 0] @ self.unloaded.basis.T
-        found = dict(zip(keys, x, strict=True))
-        return found | {(-k, -n): each.conj() for (k, n), each in found.items()}
+        return {order: self.unloaded.basis @ x for order, x in self._motion(loads).items()}
+
+    def _given(self) -> Waves:
+        """Return the loads (r,) by their harmonics (0, n)."""
+        basis = self.unloaded.basis
+        return {(0, self.revolutions * n): basis.T @ F for n, F in self.loads.items()}
+
+    def _motion(self, loads: Waves) -> Waves:
+        """Return the motion (r,) under loads (r,), by harmonics of both signs."""
+        upper = [order for order in loads if order >= (0, 0)]
+        if not upper:
+            return {}
+        F = np.array([loads[order] for order in upper])[..., None]
+        x = self.unloaded.answer(np.array(upper) @ np.array(self.rates), F)[..., 0]
+        found = dict(zip(upper, x, strict=True))
+        return {(-k, -n): each.conj() for (k, n), each in found.items()} | found
+
+
+def real_rows(journals: Terms) -> np.ndarray:
+    """Return all parts of C as real rows: what laws feel of the motions."""
+    return np.vstack([part for C in journals.values() for part in (C.real, C.imag)])
 
 
 def of_both_signs(load: Mapping[int, np.ndarray]) -> dict[int, np.ndarray]:

@@ -8,15 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import exudyn
 import numpy as np
+from numpy.typing import ArrayLike
 
-from exudyn_rotor.bearings.given import Given
+from exudyn_rotor import checks
+from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.model.build import Target
-from exudyn_rotor.linear.model.scene.linear_scene import check_scene
+from exudyn_rotor.linear.model.scene.linear_scene import check_scene, known_objects
 from exudyn_rotor.linear.model.scene.scene_train import scene_train
 from exudyn_rotor.linear.response.loads import HarmonicForce
 from exudyn_rotor.multibody.full.full_body import reduced_body
@@ -40,16 +42,27 @@ class Listed(NamedTuple):
     stiffening: str
 
 
-def as_lists(target: Target, body: RotorBody | Sequence[RotorBody] | None, *given: Any) -> Listed:
-    """Return what is given by lists, in the order of :class:`Listed`; of a scene, what it has.
+def as_lists(
+    target: Target,
+    body: RotorBody | Sequence[RotorBody] | None,
+    supports: Sequence[Given] | Given,
+    foundation: Foundation | None,
+    gravity: ArrayLike,
+    loads: Sequence[HarmonicForce] | HarmonicForce,
+    stiffening: str,
+) -> Listed:
+    """Return what is given by lists, checked; of a scene, what it has.
 
     With constant speeds in place of the drives of a scene.
     """
+    supports = given_supports(supports)
+    loads = checks.instances(loads, "loads", HarmonicForce)
+    gravity = checks.vector(gravity, "gravity", "m/s²")
     if not isinstance(target, exudyn.MainSystem):
         if body is not None:
             raise TypeError("body: is only for an exudyn.MainSystem, not for the rotor itself")
-        return Listed(target, *given)
-    if any(np.any(each) if isinstance(each, np.ndarray) else each for each in given[:4]):
+        return Listed(target, supports, foundation, gravity, loads, stiffening)
+    if supports or loads or foundation or np.any(gravity):
         raise ValueError(
             "supports, foundation, gravity, loads: a scene has its own; leave these out"
         )
@@ -106,30 +119,15 @@ def _in_mesh(base: SceneFoundation, body: RotorBody) -> Foundation:
 
 def _check_objects(body: RotorBody, base: SceneFoundation | None) -> None:
     """Refuse all objects but known ones."""
-    mbs = body.mbs
-    own = (body.objects.values(), body.constraints.values())
-    laws = (one.objects for one in body.supports)
-    below = () if base is None else base.objects.values()
-    known = {int(number) for numbers in (*own, *laws, below) for number in numbers}
-    frame = None if base is None else mbs.GetObject(base.objects["marker_body"])["nodeNumbers"][0]
+    mbs, known = body.mbs, known_objects(body)
+    known |= set() if base is None else set(map(int, base.objects.values()))
     for number in set(range(mbs.systemData.NumberOfObjects())) - known:
         item = mbs.GetObject(number)
-        if item["objectType"] == "Ground" or (frame is not None and _holds(mbs, item, int(frame))):
-            continue
-        raise ValueError(
-            f"mbs: object {number} ({item['objectType']} {item['name']!r}) is no law of this "
-            f"package; {_INSTEAD}"
-        )
-
-
-def _holds(mbs: exudyn.MainSystem, item: dict, frame: int) -> bool:
-    """Return whether an object belongs to what holds the frame of a foundation."""
-    if item["objectType"] == "GenericODE2":
-        return [int(node) for node in item["nodeNumbers"]] == [frame]
-    if item["objectType"] != "ConnectorCoordinate":
-        return False
-    markers = (mbs.GetMarker(int(number)) for number in item["markerNumbers"])
-    return any(int(marker.get("nodeNumber", -1)) == frame for marker in markers)
+        if item["objectType"] != "Ground":
+            raise ValueError(
+                f"mbs: object {number} ({item['objectType']} {item['name']!r}) is no law of this "
+                f"package; {_INSTEAD}"
+            )
 
 
 def _loads(

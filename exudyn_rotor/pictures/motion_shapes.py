@@ -59,7 +59,7 @@ class MotionShapes(Result):
         Of the strongest wave seen from outside [rad/s].
     orders : ndarray of int, shape (h,)
         The harmonics m.
-    motion : ndarray of complex, shape (k, h, 3n)
+    motion : ndarray of complex, shape (k, h, n, 3)
         X_m along mesh axes; of modes the size is arbitrary, of responses it is in metres.
 
     Examples
@@ -69,7 +69,7 @@ class MotionShapes(Result):
     >>> import numpy as np
     >>> from exudyn_rotor import MotionShapes
     >>> axis, rate = ([0.0, 0.0, 1.0], [0.0, 0.0, 0.0]), [3.0]
-    >>> circle = [[[1.0, -1.0j, 0.0]]]
+    >>> circle = [[[[1.0, -1.0j, 0.0]]]]
     >>> shape = MotionShapes([[0.0, 0.0, 0.0]], np.zeros((0, 3), int), *axis, [3.0], ("whirl",),
     ...                      rate, [6.0], [0], circle)
     >>> print(shape.displacement(0, np.pi / 6.0).round(6) + 0.0)
@@ -85,15 +85,7 @@ class MotionShapes(Result):
     rates: np.ndarray = numbers("shapes")
     frequencies: np.ndarray = numbers("shapes")
     orders: np.ndarray = numbers("orders", dtype=int)
-    motion: np.ndarray = numbers("shapes", "orders", "coordinates", dtype=complex)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.motion.shape[2] != self.positions.size:
-            raise ValueError(
-                f"motion: needs three values for each of the {len(self.positions)} nodes, got "
-                f"{self.motion.shape[2]}"
-            )
+    motion: np.ndarray = numbers("shapes", "orders", "nodes", 3, dtype=complex)
 
     @property
     def axis(self) -> SpinAxis:
@@ -125,8 +117,7 @@ class MotionShapes(Result):
         index = checks.count(index, "index", most=len(self.labels) - 1)
         time = checks.number(time, "time", "s")
         turns = self.rates[index] + self.orders * self.speeds[index]
-        values = np.exp(1j * turns * time) @ self.motion[index]
-        return values.real.reshape(-1, 3)
+        return np.tensordot(np.exp(1j * turns * time), self.motion[index], 1).real
 
     def orbits(self, index: int, points: int = 49) -> list[tuple[np.ndarray, np.ndarray]]:
         """Return centre (3,) and orbit (points, 3) of stations along the axis.
@@ -167,10 +158,8 @@ class MotionShapes(Result):
         """
         index = checks.count(index, "index", most=len(self.labels) - 1)
         shown, scale = Units.of(units), self._scale(index)
-        reach = scale * np.abs(self.motion[index]).sum(axis=0).reshape(-1, 3)
-        room = np.array(
-            [(self.positions - reach).min(axis=0), (self.positions + reach).max(axis=0)]
-        )
+        reach = scale * np.abs(self.motion[index]).sum(axis=0)
+        room = np.concatenate([self.positions - reach, self.positions + reach])
         sizes = np.linalg.norm(reach, axis=1)
         places = self.positions + scale * self.displacement(index, 0.0)
         label = "displacement / largest"
@@ -275,7 +264,7 @@ class MotionShapes(Result):
         near = _SAME * max(abs(speed), seen, 1e-300)
         stations = []
         for center, mean in self._stations:
-            local = np.array([axes.T @ (mean @ row) for row in self.motion[index]])
+            local = np.array([axes.T @ (mean @ row.ravel()) for row in self.motion[index]])
             a = 0.5 * (local[:, 0] + 1j * local[:, 1])
             b = 0.5 * (local[:, 0] - 1j * local[:, 1]).conj()
             rates = np.concatenate([turns + speed, speed - turns])
@@ -290,19 +279,14 @@ class MotionShapes(Result):
         sign = np.sign(self.speeds[index]) or 1.0
         senses = []
         for _, forward, backward, _ in self._whirls(index):
-            sizes = sorted((abs(forward), abs(backward)))
-            if sizes[1] - sizes[0] <= _STRAIGHT * sizes[1]:
-                senses.append("straight")
-            else:
-                ahead = (abs(forward) > abs(backward)) == (sign > 0.0)
-                senses.append("forward" if ahead else "backward")
+            ahead = sign * (abs(forward) - abs(backward))
+            straight = abs(ahead) <= _STRAIGHT * max(abs(forward), abs(backward))
+            senses.append("straight" if straight else "forward" if ahead > 0.0 else "backward")
         return senses
 
     def _scale(self, index: int) -> float:
         """Return by how much displacements are drawn larger than they are."""
-        largest = np.linalg.norm(
-            np.abs(self.motion[index]).sum(axis=0).reshape(-1, 3), axis=1
-        ).max()
+        largest = np.linalg.norm(np.abs(self.motion[index]).sum(axis=0), axis=1).max()
         if largest == 0.0:
             raise ValueError(f"index: the shape {index}, {self.labels[index]!r}, has no motion")
         return _SHARE * np.ptp(self.positions, axis=0).max() / largest

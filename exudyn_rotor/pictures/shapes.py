@@ -11,7 +11,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, rounded
-from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_structural_damping
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import motions_over
 from exudyn_rotor.linear.response.loads import Unbalance, unbalance_load
@@ -67,7 +67,7 @@ def mode_shapes(
     count = checks.count(modes, "modes", least=1)
     tolerance = checks.tolerance(tolerance)
     model = _with_mesh(target, supports, stiffening, axes)
-    warn_of_structural_damping(model, "mode_shapes finds modes")
+    warn_of_omissions(model, what="mode_shapes finds modes")
     motions = motions_over(model, [speed], tolerance=tolerance)
     named = Content.of(model).named(motions)
     lost = np.isnan(motions.values)
@@ -75,11 +75,8 @@ def mode_shapes(
     named = named.columns(np.arange(min(count, named.inertial.shape[1]))[None])
     values, vectors = named.motions.values[0], named.motions.vectors[0]
     vectors = np.where(values.imag < 0.0, vectors[::-1].conj(), vectors)
-    seen = _of_nodes(
-        model, {int(m): x for m, x in zip(motions.orders, vectors, strict=True)}, speed
-    )
-    orders = np.array(sorted(seen))
-    motion = np.array([seen[m] for m in orders])
+    by_order = dict(zip(motions.orders.tolist(), vectors, strict=True))
+    orders, motion = _of_nodes(model, by_order, speed)
     return MotionShapes(
         **_surface(model),
         speeds=np.full(len(values), speed),
@@ -87,7 +84,7 @@ def mode_shapes(
         rates=np.abs(values.imag),
         frequencies=named.inertial[0],
         orders=orders,
-        motion=np.array([_unit(motion[:, :, i]) for i in range(len(values))]),
+        motion=_unit(motion),
     )
 
 
@@ -149,11 +146,9 @@ def response_shapes(
     none = np.zeros(len(values))
     stack = model.at_all(values)
     found = forced_motions(stack, loads, none, held=held, tolerance=tolerance)
-    seen = _of_nodes(model, {n: X.T for n, X in found.items()}, 1.0)
-    if any(np.any(np.isnan(x)) for x in seen.values()):
+    orders, motion = _of_nodes(model, {n: X.T for n, X in found.items()}, 1.0)
+    if np.any(np.isnan(motion)):
         raise UnconvergedError("response_shapes: there is no steady motion at one of the speeds")
-    orders = np.array(sorted(seen))
-    motion = np.stack([seen[n].T for n in orders.tolist()], axis=1)
     return MotionShapes(
         **_surface(model),
         speeds=values,
@@ -166,20 +161,21 @@ def response_shapes(
 
 
 def _largest(orders: np.ndarray, motion: np.ndarray) -> float:
-    """Return the largest displacement of a node in a revolution, of harmonics (h, 3n)."""
+    """Return the largest displacement of a node in a revolution, of harmonics (h, n, 3)."""
     turns = np.exp(1j * np.outer(np.linspace(0.0, 2.0 * np.pi, _ANGLES, endpoint=False), orders))
-    each = (np.linalg.norm((turn @ motion).real.reshape(-1, 3), axis=1).max() for turn in turns)
+    each = (np.linalg.norm(np.tensordot(turn, motion, 1).real, axis=1).max() for turn in turns)
     return float(max(each))
 
 
 def _unit(motion: np.ndarray) -> np.ndarray:
-    """Return harmonics (h, 3n) whose largest nodal one has the length one.
+    """Return harmonics (i, h, n, 3) whose largest nodal one has the length one.
 
     The largest entry is real, so that most of the motion is seen at the time zero.
     """
-    largest = np.linalg.norm(motion.reshape(len(motion), -1, 3), axis=2).max() or 1.0
-    entry = motion.ravel()[np.argmax(np.abs(motion))]
-    return motion * np.exp(-1j * np.angle(entry)) / largest
+    flat, lengths = motion.reshape(len(motion), -1), np.linalg.norm(motion, axis=3)
+    entry = flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)]
+    scale = np.exp(-1j * np.angle(entry)) / np.maximum(lengths.max(axis=(1, 2)), 1e-300)
+    return motion * scale[:, None, None, None]
 
 
 def _with_mesh(
@@ -196,10 +192,10 @@ def _with_mesh(
 
 def _of_nodes(
     model: LinearModel, motion: Mapping[int, np.ndarray], speed: float
-) -> dict[int, np.ndarray]:
-    """Return harmonics (3n, …) of the nodes in the frame of the rotor, mesh axes.
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return orders (h,) and harmonics (i, h, n, 3) of the nodes in the frame of the rotor.
 
-    From those (k, …) of the coordinates of a model.
+    Along mesh axes, from those (k, i) of the coordinates of a model.
     """
     body = model.assembly(speed).bodies[0]
     alone, found = body.alone, {}
@@ -211,7 +207,9 @@ def _of_nodes(
         for wave, U in parts.items():
             if wave == 0 or np.any(U):
                 found[m - wave] = found.get(m - wave, 0.0) + U @ x[: body.size]
-    return found
+    orders = sorted(found)
+    seen = np.array([found[n].T for n in orders]).swapaxes(0, 1)
+    return np.array(orders), seen.reshape(*seen.shape[:2], -1, 3)
 
 
 def _surface(model: LinearModel) -> dict[str, np.ndarray]:

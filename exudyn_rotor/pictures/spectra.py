@@ -212,11 +212,7 @@ def spectra(
         raise ValueError(
             f"motion: needs the shape ({len(time)},) or ({len(time)}, 2), got {values.shape}"
         )
-    given = checks.array(speed, "speed", "rad/s")
-    if given.shape not in ((), time.shape):
-        raise ValueError(f"speed: needs one number or {len(time)}, got the shape {given.shape}")
-    speeds = np.broadcast_to(given, time.shape)
-    step = _even_step(time)
+    speeds, step = checks.one_or_each(speed, "speed", "rad/s", len(time)), _even_step(time)
     length = checks.number(length, "length", "s", above=0.0)
     overlap = checks.number(overlap, "overlap", least=0.0, below=1.0)
     size = round(length / step)

@@ -3,15 +3,10 @@
 Where no elements are known, a truss stands for the solid. Nodes i and j that the stiffness matrix
 couples are joined by a bar of the stiffness ``‖K_ij‖`` along ``d = x_j − x_i``. The forces S of the
 bars under the balanced centrifugal load are in equilibrium with it at every node, as the stress of
-the solid is, and resist
-
-    vᵀ K_G v ≈ Σ_bars S/|d| |v_j − v_i|².
-
-By equilibrium this is exact for rotations, and for tensions that equilibrium alone decides: blades,
-rings, shafts. Elsewhere the stress of the truss is that of a solid with Poisson's ratio 1/4 and the
-same distribution of stiffness, roughly. Measured, against the geometric stiffness of the elements,
-for the eight lowest modes of shafts, discs, blades, plates and a bladed disc: within 2 % but for
-higher modes of discs and torsion of blades, within 40 % always.
+the solid is, and resist ``vᵀ K_G v ≈ Σ S/|d| |v_j − v_i|²``. That is exact for rotations, and for
+tensions that equilibrium alone decides: blades, rings, shafts. Measured, against the geometric
+stiffness of the elements, for the eight lowest modes of shafts, discs, blades, plates and a bladed
+disc: within 2 % but for higher modes of discs and torsion of blades, within 40 % always.
 """
 
 from __future__ import annotations
@@ -27,12 +22,8 @@ from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.rotor import FiniteElementRotor, Rotor, check_unstressed
 from exudyn_rotor.solvers.factor import TooLittleMemoryError
-from exudyn_rotor.solvers.inertia_relief import (
-    InertiaRelief,
-    free_motions_of,
-    inertia_relief,
-)
-from exudyn_rotor.theory.axis import coupled, rotations, translations
+from exudyn_rotor.solvers.inertia_relief import InertiaRelief, free_motions_of, inertia_relief
+from exudyn_rotor.theory.axis import coordinates, coupled, rotations, translations
 
 # share of the load by which an imported matrix may miss it, and a computed one, with the rounding
 # of the elastic forces
@@ -108,11 +99,10 @@ def _check_rotations(rotor: FiniteElementRotor, prestress: Prestress, load: np.n
     i, j = np.unravel_index(np.argmax(error), error.shape)
     if error[i, j] > _IMPORTED * abs(e @ expected @ e):
         raise ValueError(
-            f"prestress: the matrix couples rotations about mesh axes {'xyz'[i]} and {'xyz'[j]} "
-            f"with {resistance[i, j]:.6g} kg m², and the centrifugal load per (rad/s)² of this "
-            f"rotor with {expected[i, j]:.6g}; it must hold the geometric stiffness alone (no spin "
-            "softening, no elastic stiffness), for 1 rad/s, with this rotor's axis, density and "
-            "point masses"
+            f"prestress: the matrix couples rotations with {resistance[i, j]:.6g} kg m², and the "
+            f"centrifugal load per (rad/s)² of this rotor with {expected[i, j]:.6g}; it must be "
+            "geometric stiffness alone (no spin softening, nothing elastic), for 1 rad/s, with "
+            "this rotor's axis, density and point masses"
         )
 
 
@@ -134,11 +124,11 @@ def estimated_stiffness(rotor: FiniteElementRotor) -> sp.csr_array | None:
     if np.any(squares == 0.0):
         return None
     stiffness = np.linalg.norm(K.data[joined], axis=(1, 2)) / squares
-    signs, rows = np.tile([-1.0, 1.0], len(bars)), np.repeat(np.arange(len(bars)), 2)
+    numbers = np.arange(len(bars))
+    signs, rows = np.tile([-1.0, 1.0], len(bars)), np.repeat(numbers, 2)
     parted = sp.csr_array((signs, (rows, ends.ravel())), shape=(len(bars), count))
-    stretched = sp.hstack([parted * column[:, None] for column in bars.T], format="csr")
-    order = np.arange(3 * count).reshape(3, count).T.ravel()  # x0 y0 z0 x1 …
-    stretched = sp.csr_array(stretched[:, order])
+    entries = np.hstack([-bars, bars]).ravel(), (np.repeat(numbers, 6), coordinates(ends.ravel()))
+    stretched = sp.csr_array(entries, shape=(len(bars), 3 * count))
     held = np.linalg.norm((rotor.stiffness @ translations(count)).reshape(-1, 9), axis=1)
     largest = abs(rotor.stiffness).sum(axis=1).reshape(-1, 3).max(axis=1)
     springs = np.repeat(np.where(held > _GROUNDED * largest, held, 0.0), 3)

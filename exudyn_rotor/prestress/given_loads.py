@@ -1,15 +1,10 @@
 """Static loads that are given, and the supports that take them and the centrifugal load up.
 
-The supports hold mean motions ``B u`` of interfaces with springs k. With the elastic inverse E of
-the rotor, inertia relief where it is free, and its rigid motions R, their forces ρ follow from
-
-    (B E Bᵀ + k⁻¹) ρ + B R a = −B E f,    RᵀBᵀ ρ = −Rᵀ f,
-
-the second line on the rigid motions that they hold.
-
-The forces are dead loads: they keep their direction where the rotor tilts. A torque, spread as
-tangential forces around an interface, is so a semi-tangential one, half-way between a torque that
-keeps its axis and one that turns with the shaft; only its stiffness is symmetric.
+The supports hold mean motions of interfaces with springs
+(:class:`exudyn_rotor.solvers.constrained.ConstrainedInverse`). The forces are dead loads: they keep
+their direction where the rotor tilts. A torque, spread as tangential forces around an interface, is
+so a semi-tangential one, half-way between a torque that keeps its axis and one that turns with the
+shaft; only its stiffness is symmetric.
 """
 
 from __future__ import annotations
@@ -23,6 +18,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.solid.rotor import FiniteElementRotor
+from exudyn_rotor.solvers.constrained import ConstrainedInverse
 from exudyn_rotor.solvers.inertia_relief import InertiaRelief
 from exudyn_rotor.theory.rotating_axes import axes_of
 
@@ -104,30 +100,19 @@ class HeldRotor:
     ) -> None:
         self._rotor, self._relief = rotor, relief
         rows, springs = _springs(rotor, supports)
-        self._rows = rows
         self._stiffness = rotor.stiffness + rows.T @ sp.diags_array(springs) @ rows
-        rigid = rows @ relief.rigid
-        _, sizes, turned = np.linalg.svd(rigid)
+        _, sizes, turned = np.linalg.svd(rows @ relief.rigid)
         count = np.count_nonzero(sizes > _HELD * sizes.max(initial=0.0))
-        self._rigid, self.free = relief.rigid @ turned[:count].T, relief.rigid @ turned[count:].T
-        self._flexible = relief.solve(rows.T.toarray())
-        motion = rows @ self._rigid
-        A = np.block(
-            [
-                [rows @ self._flexible + np.diag(1.0 / springs), motion],
-                [motion.T, np.zeros((count, count))],
-            ]
-        )
-        self._scale = 1.0 / np.sqrt(np.r_[np.diag(A)[: springs.size], np.ones(count)])
-        self._matrix = self._scale[:, None] * A * self._scale
+        held, self.free = np.split(relief.rigid @ turned.T, [count], axis=1)
+        self._inverse: InertiaRelief | ConstrainedInverse = relief
+        if springs.size:
+            self._inverse = ConstrainedInverse(relief, rows, 1.0 / springs, held)
 
-    def solve(self, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the displacement of a load and the forces of the supports, all (3n,)."""
-        elastic = self._relief.solve(load)
-        gap = -np.r_[self._rows @ elastic, self._rigid.T @ load]
-        found = self._scale * np.linalg.solve(self._matrix, self._scale * gap)
-        forces, rigid = np.split(found, [self._rows.shape[0]])
-        return elastic + self._flexible @ forces + self._rigid @ rigid, self._rows.T @ forces
+    def reactions(self, load: np.ndarray) -> np.ndarray:
+        """Return the forces of the supports under a load, both (3n,)."""
+        if self._inverse is self._relief:
+            return np.zeros_like(load)
+        return self._inverse.reactions(load)
 
     def check_balanced(self, load: np.ndarray, forces: np.ndarray) -> None:
         """Refuse loads that supports, by their `forces` (3n,), do not take up."""
@@ -167,7 +152,7 @@ class HeldRotor:
 
         start = np.random.default_rng(_SEED).standard_normal(geometric.shape[0])
         basis = loads = np.zeros((start.size, 0))
-        new = self.solve(start)[0]
+        new = self._inverse.solve(start)
         for _ in range(_STEPS):
             whole = size(new)
             for _ in range(2):  # one pass loses orthogonality
@@ -176,7 +161,7 @@ class HeldRotor:
                 break
             new = new / size(new)
             basis, loads = np.column_stack([basis, new]), np.column_stack([loads, load(new)])
-            new = self.solve(loads[:, -1])[0]
+            new = self._inverse.solve(loads[:, -1])
         return np.linalg.eigvalsh(basis.T @ loads)
 
 

@@ -4,12 +4,8 @@ The centrifugal load per ω², ``f_c = M x_⊥``, deforms the rotor statically b
 σ⁰; vibrations about this state have the stiffness ``K + ω² K_G``,
 ``vᵀ K_G u = ∫ σ⁰ : (∇uᵀ∇v) dV``. Inertia relief balances the load where nothing holds the rotor.
 
-The tangent of a St. Venant–Kirchhoff solid with ``W = ½ E : C : E``, ``E = ε + ½ ∇uᵀ∇u``, at the
-displacement ω²u⁰ with the stress ω²σ⁰ is ``K + ω² (K_G + K_u) + ω⁴ K_uu``,
-
-    vᵀ K_u u = ∫ ε(v) : C : E₁(u) + E₁(v) : C : ε(u) dV,    E₁(v) = sym(∇u⁰ᵀ ∇v),
-    vᵀ K_uu u = ∫ E₁(v) : C : E₁(u) dV.
-
+The tangent of a St. Venant–Kirchhoff solid at the displacement ω²u⁰ with the stress ω²σ⁰ is
+``K + ω² (K_G + K_u) + ω⁴ K_uu`` (:mod:`exudyn_rotor.solid.elements`).
 Where u⁰ turns a part by the angle θ without straining it, ``E₁`` is of the order of θ; what K_u
 changes is then the strain of the turned part, and K_uu takes most of that back: one without the
 other errs more than K_G alone. With both, frequencies err by the second-order part of the static
@@ -19,8 +15,7 @@ Nodes that a rigid disc holds feel its forces R, which turn with the disc. K_G t
 dead loads; by equilibrium ``K_G (a×x) = a×(f_c + R)``, a false stiffness of rotations. With the
 mean translation t and rotation ``φ = Φu`` of these nodes, ``u = t + φ×y + ψ``, y from the centre of
 mass, R works on the second-order displacements ``½ φ×(φ×y) + φ×ψ``, which takes that out again:
-``K_disc = Φᵀ (sym H − tr(H) I) Φ − Φᵀ N − Nᵀ Φ``, ``H = Σ R yᵀ``, ``N u = Σ R×ψ``. Rotations of the
-rotor then feel f_c alone, as at the level 'tilt'; a net force of the disc does no work on them.
+``K_disc = Φᵀ (sym H − tr(H) I) Φ − Φᵀ N − Nᵀ Φ``, ``H = Σ R yᵀ``, ``N u = Σ R×ψ``.
 """
 
 from __future__ import annotations
@@ -35,7 +30,7 @@ from exudyn_rotor.prestress.given_loads import HeldRotor, Loads, Spring, nodal_l
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.rotor import FiniteElementRotor, Interface, check_unstressed
 from exudyn_rotor.solvers.inertia_relief import free_motions_of, inertia_relief
-from exudyn_rotor.theory.axis import rotations, skew
+from exudyn_rotor.theory.axis import coordinates, rotations, skew
 
 # nodes that stand for the rotation of a disc
 _DISC_NODES = 100
@@ -103,18 +98,15 @@ def prestress(
     matrix = stress_stiffness(self, displacement)
     initial = reactions = by_loads = factor = None
     if initial_displacement:
-        initial = (
-            self.elements.initial_displacement_stiffness(displacement),
-            self.elements.squared_displacement_stiffness(displacement),
-        )
+        initial = self.elements.displacement_stiffness(displacement)
     if loads is not None or is_held:
         held = HeldRotor(self, supports or (), relief)
     if is_held:
-        reactions = held.solve(load)[1]
+        reactions = held.reactions(load)
         matrix = stress_stiffness(self, relief.solve(load + reactions))
     if loads is not None:
         given = nodal_loads(self, loads)
-        taken_up = held.solve(given)[1]
+        taken_up = held.reactions(given)
         held.check_balanced(given, taken_up)
         by_loads = stress_stiffness(self, relief.solve(given + taken_up))
         factor = _buckling_factor(held, by_loads)
@@ -180,9 +172,8 @@ def _disc_stiffness(
     motion = mean.mean_motion(rotor.node_count)
     shift, turn = motion[:3], motion[3:]
     # N with ψ = u − t − φ×y put in; its part with φ×y is in `direct`
-    columns = (3 * nodes[:, None] + np.arange(3)).ravel()
     couple = sp.csr_array(np.hstack([skew(force) for force in forces]))
-    couple = couple @ sp.eye_array(rotor.nodes.size, format="csr")[columns]
+    couple = couple @ sp.eye_array(rotor.nodes.size, format="csr")[coordinates(nodes)]
     couple = couple - sp.csr_array(skew(forces.sum(axis=0))) @ shift
     mixed = turn.T @ couple
     return sp.csr_array(turn.T @ sp.csr_array(direct) @ turn - mixed - mixed.T)

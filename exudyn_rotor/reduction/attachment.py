@@ -1,22 +1,17 @@
 """Static responses beside the modes: to loads at interfaces, and to the inertia of turning modes.
 
-With attachment modes a basis is statically complete for loads at the interfaces. They tell what
-other modes leave out: Rubin, "Improved component-mode representation", AIAA Journal 13 (1975).
+With them a basis is statically complete for loads at the interfaces. They tell what other modes
+leave out: Rubin, "Improved component-mode representation", AIAA Journal 13 (1975).
 
-A motion ``c_f = Q q e^{λt}`` in the columns Q of a basis leaves, in the full equations (105), the
-forces
+A motion ``c_f = Q q e^{λt}`` in the mass-orthonormal columns Q of a basis, ``QᵀKQ = Λ``, leaves in
+the full equations (105) the forces
 
     r = (λ²M + λ(D + 2ΩMẽ) + K + Ω²(K_G + Mẽẽ)) Q q,    ẽẽ = eeᵀ − I.
 
-For a mass-orthonormal basis that diagonalises K (``QᵀKQ = Λ``) the part of r that does no work on
-Q is a combination of the columns of
-
-    KQ − MQΛ,   MẽQ,   M eeᵀQ,   K_G Q,   DQ
-
-(with K_u beside K_G where that is carried), each less ``MQ`` times its work on Q. The static
-responses ``K⁺L`` to these loads L are what the basis lacks first: the lowest left-out modes,
-weighted by how much the motions in the basis excite them. Beside Q they make a finer rotor, and by
-it the error of the basis is estimated (:mod:`exudyn_rotor.linear.modal.basis_error`).
+Their part that does no work on Q is a combination of ``KQ − MQΛ``, ``MẽQ``, ``M eeᵀQ``, ``K_G Q``
+and ``DQ``, each less ``MQ`` times its work on Q. The static responses ``K⁺L`` to these loads L are
+what the basis lacks first: its error is estimated with them beside Q
+(:mod:`exudyn_rotor.linear.modal.basis_error`).
 """
 
 from __future__ import annotations
@@ -28,12 +23,8 @@ import numpy as np
 from exudyn_rotor.reduction.component import rigid_columns, unit_columns
 from exudyn_rotor.solid.model import clamped_coordinates
 from exudyn_rotor.solid.rotor import FiniteElementRotor, Interface
-from exudyn_rotor.solvers.inertia_relief import (
-    coordinates,
-    held_inverse,
-    inertia_relief,
-)
-from exudyn_rotor.theory.axis import rotations, translations, turned
+from exudyn_rotor.solvers.inertia_relief import held_inverse, inertia_relief
+from exudyn_rotor.theory.axis import coordinates, rigid_motions, turned
 
 # share of its motion by which an interface may deform and still be rigid on purpose (RBE2)
 _RIGID = 1e-6
@@ -51,15 +42,10 @@ _SMALL = 1e-3
 def attachment_modes(rotor: FiniteElementRotor, others: np.ndarray) -> np.ndarray:
     """Return static responses to unit forces and moments at the interfaces, with inertia relief.
 
-    Parameters
-    ----------
-    rotor : SolidRotor
-    others : ndarray, shape (3n, k)
-        Modes that these are to go with. Interfaces that they keep rigid on purpose, or that are
-        clamped, get no loads of their own. Where there are such, or the rotor's own stiffness holds
-        it, responses to uniform linear and angular accelerations are among them, with these
-        interfaces held: with the rigid motions of interfaces that ``craig_bampton_modes`` has, that
-        is the same as inertia relief. ValueError if the rotor has loose parts.
+    Interfaces that the modes `others` (3n, k) keep rigid on purpose, or that are clamped, get no
+    loads of their own. Where there are such, or the rotor's own stiffness holds it, responses to
+    uniform linear and angular accelerations are among them, with these interfaces held. ValueError
+    if the rotor has loose parts.
     """
     rigid = rigid_interfaces(rotor, others)
     loads = [
@@ -87,10 +73,8 @@ def static_responses(
         return inertia_relief(rotor).solve(loads, _TOLERANCE)
     nodes = np.concatenate([one.nodes for one in held])
     moving = np.setdiff1d(np.arange(rotor.node_count), nodes)
-    columns = np.zeros_like(loads)
-    columns[coordinates(moving)] = held_inverse(rotor, moving).solve(
-        loads[coordinates(moving)], _TOLERANCE
-    )
+    columns, inner = np.zeros_like(loads), coordinates(moving)
+    columns[inner] = held_inverse(rotor, moving).solve(loads[inner], _TOLERANCE)
     return columns
 
 
@@ -107,9 +91,8 @@ def rigid_interfaces(rotor: FiniteElementRotor, modes: np.ndarray) -> list[Inter
 def _stays_rigid(interface: Interface, modes: np.ndarray) -> bool:
     if modes.shape[1] == 0 or len(interface.nodes) < 3:
         return False
-    motion = modes.reshape(-1, 3, modes.shape[1])[interface.nodes].reshape(-1, modes.shape[1])
-    turns = rotations(interface.positions, interface.center)
-    rigid = np.linalg.qr(np.hstack([translations(len(interface.nodes)), turns]))[0]
+    motion = modes[coordinates(interface.nodes)]
+    rigid = np.linalg.qr(rigid_motions(interface.positions, interface.center))[0]
     strain = np.linalg.norm(motion - rigid @ (rigid.T @ motion))
     return bool(strain <= _RIGID * np.linalg.norm(motion))
 

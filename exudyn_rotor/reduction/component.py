@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,19 +13,13 @@ from exudyn.FEM import FEMinterface
 from exudyn_rotor import checks
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.checks import Checked, numbers, words
-from exudyn_rotor.reduction.reduced_rotor import ModeKind, rigid_names
+from exudyn_rotor.reduction.reduced_rotor import RIGID_KINDS, ModeKind, rigid_names
 from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers import modes as eigen
-from exudyn_rotor.solvers.inertia_relief import (
-    free_motions_of,
-    inertia_relief,
-    relative_rounding,
-)
+from exudyn_rotor.solvers.inertia_relief import free_motions_of, inertia_relief
 from exudyn_rotor.theory.axis import SpinAxis, rotations, translations
 
-# of the median: beside stiffer springs dense eigenvalues of the rest lose digits
-_GRADED = 1e4
 # share of a column that is new, and length of a column, of the largest, that is rounding
 NEW, _NOTHING = 1e-7, 1e-12
 _APART = 2e-2  # relative distance of the frequencies of a pair, at most
@@ -123,45 +116,28 @@ def free_modes(rotor: FiniteElementRotor, count: int) -> ModeBasis:
     ('eigenmode 1',) [2000000.]
     """
     check_rotor(rotor)
-    stiffness, mass = rotor.stiffness, rotor.mass
-    rigid = free_motions_of(rotor)
-    size, rigid_count = rigid.shape
-    check_count(count, size - rigid_count, smallest=1)
-    graded = stiffness.diagonal().max() > _GRADED * np.median(stiffness.diagonal())
-
-    def solve(number: int) -> eigen.Modes:
-        if eigen.is_small(size, number) and not (graded and 4 * number <= size):
-            dense = stiffness.toarray(), mass.toarray()
-            return eigen.dense_modes(*dense, number, skip=rigid_count)
-        inverse = inertia_relief(rotor)
-        return eigen.lowest_modes(stiffness, mass, inverse, number)
-
-    values, modes = lowest_with_pairs(solve, count, size - rigid_count)
-    precision = relative_rounding(stiffness, rigid)
-    eigen.check_modes(stiffness, mass, values, modes, precision=precision)
-    modes = with_fixed_sign(modes)
+    checks.count(count, "count", least=1)
+    inverse = inertia_relief(rotor)
+    values, modes = lowest_with_pairs(rotor.stiffness, rotor.mass, inverse, count)
     return ModeBasis(modes, numbered("eigenmode", count), rotor.nodes, frequencies=np.sqrt(values))
 
 
-def with_fixed_sign(modes: np.ndarray) -> np.ndarray:
-    """Return the modes with the largest component of each positive."""
-    largest = np.argmax(np.abs(modes), axis=0)
-    return modes * np.sign(modes[largest, np.arange(modes.shape[1])])
-
-
 def lowest_with_pairs(
-    solve: Callable[[int], eigen.Modes], count: int, available: int
+    stiffness: sp.csr_array, mass: sp.csr_array, inverse: eigen.Inverse, count: int
 ) -> eigen.Modes:
     """Return the `count` lowest modes; with a warning where the next one is the last one's pair.
 
     A round rotor bends in all planes alike; an uneven mesh splits the two frequencies by little.
-    With one mode of a pair it is an asymmetric shaft. `solve` returns squared frequencies and
-    modes by their number, of which `available` are there.
+    With one mode of a pair it is an asymmetric shaft.
     """
-    values, modes = solve(min(count + 1, available) if count else 0)
+    available = mass.shape[0] - inverse.left_out
+    checks.count(count, "count", most=available)
+    if count == 0:
+        return np.zeros(0), np.zeros((mass.shape[0], 0))
+    values, modes = eigen.lowest_modes(stiffness, mass, inverse, min(count + 1, available))
     frequencies = np.sqrt(np.maximum(values, 0.0))
     near = np.diff(frequencies) <= _APART * frequencies[1:]
-    if 0 < count < len(values) and near[count - 1] and not (count > 1 and near[count - 2]):
+    if count < len(values) and near[count - 1] and not (count > 1 and near[count - 2]):
         first, second = frequencies[count - 1 : count + 1] / (2.0 * np.pi)
         warnings.warn(
             f"count: mode {count} ({first:.4g} Hz) is one of a pair in two planes, and mode "
@@ -170,7 +146,10 @@ def lowest_with_pairs(
             UserWarning,
             stacklevel=user_level(),
         )
-    return values[:count], modes[:, :count]
+    values, modes = values[:count], modes[:, :count]
+    eigen.check_modes(stiffness, mass, inverse, values, modes)
+    largest = np.argmax(np.abs(modes), axis=0)
+    return values, modes * np.sign(modes[largest, np.arange(count)])
 
 
 def component_modes(
@@ -207,13 +186,8 @@ def fem_interface_modes(rotor: FiniteElementRotor, fem: FEMinterface) -> ModeBas
     recovered = fem.postProcessingModes
     if str(recovered.get("outputVariableType", "")).endswith("StressLocal"):
         nodes, count = len(rotor.nodes), matrix.shape[1]
-        stress = np.asarray(recovered["matrix"], dtype=float)  # six columns for every mode
-        if stress.shape != (nodes, 6 * count):
-            raise ValueError(
-                f"the FEMinterface's stress modes have the shape {stress.shape}, but {nodes} nodes "
-                f"and {count} modes need {(nodes, 6 * count)}; compute them after the modes, with "
-                "fem.ComputePostProcessingModesNGsolve(…)"
-            )
+        # six columns for every mode
+        stress = checks.array(recovered["matrix"], "fem: its stress", shape=(nodes, 6 * count))
         stress = stress.reshape(nodes, count, 6).transpose(0, 2, 1)
     labels = numbered("FEMinterface mode", matrix.shape[1])
     return ModeBasis(matrix, labels, rotor.nodes, stress=stress)
@@ -241,15 +215,6 @@ def unit_columns(rotor: FiniteElementRotor, columns: np.ndarray) -> np.ndarray:
     return columns[:, sizes > 0.0] / sizes[sizes > 0.0]
 
 
-def check_count(count: int, available: int, *, smallest: int) -> None:
-    """Refuse a number of eigenmodes that the model cannot have."""
-    if not smallest <= checks.count(count, "count", least=smallest) <= available:
-        raise ValueError(
-            f"count: {count} eigenmodes asked for; this model has between {smallest} and "
-            f"{available}"
-        )
-
-
 def check_rotor(rotor: FiniteElementRotor) -> None:
     """Refuse anything that is not a solid rotor."""
     checks.instance(rotor, "rotor", FiniteElementRotor, "SolidRotor.from_ngsolve(…) makes one")
@@ -257,20 +222,11 @@ def check_rotor(rotor: FiniteElementRotor) -> None:
 
 @dataclass(frozen=True, eq=False)
 class OrthonormalBasis:
-    """Mass-orthonormal basis of a rotor.
+    """Mass-orthonormal basis of a rotor: the rigid motions first, then flexible columns.
 
-    Attributes
-    ----------
-    matrix, momenta : ndarray, shape (3n, k)
-        Displacement columns Q, mesh axes, and ``MQ``.
-    stiffness : ndarray, shape (k,)
-        Diagonal of ``QᵀKQ``, which has no other entries [1/s²]; zero for the rigid motions.
-    rigid_kinds : tuple of ModeKind
-        What the leading rigid columns are.
-    from_modes : ndarray, shape (r, k)
-        Share of every component mode in every column, zero for the rigid motions.
-    dropped : tuple of str
-        Component modes and rigid motions that added nothing to the basis.
+    Columns Q (3n, k), mesh axes, ``MQ``, the diagonal (k,) of ``QᵀKQ``, which has no other entries,
+    the share of every component mode in every column (r, k), zero for the rigid motions, and the
+    names of component modes and rigid motions that added nothing.
     """
 
     matrix: np.ndarray
@@ -281,25 +237,19 @@ class OrthonormalBasis:
     dropped: tuple[str, ...]
 
     @classmethod
-    def of(
-        cls,
-        rigid: tuple[np.ndarray, tuple[ModeKind, ...]],
-        modes: ModeBasis,
-        mass: sp.csr_array,
-        stiffness: sp.csr_array,
-    ) -> OrthonormalBasis:
-        """Return the basis of rigid motions (3n, r), with their kinds, and component modes.
+    def of(cls, rotor: FiniteElementRotor, modes: ModeBasis) -> OrthonormalBasis:
+        """Return the basis of a rotor's free rigid motions and component modes.
 
         A column is dropped when what is left of it, once the columns before it are taken out, is
         smaller than 1e-7 of its own norm. The flexible columns are turned so that M
         and K become diagonal on them, ascending in frequency.
         """
-        motions, kinds = rigid
+        motions, kinds = _rigid_motions(rotor)
         names = rigid_names(kinds) + modes.labels
-        matrix, momenta, used = gram_schmidt(np.hstack([motions, modes.matrix]), mass)
+        matrix, momenta, used = gram_schmidt(np.hstack([motions, modes.matrix]), rotor.mass)
         kept = tuple(kinds[i] for i in used if i < len(kinds))
         held, flexible = np.split(matrix, [len(kept)], axis=1)
-        values, turn = scipy.linalg.eigh(flexible.T @ (stiffness @ flexible))
+        values, turn = scipy.linalg.eigh(flexible.T @ (rotor.stiffness @ flexible))
         flexible, flexible_momenta = flexible @ turn, momenta[:, len(kept) :] @ turn
         # the flexible columns are G⁺ times what the modes have beside the rigid motions
         shares = np.linalg.pinv(flexible_momenta.T @ modes.matrix)
@@ -311,6 +261,14 @@ class OrthonormalBasis:
             from_modes=np.hstack([np.zeros((len(shares), len(kept))), shares]),
             dropped=tuple(name for i, name in enumerate(names) if i not in used),
         )
+
+
+def _rigid_motions(rotor: FiniteElementRotor) -> tuple[np.ndarray, tuple[ModeKind, ...]]:
+    """Return the rigid motions that the stiffness matrix leaves free, and what they are."""
+    if not rotor.grounded:
+        return rigid_columns(rotor.nodes, rotor.axis, rotor.center_of_mass), RIGID_KINDS
+    free = free_motions_of(rotor)
+    return free, (ModeKind.FREE,) * free.shape[1]
 
 
 def rigid_columns(nodes: np.ndarray, axis: SpinAxis, center: np.ndarray) -> np.ndarray:

@@ -6,39 +6,26 @@ Source: Craig, Bampton, "Coupling of substructures for dynamic analyses", AIAA J
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import partial
 
 import numpy as np
-import scipy.linalg as la
 import scipy.sparse as sp
 
 from exudyn_rotor import checks
 from exudyn_rotor.reduction.attachment import is_clamped
 from exudyn_rotor.reduction.component import (
     ModeBasis,
-    check_count,
     check_rotor,
     lowest_with_pairs,
     numbered,
-    with_fixed_sign,
 )
+from exudyn_rotor.solid.model import rigid_basis
 from exudyn_rotor.solid.rotor import FiniteElementRotor, Interface
-from exudyn_rotor.solvers import modes as eigen
 from exudyn_rotor.solvers.constrained import ConstrainedInverse
-from exudyn_rotor.solvers.inertia_relief import (
-    InertiaRelief,
-    coordinates,
-    held_inverse,
-    inertia_relief,
-    relative_rounding,
-)
-from exudyn_rotor.theory.axis import rotations, translations
+from exudyn_rotor.solvers.inertia_relief import held_inverse, inertia_relief
+from exudyn_rotor.theory.axis import coordinates, rigid_motions
 
 # static modes, eigenvalues and eigenmodes
 CoupledModes = tuple[np.ndarray, np.ndarray, np.ndarray]
-_MOTIONS = ("translation", "rotation")
-# nodes are on one line if they spread across it by less than this share of its length
-_LINE_TOLERANCE = 1e-6
 
 
 def craig_bampton_modes(
@@ -100,7 +87,7 @@ def craig_bampton_modes(
     static, values, eigenmodes = _COUPLINGS[coupling](rotor, count, chosen)
     labels = sum((_labels(interface) for interface in chosen), ()) + numbered("eigenmode", count)
     return ModeBasis(
-        np.hstack([static, with_fixed_sign(eigenmodes)]),
+        np.hstack([static, eigenmodes]),
         labels,
         rotor.nodes,
         frequencies=np.r_[np.full(static.shape[1], np.nan), np.sqrt(values)],
@@ -119,19 +106,18 @@ def _choose(rotor: FiniteElementRotor, names: Iterable[str] | None) -> list[Inte
 
 def _motion_count(interface: Interface) -> int:
     """Return 6, or 3 for a single node, which has no rotation."""
-    spread = np.linalg.svd(interface.positions - interface.center, compute_uv=False)
-    if spread[0] == 0.0 or len(interface.nodes) == 1:
-        return 3
-    if len(spread) < 2 or spread[1] <= _LINE_TOLERANCE * spread[0]:
+    count = rigid_basis(interface.positions).shape[1]
+    if count == 5:
         raise ValueError(
             f"interface {interface.name!r} has its nodes on one line, so its rotation about the "
             "line is undefined; add a node off the line or use a single node"
         )
-    return 6
+    return count
 
 
 def _labels(interface: Interface) -> tuple[str, ...]:
-    names = [f"{interface.name} {motion} {axis}" for motion in _MOTIONS for axis in "xyz"]
+    motions = ("translation", "rotation")
+    names = [f"{interface.name} {motion} {axis}" for motion in motions for axis in "xyz"]
     return tuple(names[: _motion_count(interface)])
 
 
@@ -143,7 +129,6 @@ def _rigid_coupling(rotor: FiniteElementRotor, count: int, chosen: list[Interfac
     nodes = np.setdiff1d(np.arange(len(rotor.nodes)), held)
     inner = coordinates(nodes)
     stiffness, mass = (matrix[inner][:, inner] for matrix in (rotor.stiffness, rotor.mass))
-    check_count(count, len(inner), smallest=0)
     try:
         inverse = held_inverse(rotor, nodes)
     except ValueError as error:
@@ -151,9 +136,7 @@ def _rigid_coupling(rotor: FiniteElementRotor, count: int, chosen: list[Interfac
             f"the interfaces do not hold the rotor, or it has loose parts ({error})"
         ) from error
     static[inner] = -inverse.solve((rotor.stiffness @ static)[inner])
-    solve = partial(_eigenmodes, stiffness, mass, inverse)
-    values, inner_modes = lowest_with_pairs(solve, count, len(inner))
-    eigen.check_modes(stiffness, mass, values, inner_modes)
+    values, inner_modes = lowest_with_pairs(stiffness, mass, inverse, count)
     eigenmodes = np.zeros((rotor.mass.shape[0], count))
     eigenmodes[inner] = inner_modes
     return static, values, eigenmodes
@@ -161,49 +144,17 @@ def _rigid_coupling(rotor: FiniteElementRotor, count: int, chosen: list[Interfac
 
 def _mean_coupling(rotor: FiniteElementRotor, count: int, chosen: list[Interface]) -> CoupledModes:
     """Return static modes, eigenvalues and eigenmodes with prescribed mean motions (RBE3)."""
-    stiffness, mass = rotor.stiffness, rotor.mass
     rows = [
         interface.mean_motion(len(rotor.nodes))[: _motion_count(interface)] for interface in chosen
     ]
     constraints = sp.csr_array(sp.vstack(rows))
-    available = mass.shape[0] - constraints.shape[0]
-    check_count(count, available, smallest=0)
-    relief = inertia_relief(rotor)
-    inverse = ConstrainedInverse(relief, constraints)
+    inverse = ConstrainedInverse(inertia_relief(rotor), constraints)
     static = inverse.prescribe(np.eye(constraints.shape[0]))
-    solve = partial(_eigenmodes, stiffness, mass, inverse, constraints=constraints)
-    values, modes = lowest_with_pairs(solve, count, available)
-    precision = relative_rounding(stiffness, relief.rigid)
-    eigen.check_modes(stiffness, mass, values, modes, precision=precision, constraints=constraints)
+    values, modes = lowest_with_pairs(rotor.stiffness, rotor.mass, inverse, count)
     return static, values, modes
 
 
 _COUPLINGS = {"RBE2": _rigid_coupling, "RBE3": _mean_coupling}
-
-
-def _eigenmodes(
-    stiffness: sp.csr_array,
-    mass: sp.csr_array,
-    inverse: InertiaRelief | ConstrainedInverse,
-    count: int,
-    constraints: sp.csr_array | None = None,
-) -> eigen.Modes:
-    """Return the lowest modes of a held model, under ``C u = 0`` where constraints are given."""
-    size = mass.shape[0]
-    if count == 0:
-        return np.zeros(0), np.zeros((size, 0))
-    if not eigen.is_small(size, count):
-        balanced = None
-        if constraints is not None:
-            balanced = partial(eigen.without_reactions, constraints=constraints)
-        return eigen.lowest_modes(stiffness, mass, inverse, count, balanced)
-    if constraints is None:
-        return eigen.dense_modes(stiffness.toarray(), mass.toarray(), count)
-    allowed = la.null_space(constraints.toarray())
-    values, modes = eigen.dense_modes(
-        allowed.T @ (stiffness @ allowed), allowed.T @ (mass @ allowed), count
-    )
-    return values, allowed @ modes
 
 
 def _rigid_interfaces(chosen: list[Interface], size: int) -> np.ndarray:
@@ -211,8 +162,7 @@ def _rigid_interfaces(chosen: list[Interface], size: int) -> np.ndarray:
     blocks = []
     for interface in chosen:
         block = np.zeros((size, _motion_count(interface)))
-        turns = rotations(interface.positions, interface.reference)
-        motions = np.hstack([translations(len(interface.nodes)), turns])
+        motions = rigid_motions(interface.positions, interface.reference)
         block[coordinates(interface.nodes)] = motions[:, : block.shape[1]]
         blocks.append(block)
     return np.hstack(blocks)

@@ -1,14 +1,11 @@
 """Modes of a ``FEMinterface`` seen from the mean motion of the rotor (Tisserand frame).
 
-Exudyn's floating frame moves with whatever its modes do not move. Craig–Bampton modes, whose first
-boundary stays at rest, hold the frame there; all that tilts the rotor against that boundary is
-then a deformation ζ, linear in ζ, and the second-order displacement of the tilt is missing. The
-work of the centrifugal field on it, ``½ Ω² ζᵀK2ζ``, is missing as well, so that these deformations
-soften with Ω² (:mod:`exudyn_rotor.theory.stiffening`). Without their share in the rigid motions R,
-
-    Ψ − R (RᵀMR)⁻¹ RᵀMΨ,
-
-the same modes leave tilts to the frame, whose equations hold them to every order.
+Exudyn's floating frame moves with whatever its modes do not move. Craig–Bampton modes hold it at
+their first boundary; what tilts the rotor against that boundary is then a deformation, linear in
+its coordinate. Its second-order displacement is missing, and with it the work of the centrifugal
+field (:mod:`exudyn_rotor.theory.stiffening`): such deformations soften with Ω². Without their share
+in the rigid motions R, the same modes leave tilts to the frame, whose equations hold them to every
+order.
 """
 
 from __future__ import annotations
@@ -18,10 +15,10 @@ import scipy.linalg
 from exudyn.FEM import FEMinterface
 
 from exudyn_rotor import checks
-from exudyn_rotor.reduction.component import gram_schmidt, modes_of, rigid_columns
+from exudyn_rotor.reduction.component import gram_schmidt, modes_of
 from exudyn_rotor.solid.matrices import as_mass, as_nodes
 from exudyn_rotor.solid.model import import_model
-from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.axis import rigid_motions
 
 
 def use_mean_axis_modes(fem: FEMinterface) -> tuple[int, ...]:
@@ -73,7 +70,7 @@ def use_mean_axis_modes(fem: FEMinterface) -> tuple[int, ...]:
     nodes = as_nodes(model.nodes)
     mass = as_mass(model.mass, len(nodes))
     modes = modes_of(fem, nodes)
-    rigid = rigid_columns(nodes, SpinAxis.of("z"), nodes.mean(axis=0))
+    rigid = rigid_motions(nodes, nodes.mean(axis=0))
     weighted = mass @ rigid
     flexible = modes - rigid @ (scipy.linalg.pinvh(rigid.T @ weighted) @ (weighted.T @ modes))
     count = rigid.shape[1]
@@ -81,12 +78,10 @@ def use_mean_axis_modes(fem: FEMinterface) -> tuple[int, ...]:
     elastic = [index - count for index in used if index >= count]
     if not elastic:
         raise ValueError("fem: its modes are rigid motions alone; no flexible mode would remain")
-    fem.modeBasis = {**fem.modeBasis, "matrix": flexible[:, elastic]}
+    fem.modeBasis = fem.modeBasis | {"matrix": flexible[:, elastic]}
     stress = fem.postProcessingModes.get("matrix")
     if stress is not None and np.shape(stress)[1] == 6 * modes.shape[1]:
         columns = [6 * index + component for index in elastic for component in range(6)]
-        fem.postProcessingModes = {
-            **fem.postProcessingModes,
-            "matrix": np.asarray(stress)[:, columns],
-        }
+        kept = {"matrix": np.asarray(stress)[:, columns]}
+        fem.postProcessingModes = fem.postProcessingModes | kept
     return tuple(index for index in range(modes.shape[1]) if index not in elastic)

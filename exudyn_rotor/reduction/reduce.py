@@ -20,13 +20,11 @@ from exudyn_rotor.reduction.component import (
     component_modes,
     free_modes,
     numbered,
-    rigid_columns,
     unit_columns,
 )
 from exudyn_rotor.reduction.reduced_rotor import (
     RIGID_KINDS,
     Centrifugal,
-    ModeKind,
     ModeShapes,
     ReducedInterface,
     ReducedRotor,
@@ -35,13 +33,11 @@ from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers.factor import one_thread
 from exudyn_rotor.solvers.inertia_relief import free_motions_of, inertia_relief
-from exudyn_rotor.theory.axis import rotations, translations
+from exudyn_rotor.theory.axis import translations
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.stiffening import with_prestress
 
-_UNRESISTED = (ModeKind.TRANSLATION_1, ModeKind.TRANSLATION_2, ModeKind.AXIAL)
 _FREE_MODES = 12  # beside static ones, for what a spin adds
-_NO_TURN = 1e-9  # of the largest: what rounding leaves of the rotation of a translation
 
 ModeSource = int | ModeBasis | FEMinterface | np.ndarray
 
@@ -81,13 +77,17 @@ def reduce(
     component = component_modes(rotor, modes)
     with one_thread():
         component = _with_turned_displacement(rotor, component)
-        basis = _basis(rotor, component)
+        basis = OrthonormalBasis.of(rotor, component)
         if basis.matrix.shape[1] == 0:
             raise ValueError("the reduced basis is empty: ask for at least one component mode")
         attached = cache(partial(_with_attachments, rotor, component, basis))
         reduced = _reduced(rotor, component, basis, network)
         shapes = _shapes(rotor, component, basis, stress)
-    return replace(reduced, shapes=shapes, centrifugal=_centrifugal(rotor), attached=attached)
+    static, carried = None, rotor.carried_prestress
+    if carried is not None and carried.displacement is not None:
+        names = ("displacement", "stress", "yield_stress")
+        static = Centrifugal(**{name: getattr(carried, name) for name in names})
+    return replace(reduced, shapes=shapes, centrifugal=static, attached=attached)
 
 
 def reduced_for_loads(
@@ -132,7 +132,10 @@ def _reduced(
         rotor.axis.direction,
         basis.momenta,
     )
-    invariants = _cleaned(invariants, basis)
+    # exactly what holds by construction, so that round-off excites nothing
+    stiffness = np.diag(np.maximum(basis.stiffness, 0.0))
+    size = invariants.size
+    invariants = replace(invariants, M=np.eye(size), K=stiffness, center=np.zeros(3))
     if network is not None:
         estimate = basis.matrix.T @ (network @ basis.matrix)
         invariants = replace(invariants, K2_estimated=0.5 * (estimate + estimate.T))
@@ -167,40 +170,23 @@ def _with_attachments(
             return None
         matrix = np.hstack([component.matrix, static, inertial])
         every = ModeBasis(matrix, numbered("column", matrix.shape[1]), rotor.nodes)
-        finer = _basis(rotor, every)
+        finer = OrthonormalBasis.of(rotor, every)
         reduced = _reduced(rotor, every, finer)
         return reduced, finer.matrix.T @ basis.momenta
 
 
-def _basis(rotor: FiniteElementRotor, modes: ModeBasis) -> OrthonormalBasis:
-    return OrthonormalBasis.of(_rigid_motions(rotor), modes, rotor.mass, rotor.stiffness)
-
-
-def _rigid_motions(rotor: FiniteElementRotor) -> tuple[np.ndarray, tuple[ModeKind, ...]]:
-    """Return the rigid motions that the stiffness matrix leaves free, and what they are."""
-    if not rotor.grounded:
-        return rigid_columns(rotor.nodes, rotor.axis, rotor.center_of_mass), RIGID_KINDS
-    free = free_motions_of(rotor)
-    return free, (ModeKind.FREE,) * free.shape[1]
-
-
 def _with_turned_displacement(rotor: FiniteElementRotor, component: ModeBasis) -> ModeBasis:
-    """Add ``a × u⁰`` for the rotations a that are free, where K_u and K_uu are carried.
+    """Add ``a × u⁰`` for rotations a about the mesh axes, where K_u and K_uu are carried.
 
     A rotor that turns takes its static deformation along. ``a × (x + ω²u⁰)`` strains nothing, but
     K_uu resists ``a × x`` alone, like a stress of the order of the local rotation by u⁰.
     """
     carried = rotor.carried_prestress
-    if carried is None or carried.initial_displacement is None or carried.displacement is None:
-        return component
-    turns = rotations(rotor.nodes, rotor.center_of_mass)
-    motions = np.hstack([translations(rotor.node_count), turns])
-    turns = np.linalg.lstsq(motions, _rigid_motions(rotor)[0], rcond=None)[0][3:].T
-    turns = turns[np.linalg.norm(turns, axis=1) > _NO_TURN * np.abs(turns).max(initial=0.0)]
-    if not len(turns):
+    known = carried is not None and carried.initial_displacement is not None
+    if not known or carried.displacement is None or not rotor.rigid_motions:
         return component
     static = carried.displacement.reshape(-1, 3)
-    columns = np.stack([np.cross(turn, static).ravel() for turn in turns], axis=1)
+    columns = np.stack([np.cross(turn, static).ravel() for turn in np.eye(3)], axis=1)
     columns = unit_columns(rotor, columns)
     labels = numbered("static displacement turned", columns.shape[1])
     stress = component.stress
@@ -220,16 +206,6 @@ def _mode_mass(component: ModeBasis, basis: OrthonormalBasis) -> np.ndarray:
     own = np.eye(basis.matrix.shape[1])
     own[:rigid] = 0.0
     return own + share.T @ share
-
-
-def _cleaned(invariants: Invariants, basis: OrthonormalBasis) -> Invariants:
-    """Put in exactly what holds by construction, so that round-off excites nothing."""
-    return replace(
-        invariants,
-        M=np.eye(invariants.size),
-        K=np.diag(np.maximum(basis.stiffness, 0.0)),
-        center=np.zeros(3),
-    )
 
 
 def _stiffened(rotor: FiniteElementRotor, invariants: Invariants, basis: np.ndarray) -> Invariants:
@@ -254,24 +230,13 @@ def _of_loads(rotor: FiniteElementRotor, invariants: Invariants, basis: np.ndarr
     matrix = basis.T @ (rotor.carried_prestress.by_loads @ basis)
     if rotor.grounded:
         return 0.5 * (matrix + matrix.T)
-    free = np.eye(len(matrix))[:, [RIGID_KINDS.index(kind) for kind in _UNRESISTED]]
-    others = np.eye(len(matrix)) - free @ free.T
+    others = np.eye(len(matrix))
+    others[:, :3] = 0.0  # translations are the first of RIGID_KINDS
     turns = others @ (rotor.axis.direction @ invariants.mean_rotation)
     turns[len(RIGID_KINDS) :] = 0.0
     turns /= np.linalg.norm(turns) or 1.0
     others -= np.outer(turns, turns)
     return others @ (0.5 * (matrix + matrix.T)) @ others
-
-
-def _centrifugal(rotor: FiniteElementRotor) -> Centrifugal | None:
-    carried = rotor.carried_prestress
-    if carried is None or carried.displacement is None:
-        return None
-    return Centrifugal(
-        displacement=carried.displacement,
-        stress=carried.stress,
-        yield_stress=carried.yield_stress,
-    )
 
 
 def _interfaces(rotor: FiniteElementRotor, basis: np.ndarray) -> dict[str, ReducedInterface]:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import MISSING, fields
+from dataclasses import fields
 from functools import partial
 from os import PathLike
 from typing import Any, TypeVar
@@ -11,7 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.storage import Entries, read_arrays, write_arrays
+from exudyn_rotor.storage import plain, read_arrays, write_arrays
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
 
@@ -51,68 +50,47 @@ def _entries(rotor: Rotor) -> dict[str, object]:
     return data
 
 
-def load_reduced(
-    path: str | PathLike, make: Callable[..., Rotor], parts: Mapping[str, type]
-) -> Rotor:
-    """Read a rotor from `path`; `make` is the class :class:`ReducedRotor`.
-
-    `parts` are the classes of its kinds of modes, interfaces, shapes and static fields.
+def load_reduced(path: str | PathLike, classes: tuple[type, ...]) -> Rotor:
+    """Read a rotor from `path`; `classes` are its own and those of its parts.
 
     OSError when there is no such file; ValueError when it is damaged or describes no reduced rotor.
     """
-    entries = Entries(read_arrays(path, _KIND))
+    data = {name: plain(value) for name, value in read_arrays(path, _KIND).items()}
     try:
-        rotor = make(**_fields(entries, make, parts))
-        entries.close()
+        return _rotor(data, classes)
     except (KeyError, TypeError, ValueError) as error:
         raise ValueError(
             f"{path}: describes no reduced rotor, or was written by another version ({error})"
         ) from error
-    return rotor
 
 
-def _fields(
-    entries: Entries, make: Callable[..., Rotor], parts: Mapping[str, type]
-) -> dict[str, Any]:
-    """Return the constructor's arguments; it checks shapes and values."""
-    attached = entries.group(_ATTACHED)
+def _rotor(data: dict[str, Any], classes: tuple[type, ...]) -> Rotor:
+    """Return a rotor of all entries; the classes check what they are made of."""
+    make, mode_kind, interface, shapes, centrifugal = classes
+    attached = _taken(data, _ATTACHED)
     found = {
-        "axis": SpinAxis(*entries.array("axis")),
-        "center_of_mass": entries.array("center_of_mass"),
-        "invariants": _made(Invariants, entries.group("invariants.")),
-        "rigid_kinds": tuple(
-            parts["rigid_kinds"][name] for name in entries.words("rigid_kinds", unique=False)
-        ),
+        "axis": SpinAxis(*data.pop("axis")),
+        "invariants": Invariants(**_taken(data, "invariants.")),
+        "rigid_kinds": tuple(mode_kind[name] for name in data.pop("rigid_kinds")),
         "interfaces": {
-            name: _made(parts["interfaces"], entries.group(f"interface{index}."))
-            for index, name in enumerate(entries.words("interface_names"))
+            name: interface(**_taken(data, f"interface{index}."))
+            for index, name in enumerate(data.pop("interface_names"))
         },
-        "mode_mass": entries.array("mode_mass"),
-        "dropped": entries.words("dropped", unique=False),
-        "grounded": entries.flag("grounded"),
-        "shapes": _made(parts["shapes"], entries.group("shapes."), True),
-        "centrifugal": _made(parts["centrifugal"], entries.group("centrifugal."), True),
     }
+    for name, kind in (("shapes", shapes), ("centrifugal", centrifugal)):
+        values = _taken(data, f"{name}.")
+        found[name] = kind(**values) if values else None
     if attached:
-        finer = make(**_fields(attached, make, parts))
+        finer = _rotor(attached, classes)
         shape = finer.size, found["invariants"].size
-        columns = checks.array(entries.array(_IN_ATTACHED), _IN_ATTACHED, shape=shape)
+        columns = checks.array(data.pop(_IN_ATTACHED), _IN_ATTACHED, shape=shape)
         if finer.interfaces.keys() != found["interfaces"].keys():
             raise ValueError("with_attachments: needs the interfaces of the rotor")
         found["attached"] = partial(tuple, (finer, columns))
-    attached.close()
-    return found
+    return make(**found, **data)
 
 
-def _made(kind: type, entries: Entries, optional: bool = False) -> Any:
-    """Return an object of a dataclass from the entries of its fields; None of none if optional."""
-    if optional and not entries:
-        return None
-    values = {}
-    for field in fields(kind):
-        if field.name in entries or field.default is MISSING:
-            read = entries.number if field.type.startswith("float") else entries.array
-            whole = field.name == "triangles"
-            values[field.name] = entries.array(field.name, int) if whole else read(field.name)
-    entries.close()
-    return kind(**values)
+def _taken(data: dict[str, Any], prefix: str) -> dict[str, Any]:
+    """Take all entries whose names begin with a prefix, without it."""
+    names = [name for name in data if name.startswith(prefix)]
+    return {name.removeprefix(prefix): data.pop(name) for name in names}

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor, attached_by
+from exudyn_rotor.reduction.reduced_rotor import RIGID_KINDS, ModeKind, ReducedRotor, attached_by
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.invariants import Invariants
 
@@ -97,7 +97,7 @@ def select_modes(reduced: ReducedRotor, formulation: Formulation) -> Selection:
     """
     checks.instance(reduced, "reduced", ReducedRotor, "SolidRotor.reduce(…) makes one")
     checks.instance(formulation, "formulation", Formulation)
-    _check_possible(reduced, formulation)
+    check_possible(formulation, reduced.grounded, ModeKind.SPIN in reduced.rigid_kinds)
     if formulation.translation_count:
         origin = reduced.center_of_mass
     else:
@@ -130,24 +130,18 @@ def _without_noise(invariants: Invariants) -> Invariants:
     )
 
 
-def _check_possible(reduced: ReducedRotor, formulation: Formulation) -> None:
-    if reduced.grounded and (formulation.translation_count or formulation.has_spin):
+def check_possible(formulation: Formulation, grounded: bool, turns: bool) -> None:
+    """Refuse what a rotor cannot have: held by its stiffness, or without inertia as it `turns`."""
+    if grounded and (formulation.translation_count or formulation.has_spin):
         raise ValueError(
             "the stiffness matrix holds this rotor in its own frame (grounded), and a frame "
             "without mass cannot move freely: use translation='none' and a prescribed spin"
         )
-    if formulation.has_spin and ModeKind.SPIN not in reduced.rigid_kinds:
+    if formulation.has_spin and not turns:
         raise ValueError(
             "the rotor has no moment of inertia about its axis, so its spin cannot be free: "
             "prescribe the spin, or give the rotor mass off the axis"
         )
-
-
-_HELD_BY_TRANSLATIONS = {
-    0: (),
-    2: (ModeKind.TRANSLATION_1, ModeKind.TRANSLATION_2),
-    3: (ModeKind.TRANSLATION_1, ModeKind.TRANSLATION_2, ModeKind.AXIAL),
-}
 
 
 def _columns(reduced: ReducedRotor, formulation: Formulation) -> tuple[np.ndarray, list[int]]:
@@ -155,7 +149,7 @@ def _columns(reduced: ReducedRotor, formulation: Formulation) -> tuple[np.ndarra
     identity = np.eye(reduced.size)
     if reduced.grounded:
         return identity, list(range(reduced.size))
-    held = _HELD_BY_TRANSLATIONS[formulation.translation_count]
+    held = RIGID_KINDS[: formulation.translation_count]
     holds_spin = formulation.has_spin or formulation.drive == "rigid"
     if holds_spin:
         held = (*held, ModeKind.SPIN)
@@ -216,22 +210,18 @@ def without_spin(reduced: ReducedRotor) -> ReducedRotor:
     if ModeKind.SPIN not in reduced.rigid_kinds:
         return reduced
     T = _beside_spin(reduced)
+    kinds = [kind for kind in reduced.rigid_kinds if kind is not ModeKind.SPIN]
 
     def finer(rotor: ReducedRotor, columns: np.ndarray) -> tuple[ReducedRotor, np.ndarray]:
         U = _beside_spin(rotor)
-        return _without_kind(rotor, U), U.T @ columns @ T
+        return in_basis(rotor, U, kinds), U.T @ columns @ T
 
-    return replace(_without_kind(reduced, T), attached=attached_by(reduced, finer))
+    return replace(in_basis(reduced, T, kinds), attached=attached_by(reduced, finer))
 
 
 def _beside_spin(reduced: ReducedRotor) -> np.ndarray:
     columns = [i for i, kind in enumerate(reduced.kinds) if kind is not ModeKind.SPIN]
     return without_mean_rotation(reduced, np.eye(reduced.size)[:, columns])
-
-
-def _without_kind(reduced: ReducedRotor, T: np.ndarray) -> ReducedRotor:
-    kinds = (kind for kind in reduced.rigid_kinds if kind is not ModeKind.SPIN)
-    return in_basis(reduced, T, kinds)
 
 
 def keep_modes(reduced: ReducedRotor, indices: Sequence[int]) -> ReducedRotor:

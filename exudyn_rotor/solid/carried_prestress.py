@@ -72,10 +72,8 @@ class Prestress:
     def __post_init__(self) -> None:
         nodes = matrices.as_nodes(self.nodes)
         count = len(nodes)
-        checked = {
-            "nodes": nodes,
-            "matrix": matrices.as_matrix("prestress matrix", self.matrix, count),
-        }
+        matrix = matrices.as_matrix("prestress matrix", self.matrix, count)
+        checked = {"nodes": nodes, "matrix": matrix}
         if self.by_loads is not None:
             checked["by_loads"] = matrices.as_matrix("by_loads matrix", self.by_loads, count)
         if self.initial_displacement is not None:

@@ -83,8 +83,7 @@ class SolidElements:
             for part in self._parts(block, block.shape.mass_rule):
                 yield (self.densities[part.regions][:, None] * part.weights) @ products
 
-        matrix = self._assembled(entries, 1)
-        return matrices.in_all_directions(matrix)
+        return matrices.in_all_directions(self._assembled(entries, 1))
 
     def stiffness_matrix(self) -> sp.csr_array:
         """Return the stiffness matrix (3n, 3n)."""
@@ -95,7 +94,7 @@ class SolidElements:
 
         σ⁰ is Hooke's stress of its linear strain.
         """
-        static = self._static(displacement)
+        static = displacement.reshape(-1, 3)
 
         def entries(block: Block) -> Iterator[np.ndarray]:
             for part in self._parts(block, block.shape.stiffness_rule):
@@ -104,26 +103,19 @@ class SolidElements:
                 yield np.einsum("eqic,eqjc->eij", weighted, part.slopes, optimize=True)
 
         # it acts on each direction by itself, the same on all
-        matrix = self._assembled(entries, 1)
-        return matrices.in_all_directions(matrix)
+        return matrices.in_all_directions(self._assembled(entries, 1))
 
-    def initial_displacement_stiffness(self, displacement: np.ndarray) -> sp.csr_array:
-        """Return ``∫ E₁(v) : C : ε(u) + ε(v) : C : E₁(u) dV``, ``E₁(u) = sym(∇u⁰ᵀ∇u)``.
+    def displacement_stiffness(self, displacement: np.ndarray) -> tuple[sp.csr_array, sp.csr_array]:
+        """Return K_u and K_uu of a displacement u⁰ (3n,), with ``E₁(u) = sym(∇u⁰ᵀ∇u)``.
 
-        With :meth:`geometric_stiffness` this is the derivative of the tangent stiffness of
-        St. Venant–Kirchhoff elasticity in the direction u⁰, from ``W = ½ E : C : E`` with
-        ``E = sym ∇u + ½ ∇uᵀ∇u``. Parameters as there.
+        ``vᵀ K_u u = ∫ E₁(v) : C : ε(u) + ε(v) : C : E₁(u) dV``,
+        ``vᵀ K_uu u = ∫ E₁(v) : C : E₁(u) dV``. The tangent stiffness of
+        St. Venant–Kirchhoff elasticity, from ``W = ½ E : C : E`` with ``E = sym ∇u + ½ ∇uᵀ∇u``, has
+        :meth:`geometric_stiffness` and K_u to first order in u⁰, and K_uu to second order.
         """
-        half = self._of_strains(self._static(displacement), None)
-        return sp.csr_array(half + half.T)
-
-    def squared_displacement_stiffness(self, displacement: np.ndarray) -> sp.csr_array:
-        """Return ``∫ E₁(v) : C : E₁(u) dV``, the tangent's part of second order in u⁰.
-
-        Symbols and parameters of :meth:`initial_displacement_stiffness`.
-        """
-        static = self._static(displacement)
-        return self._of_strains(static, static)
+        static = displacement.reshape(-1, 3)
+        half = self._of_strains(static, None)
+        return sp.csr_array(half + half.T), self._of_strains(static, static)
 
     def nodal_stress(self, displacements: np.ndarray) -> np.ndarray:
         """Return the stress (n, 6, k) of displacement columns (3n, k).
@@ -161,14 +153,6 @@ class SolidElements:
                     f"volume, one about {place} m; mend the mesh there (nodes in the wrong order, "
                     "or mid nodes too far from the middle of their edges?)"
                 )
-
-    def materials_at(self, nodes: np.ndarray) -> tuple[str, ...]:
-        """Return the names of the regions whose elements have any of these nodes."""
-        found = [
-            np.unique(block.regions[np.isin(block.nodes, nodes).any(axis=1)])
-            for block in self.blocks
-        ]
-        return tuple(sorted({self.materials[i] for i in np.concatenate(found)}))
 
     def described(self) -> list[tuple[str, float, float, float, float]]:
         """Return name, mass [kg], Young's modulus [Pa], Poisson's ratio and density by region."""
@@ -256,9 +240,6 @@ class SolidElements:
             across = np.einsum("qnc,eqcx->eqnx", slopes, np.linalg.inv(jacobians), optimize=True)
             regions = block.regions[start : start + step]
             yield _Part(nodes, regions, np.abs(sizes) * weights, across)
-
-    def _static(self, displacement: np.ndarray) -> np.ndarray:
-        return checks.array(displacement, "displacement", shape=(self.nodes.size,)).reshape(-1, 3)
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,14 +11,13 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 from exudyn.FEM import FEMinterface
-from scipy.sparse.csgraph import breadth_first_order, connected_components
+from scipy.sparse.csgraph import connected_components
 
 from exudyn_rotor import checks
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.solid.elements import SolidElements
-from exudyn_rotor.theory.axis import coupled, rotations, translations
+from exudyn_rotor.theory.axis import coupled, rigid_motions
 
-_LISTED = 6  # parts that a message describes
 NodeSet = tuple[Sequence[int], Sequence[float] | None]
 
 
@@ -36,20 +35,6 @@ class FiniteElementModel:
     node_sets: Mapping[str, NodeSet] = field(default_factory=dict)
     triangles: Any = ()
     elements: SolidElements | None = None
-
-    @classmethod
-    def of_elements(
-        cls, elements: SolidElements, node_sets: Mapping[str, NodeSet], triangles: Any
-    ) -> FiniteElementModel:
-        """Return the model of elements."""
-        return cls(
-            nodes=elements.nodes,
-            mass=elements.mass_matrix(),
-            stiffness=elements.stiffness_matrix(),
-            node_sets=node_sets,
-            triangles=triangles,
-            elements=elements,
-        )
 
 
 def node_set(name: str, entry: Any) -> NodeSet:
@@ -76,23 +61,21 @@ def import_model(fem: FEMinterface) -> FiniteElementModel:
         matrix = getattr(fem, attribute)
         if matrix is None or np.size(matrix) == 0:
             raise ValueError(f"fem: {attribute} is missing; import or compute it first")
+    if list(fem.nodes) != ["Position"]:
+        raise ValueError(
+            f"fem: needs 'Position' nodes only, got {list(fem.nodes) or 'no nodes'}; a solid rotor "
+            "has no nodes with rotations (shells, beams)"
+        )
+    named = [one for one in fem.nodeSets if is_named(one["Name"])]
+    names = tuple(one["Name"] for one in named)
+    checks.different(names, "fem: the names of its node sets")
     return FiniteElementModel(
-        nodes=_positions(fem.nodes),
+        nodes=fem.nodes["Position"],
         mass=fem.massMatrix,
         stiffness=fem.stiffnessMatrix,
-        node_sets=_node_sets(fem.nodeSets),
+        node_sets={one["Name"]: (one["NodeNumbers"], one.get("NodeWeights")) for one in named},
         triangles=_triangles(fem.surface),
     )
-
-
-def _positions(nodes: dict[str, Any]) -> np.ndarray:
-    """Return the positions of the only node list; rotations and planar nodes are refused."""
-    if list(nodes) != ["Position"]:
-        raise ValueError(
-            f"fem: needs 'Position' nodes only, got {list(nodes) or 'no nodes'}; a solid rotor has "
-            "no nodes with rotations (shells, beams)"
-        )
-    return nodes["Position"]
 
 
 def _triangles(surfaces: list[dict[str, Any]]) -> np.ndarray:
@@ -104,30 +87,14 @@ def _triangles(surfaces: list[dict[str, Any]]) -> np.ndarray:
     return np.vstack([np.asarray(surface[kind]) for surface in surfaces])
 
 
-def _node_sets(node_sets: list[dict[str, Any]]) -> dict[str, NodeSet]:
-    """Return node numbers and weights by name, without the sets of faces that have no name."""
-    named = [node_set for node_set in node_sets if is_named(node_set["Name"])]
-    names = [node_set["Name"] for node_set in named]
-    repeated = sorted({name for name in names if names.count(name) > 1})
-    if repeated:
-        raise ValueError(f"fem: several node sets are named {repeated}; rename them")
-    return {s["Name"]: (s["NodeNumbers"], s.get("NodeWeights")) for s in named}
-
-
 Material = Mapping[str, float]
-MATERIAL_KEYS = ("youngsModulus", "poissonsRatio", "density")
+_KEYS = ("youngsModulus", "poissonsRatio", "density")
 
-# Bar wave speed √(E/ρ) [m/s] from soft foam (about 30) to diamond (18 000), with a wide margin.
-WAVE_SPEED_RANGE = (10.0, 1e5)
-# Solids from aerogel (about 1) to osmium (22 600) [kg/m³].
-DENSITY_RANGE = (1.0, 1e5)
-# Mass over bounding box [kg/m³]; a bladed wheel may fill a thousandth of its box.
-MEAN_DENSITY_RANGE = (1e-2, 1e5)
-# Ten thousand tonnes [kg]; the heaviest turbine-generator rotors have about two thousand.
-LARGEST_MASS = 1e7
-# Few rotors but those of large hydroelectric generators are heavier [kg].
-USUAL_MASS = 5e5
-
+# With a wide margin: bar wave speed √(E/ρ) [m/s], soft foam has 30 and diamond 18 000; mass over
+# bounding box [kg/m³], a bladed wheel may fill a thousandth of its box and osmium has 22 600.
+_WAVE_SPEEDS, _MEAN_DENSITIES = (10.0, 1e5), (1e-2, 1e5)
+# [kg]; the heaviest turbine-generator rotors have two million, few others half of one
+_LARGEST_MASS, _USUAL_MASS = 1e7, 5e5
 _ADVICE = (
     "convert to SI (m, kg, s, N, Pa), or pass check_units=False if the units of all inputs agree"
 )
@@ -139,7 +106,7 @@ def materials_by_region(
     """Return one checked material for every region name; `materials` as of ``from_ngsolve``."""
     checks.mapping(materials, "materials", "material")
     names = sorted(set(regions))
-    if any(key in materials for key in MATERIAL_KEYS):
+    if any(key in materials for key in _KEYS):
         if len(names) > 1:
             raise ValueError(
                 f"materials: one material was given, but the mesh has {len(names)} regions "
@@ -159,12 +126,12 @@ def check_model_units(nodes: np.ndarray, total_mass: float) -> None:
     """Raise ValueError if size [m] and mass [kg] of a model cannot be in SI, warn if hardly."""
     extent = np.ptp(nodes, axis=0)
     size = f"{total_mass:.3g} kg in a box of {box(nodes)}"
-    if total_mass > LARGEST_MASS:
+    if total_mass > _LARGEST_MASS:
         raise ValueError(
             f"units: {size} cannot be a rotor; lengths in mm, as Netgen reads all STEP files? "
             f"shape.Scale(Pnt(0, 0, 0), 1e-3) has metres; {_ADVICE}"
         )
-    if total_mass > USUAL_MASS:
+    if total_mass > _USUAL_MASS:
         warnings.warn(
             f"units: {size}: few rotors are that heavy; lengths in mm? Arrays are in m, kg, s; "
             "check_units=False takes them as they are",
@@ -173,8 +140,8 @@ def check_model_units(nodes: np.ndarray, total_mass: float) -> None:
     volume = float(np.prod(extent))
     if volume <= 1e-12 * np.max(extent) ** 3:
         return
-    density = total_mass / volume
-    if not MEAN_DENSITY_RANGE[0] <= density <= MEAN_DENSITY_RANGE[1]:
+    density, (low, high) = total_mass / volume, _MEAN_DENSITIES
+    if not low <= density <= high:
         raise ValueError(
             f"units: {size}, {density:.3g} kg/m³, cannot be; {_guess(density)} {_ADVICE}"
         )
@@ -183,24 +150,20 @@ def check_model_units(nodes: np.ndarray, total_mass: float) -> None:
 def _checked_material(name: str, material: Any, check_units: bool) -> Material:
     label = f"materials: {name!r}"
     checks.mapping(material, label, "number")
-    if set(material) != set(MATERIAL_KEYS):
-        raise ValueError(
-            f"{label}: needs exactly the keys {list(MATERIAL_KEYS)}, got {sorted(material)}"
-        )
-    modulus, ratio, density = (material[key] for key in MATERIAL_KEYS)
+    if set(material) != set(_KEYS):
+        raise ValueError(f"{label}: needs exactly the keys {list(_KEYS)}, got {sorted(material)}")
+    modulus, ratio, density = (material[key] for key in _KEYS)
     modulus = checks.number(modulus, f"{label}: youngsModulus", "Pa", above=0.0)
     ratio = checks.number(ratio, f"{label}: poissonsRatio", above=-1.0, below=0.5)
     density = checks.number(density, f"{label}: density", "kg/m³", above=0.0)
     speed = np.sqrt(modulus / density)
-    for what, value, unit, (low, high) in (
-        ("a density", density, "kg/m³ (steel: 7850)", DENSITY_RANGE),
-        ("a wave speed √(E/ρ)", speed, "m/s (steel: 5200)", WAVE_SPEED_RANGE),
-    ):
-        if check_units and not low <= value <= high:
-            raise ValueError(
-                f"{label}: {what} of {value:.3g} {unit} cannot be; {_guess(density)} {_ADVICE}"
-            )
-    return dict(zip(MATERIAL_KEYS, (modulus, ratio, density), strict=True))
+    low, high = _WAVE_SPEEDS
+    if check_units and not low <= speed <= high:
+        raise ValueError(
+            f"{label}: a wave speed √(E/ρ) of {speed:.3g} m/s (steel: 5200) cannot be; "
+            f"{_guess(density)} {_ADVICE}"
+        )
+    return dict(zip(_KEYS, (modulus, ratio, density), strict=True))
 
 
 def _guess(density: float) -> str:
@@ -209,37 +172,26 @@ def _guess(density: float) -> str:
     )
 
 
-def check_connected(elements: SolidElements, mass: sp.csr_array, stiffness: sp.csr_array) -> None:
+_LISTED = 6  # parts that a message describes
+
+
+def check_connected(nodes: np.ndarray, mass: sp.csr_array) -> None:
     """Raise ValueError if elements fall into parts that move by themselves."""
-    count = len(elements.nodes)
-    # a node has three rows: every third row pointer starts a node
-    pointers, columns = stiffness.indptr[::3].copy(), stiffness.indices // 3
-    graph = sp.csr_array((np.ones(columns.size), columns, pointers), shape=(count, count))
-    # the pattern is symmetric; one search is a tenth of the cost of all components
-    if len(breadth_first_order(graph, 0, return_predecessors=False)) == count:
+    count, numbers = connected_components(mass[::3, ::3], directed=False)
+    if count == 1:
         return
-    _, numbers = connected_components(graph, directed=False)
-    order = np.argsort(numbers, kind="stable")
-    parts = np.split(order, np.cumsum(np.bincount(numbers))[:-1])
-    parts.sort(key=len, reverse=True)
-    told = "; ".join(_described(part, elements, mass) for part in parts[:_LISTED])
+    largest = np.argsort(-np.bincount(numbers), kind="stable")[:_LISTED]
+    told = []
+    for part in (np.flatnonzero(numbers == number) for number in largest):
+        middle = 0.5 * (nodes[part].min(axis=0) + nodes[part].max(axis=0))
+        told.append(
+            f"{part.size} nodes, {mass[3 * part].sum():.3g} kg, {box(nodes[part])} about "
+            f"{np.round(middle, 6).tolist()} m"
+        )
     raise ValueError(
-        f"the model falls into {len(parts)} parts that nothing connects: "
-        f"{told}{', …' if len(parts) > _LISTED else ''}. Parts that touch are not connected by "
+        f"the model falls into {count} parts that nothing connects: {'; '.join(told)}"
+        f"{', …' if count > _LISTED else ''}. Parts that touch are not connected by "
         "that; make one solid of them before meshing, OCCGeometry(netgen.occ.Glue([a, b]))"
-    )
-
-
-def _described(part: np.ndarray, elements: SolidElements, mass: sp.csr_array) -> str:
-    """Return materials, number of nodes, mass, box and its middle of a part as text."""
-    names, nodes = elements.materials_at(part), elements.nodes
-    lowest, highest = nodes[part].min(axis=0), nodes[part].max(axis=0)
-    # a micrometre per metre is precise enough to find a part
-    center = np.round(0.5 * (lowest + highest) / np.ptp(nodes), 6) * np.ptp(nodes)
-    return (
-        f"{' and '.join(repr(name) for name in names)}: {part.size} nodes, "
-        f"{mass[3 * part].sum():.3g} kg, {box(nodes[part])} about "
-        f"({', '.join(f'{x:.3g}' for x in center)}) m"
     )
 
 
@@ -265,7 +217,7 @@ def rigid_basis(nodes: np.ndarray) -> np.ndarray:
     """
     center = nodes.mean(axis=0)
     radius = np.sqrt(np.mean(np.sum((nodes - center) ** 2, axis=1))) or 1.0
-    motions = np.hstack([translations(len(nodes)), rotations(nodes, center) / radius])
+    motions = rigid_motions(nodes / radius, center / radius)
     basis, lengths, _ = np.linalg.svd(motions, full_matrices=False)
     return basis[:, : np.count_nonzero(lengths > 1e-9 * lengths[0])]
 
@@ -297,8 +249,7 @@ def count_rigid_motions(nodes: np.ndarray, stiffness: sp.csr_array) -> int:
 
 
 # springs of clamped nodes over the largest diagonal entry of the stiffness: they move by less than
-# 1e-10 of the others, and dense eigenvalues, whose error is relative to the stiffest spring, keep
-# four digits; above a share of it no spring to the ground means anything else
+# 1e-10 of the others; above a share of it no spring to the ground means anything else
 _SPRING, _STIFFER = 1e6, 1e4
 
 

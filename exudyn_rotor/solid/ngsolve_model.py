@@ -34,13 +34,18 @@ def assemble_model(
     tetrahedra, region_numbers = _tetrahedra(mesh)
     nodes = np.array(mesh.ngmesh.Coordinates(), dtype=float)
     nodes = nodes if order == 2 else nodes[: mesh.nv]
-    _check_used(tetrahedra, len(nodes))
+    unused = len(nodes) - np.unique(tetrahedra).size
+    if unused:
+        raise ValueError(
+            f"mesh: {unused} of {len(nodes)} points belong to no volume element (SecondOrder() "
+            "called twice?); generate the mesh anew"
+        )
     blocks = [Block("tetra10" if order == 2 else "tetra", tetrahedra, region_numbers)]
     elements = SolidElements.of_materials(nodes, blocks, regions, by_region)
     triangles, faces = _triangles(mesh, order)
-    return FiniteElementModel.of_elements(
-        elements, _node_sets(nodes, triangles, faces, interfaces), triangles
-    )
+    sets = _node_sets(nodes, triangles, faces, interfaces)
+    mass, stiffness = elements.mass_matrix(), elements.stiffness_matrix()
+    return FiniteElementModel(nodes, mass, stiffness, None, sets, triangles, elements)
 
 
 def _prepare_mesh(mesh: ngs.Mesh, order: int) -> None:
@@ -90,15 +95,6 @@ def _tetrahedra(mesh: ngs.Mesh) -> tuple[np.ndarray, np.ndarray]:
     return nodes - 1, elements["index"].astype(np.int64) - 1
 
 
-def _check_used(tetrahedra: np.ndarray, node_count: int) -> None:
-    unused = node_count - np.unique(tetrahedra).size
-    if unused:
-        raise ValueError(
-            f"mesh: {unused} of {node_count} points belong to no volume element (SecondOrder() "
-            "called twice?); generate the mesh anew"
-        )
-
-
 def _triangles(mesh: ngs.Mesh, order: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the surface triangles (t, 3) or (t, 6) and the name of the face of each."""
     netgen = mesh.ngmesh
@@ -119,9 +115,6 @@ def _node_sets(
 ) -> dict[str, NodeSet]:
     """Return node numbers and area weights of the faces named in `interfaces`."""
     known = sorted(name for name in set(faces.tolist()) if is_named(name))
-    if isinstance(interfaces, str):
-        raise TypeError(f"interfaces: needs a list of face names, got the text {interfaces!r}")
     wanted = checks.labels(known if interfaces is None else interfaces, "interfaces", known)
-    if len(set(wanted)) < len(wanted):
-        raise ValueError(f"interfaces: a face name is repeated in {wanted}")
+    checks.different(wanted, "interfaces")
     return {name: area_weights(nodes, triangles[faces == name]) for name in wanted}

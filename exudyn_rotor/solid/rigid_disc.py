@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy.linalg as la
 import scipy.sparse as sp
 from numpy.typing import ArrayLike
 from scipy.sparse.linalg import spsolve
@@ -24,7 +25,7 @@ from scipy.sparse.linalg import spsolve
 from exudyn_rotor import checks
 from exudyn_rotor.checks import Checked, numbers
 from exudyn_rotor.solid.matrices import as_node_numbers, in_all_directions
-from exudyn_rotor.theory.axis import SpinAxis, rotations, translations
+from exudyn_rotor.theory.axis import SpinAxis, coordinates, rigid_motions
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,23 +64,16 @@ def add_nodal_mass(matrix: sp.csr_array, node: int, mass: float) -> sp.csr_array
     if checks.number(mass, "mass", "kg") == 0.0:
         raise ValueError(f"mass: needs a number [kg] other than zero, got {mass}")
     if mass < 0.0:
-        _check_removable(matrix, node, -mass)
+        # M − m u uᵀ is positive definite exactly as long as m uᵀM⁻¹u < 1 (determinant lemma)
+        unit = np.eye(1, matrix.shape[0] // 3, node)[0]
+        available = 1.0 / spsolve(sp.csc_array(matrix[::3, ::3]), unit)[node]
+        if -mass >= available:
+            raise ValueError(
+                f"point mass: taking {-mass:.6g} kg from node {node} leaves a negative mass; this "
+                f"node can give less than {available:.6g} kg, so spread it over several nodes"
+            )
     rows = 3 * node + np.arange(3)
     return sp.csr_array(matrix + sp.csr_array((np.full(3, mass), (rows, rows)), matrix.shape))
-
-
-def _check_removable(matrix: sp.csr_array, node: int, removed: float) -> None:
-    """Raise unless the mass matrix stays positive definite without `removed` at `node`."""
-    scalar = sp.csc_array(matrix[::3, ::3])
-    unit = np.zeros(scalar.shape[0])
-    unit[node] = 1.0
-    # M − m u uᵀ is positive definite exactly as long as m uᵀM⁻¹u < 1 (determinant lemma)
-    available = 1.0 / spsolve(scalar, unit)[node]
-    if removed >= available:
-        raise ValueError(
-            f"point mass: taking {removed:.6g} kg from node {node} leaves a negative mass; "
-            f"this node can give less than {available:.6g} kg, so spread it over several nodes"
-        )
 
 
 # springs of a rigid section over its own stiffness: a shaft 40 diameters long errs by 6e-6 in its
@@ -92,7 +86,7 @@ _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class RigidDisc:
+class RigidDisc(Checked):
     """A rigid disc on the nodes of a section, made by :meth:`SolidRotor.add_disc`.
 
     Attributes
@@ -127,28 +121,30 @@ class RigidDisc:
     2.0
     """
 
-    center: np.ndarray
+    center: np.ndarray = numbers(3)
     mass: float
-    inertia: np.ndarray
-    nodes: np.ndarray
-    positions: np.ndarray
+    inertia: np.ndarray = numbers(3, 3)
+    nodes: np.ndarray = numbers("nodes", dtype=int)
+    positions: np.ndarray = numbers("nodes", 3)
     spring: float
 
     def __post_init__(self) -> None:
-        nodes = as_node_numbers("disc", self.nodes)
-        checked = {
-            "center": checks.vector(self.center, "center", "m"),
-            "mass": checks.number(self.mass, "mass", "kg", above=0.0),
-            "inertia": _checked_inertia(self.inertia),
-            "nodes": nodes,
-            "positions": checks.array(self.positions, "positions", "m", shape=(nodes.size, 3)),
-            "spring": checks.number(self.spring, "spring", "N/m", above=0.0),
-        }
-        checks.keep(self, **checked)
-        self._check_arms()
+        super().__post_init__()
+        as_node_numbers("disc", self.nodes)
+        checks.number(self.mass, "mass", "kg", above=0.0)
+        checks.number(self.spring, "spring", "N/m", above=0.0)
+        _check_inertia(self.inertia)
+        arms = (self.positions - self.center)[self._some]
+        seen = self._affine[1:] @ np.column_stack([np.ones(len(arms)), arms])
+        loss = np.abs(seen[:, 1:] @ self._moments @ seen[:, 1:].T - self._moments).max()
+        if loss > 1e-6 * np.abs(self._moments).max():
+            raise ValueError(
+                f"width: the {self.nodes.size} nodes of the section lie on one line, or in one "
+                "plane and the inertia is that of a disc with a thickness; use a wider band"
+            )
 
     @property
-    def second_moments(self) -> np.ndarray:
+    def _moments(self) -> np.ndarray:
         """``E = ½ tr(J) I − J``, shape (3, 3) [kg m²]."""
         return 0.5 * np.trace(self.inertia) * np.eye(3) - self.inertia
 
@@ -170,50 +166,22 @@ class RigidDisc:
         fields = np.column_stack([np.ones(len(arms)), arms])
         return np.linalg.pinv(fields, rcond=_ROUNDING)
 
-    def _check_arms(self) -> None:
-        arms = (self.positions - self.center)[self._some]
-        if np.linalg.matrix_rank(self._rigid(self._some), tol=_ROUNDING) < 6:
-            raise ValueError(
-                f"nodes: the {self.nodes.size} nodes of the section lie on one line and do not "
-                "hold the rotations of a disc; use a wider band"
-            )
-        fields = np.column_stack([np.ones(len(arms)), arms])
-        seen = self._affine @ fields
-        moments = seen[1:, 1:] @ self.second_moments @ seen[1:, 1:].T
-        loss = np.abs(moments - self.second_moments).max()
-        if loss > 1e-6 * np.abs(self.second_moments).max():
-            raise ValueError(
-                f"width: the {self.nodes.size} nodes of the section lie in one plane, and the "
-                "inertia is that of a disc with a thickness; use a wider band"
-            )
-
-    def _rigid(self, places: np.ndarray) -> np.ndarray:
-        """Return the six rigid motions of some nodes, arms over the largest one, (3s, 6)."""
-        largest = np.linalg.norm(self.positions - self.center, axis=1).max() or 1.0
-        turns = rotations(self.positions[places], self.center) / largest
-        return np.hstack([translations(len(places)), turns])
-
     def mass_matrix(self, node_count: int) -> sp.csr_array:
         """Return what the disc adds to the mass matrix, shape (3n, 3n) [kg]."""
         checks.count(node_count, "node_count", least=int(self.nodes.max()) + 1)
-        a, b = self._affine[0], self._affine[1:]
-        scalar = self.mass * np.outer(a, a) + b.T @ self.second_moments @ b
-        some = self.nodes[self._some]
-        rows, columns = np.meshgrid(some, some, indexing="ij")
-        entries = scalar.ravel(), (rows.ravel(), columns.ravel())
-        matrix = sp.csr_array(entries, shape=(node_count, node_count))
-        return in_all_directions(matrix)
+        some = sp.eye_array(node_count, format="csr")[self.nodes[self._some]]
+        affine = sp.csr_array(self._affine) @ some
+        moments = la.block_diag(self.mass, self._moments)
+        return in_all_directions(affine.T @ sp.csr_array(moments) @ affine)
 
     def stiffness_matrix(self, node_count: int) -> sp.csr_array:
         """Return the springs that hold the section rigid, shape (3n, 3n) [N/m]."""
         checks.count(node_count, "node_count", least=int(self.nodes.max()) + 1)
-        every = np.arange(self.nodes.size)
-        follow = self._rigid(every) @ np.linalg.pinv(self._rigid(self._some))
+        rigid, some = rigid_motions(self.positions, self.center), coordinates(self._some)
+        follow = rigid @ np.linalg.pinv(rigid[some])
         identity = sp.eye_array(3 * self.nodes.size, format="csr")
-        some = (3 * self._some[:, None] + np.arange(3)).ravel()
-        strain = sp.csr_array(identity - sp.csr_array(follow) @ identity[some])
-        rows = (3 * self.nodes[:, None] + np.arange(3)).ravel()
-        strain = strain @ sp.eye_array(3 * node_count, format="csr")[rows]
+        held = identity - sp.csr_array(follow) @ identity[some]
+        strain = held @ sp.eye_array(3 * node_count, format="csr")[coordinates(self.nodes)]
         matrix = self.spring * (strain.T @ strain)
         return sp.csr_array(0.5 * (matrix + matrix.T))
 
@@ -233,10 +201,8 @@ def as_tensor(inertia: ArrayLike, axis: SpinAxis) -> np.ndarray:
     return values
 
 
-def _checked_inertia(inertia: np.ndarray) -> np.ndarray:
-    values = checks.array(inertia, "inertia", "kg m²", shape=(3, 3))
-    values = checks.symmetric(values, "inertia", "kg m²", size=3)
-    moments = np.linalg.eigvalsh(values)
+def _check_inertia(inertia: np.ndarray) -> None:
+    moments = np.linalg.eigvalsh(checks.symmetric(inertia, "inertia", "kg m²", size=3))
     if moments[0] < 0.0 or moments[2] <= 0.0:
         raise ValueError(f"inertia: needs moments above zero [kg m²], got {moments.tolist()}")
     # a polar moment of twice the transverse one is that of a thin disc
@@ -245,4 +211,3 @@ def _checked_inertia(inertia: np.ndarray) -> np.ndarray:
             f"inertia: no moment can be larger than the sum of the two others, got "
             f"{moments.tolist()} kg m²; a disc has polar ≤ 2 × transverse"
         )
-    return values

@@ -25,7 +25,7 @@ from exudyn_rotor.solid.model import (
 from exudyn_rotor.solid.rigid_disc import STIFF, PointMass, RigidDisc, add_nodal_mass, as_tensor
 from exudyn_rotor.solid.surface import outer_section
 from exudyn_rotor.solvers.inertia_relief import SOLVERS
-from exudyn_rotor.theory.axis import SpinAxis, skew
+from exudyn_rotor.theory.axis import SpinAxis, coordinates, skew
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -116,16 +116,12 @@ class Interface:
         inertia, levers = rotation_moments(self.positions - self.center, self.weights)
         lever = np.linalg.pinv(inertia, rcond=1e-9, hermitian=True)
         turn = np.einsum("ab,kbc->kac", lever, levers)
-        shift = self.weights[:, None, None] * np.eye(3)
-        shift = shift - skew(self.reference - self.center) @ turn
-        blocks = np.concatenate([shift, turn], axis=1)
-        columns = (3 * self.nodes[:, None] + np.arange(3)).ravel()
-        dense = blocks.transpose(1, 0, 2).reshape(6, -1)
-        selector = sp.csr_array(
-            (np.ones(columns.size), (np.arange(columns.size), columns)),
-            shape=(columns.size, 3 * node_count),
-        )
-        return sp.csr_array(sp.csr_array(dense) @ selector)
+        share = self.weights[:, None, None] * np.eye(3)
+        shift = share - skew(self.reference - self.center) @ turn
+        entries = np.concatenate([shift, turn], axis=1).transpose(1, 0, 2).ravel()
+        rows = np.repeat(np.arange(6), 3 * self.nodes.size)
+        columns = np.tile(coordinates(self.nodes), 6)
+        return sp.csr_array((entries, (rows, columns)), shape=(6, 3 * node_count))
 
 
 def rotation_moments(arms: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -196,10 +192,7 @@ class FiniteElementRotor:
 
     @classmethod
     def _of_model(
-        cls: type[Rotor],
-        model: FiniteElementModel,
-        axis: AxisLike,
-        check_units: bool,
+        cls: type[Rotor], model: FiniteElementModel, axis: AxisLike, check_units: bool
     ) -> Rotor:
         """Return the rotor of a model whose arrays are checked here; as ``from_matrices``."""
         checks.flag(check_units, "check_units")
@@ -207,9 +200,9 @@ class FiniteElementRotor:
         mass = matrices.as_mass(model.mass, len(nodes))
         if check_units:
             check_model_units(nodes, float(mass[::3, ::3].sum()))
-        stiffness = matrices.as_stiffness(model.stiffness, len(nodes))
         if model.elements is not None:
-            check_connected(model.elements, mass, stiffness)
+            check_connected(nodes, mass)
+        stiffness = matrices.as_stiffness(model.stiffness, len(nodes))
         return cls(
             nodes=nodes,
             mass=mass,
@@ -482,5 +475,4 @@ def _interface(
     name: str, nodes: np.ndarray, numbers: Sequence[int], weights: Sequence[float] | None
 ) -> Interface:
     numbers = matrices.as_node_numbers(name, numbers, len(nodes))
-    shares = matrices.as_weights(name, weights, numbers.size)
-    return Interface(name, numbers, shares, nodes[numbers])
+    return Interface(name, numbers, weights, nodes[numbers])

@@ -25,13 +25,10 @@ def flat_triangles(triangles: np.ndarray) -> np.ndarray:
 def area_weights(nodes: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the sorted node numbers of a face and their shares of its area (sum one).
 
-    Every flat triangle gives a third of its area to each of its corners; 6-node triangles are
-    split into four first. The exact integrals of quadratic shape functions would be zero at the
-    corners, which takes the corner nodes out of the interface's mean; the shares used here are
-    positive everywhere, have the same centre for straight triangles, and equal ``NodeWeights``
-    of Exudyn's FEMinterface, so that both bodies carry the same markers.
-
-    Triangles (t, 3) or (t, 6) of the face, among nodes (n, 3).
+    Triangles (t, 3) or (t, 6) of the face, among nodes (n, 3). Every flat triangle gives a third of
+    its area to each of its corners; 6-node triangles are split into four first. Exact integrals of
+    quadratic shape functions would be zero at the corners. The shares here have the same centre for
+    straight triangles, and equal ``NodeWeights`` of Exudyn's FEMinterface.
     """
     flat = flat_triangles(triangles)
     a, b, c = (nodes[flat[:, i]] for i in range(3))
@@ -69,16 +66,11 @@ def outer_section(
     if numbers.size == 0:
         places = along[np.unique(triangles)]
         nearest = places[np.argmin(np.abs(places - position))]
-        beside = high < places.min() or low > places.max()
-        wrong, remedy = (
-            ("position", "give a position on the rotor")
-            if beside
-            else ("width", "use a wider band or a finer mesh")
-        )
         raise ValueError(
-            f"{wrong}: no node of the outer surface lies between {low:.6g} and {high:.6g} m along "
-            f"the axis, where the rotor reaches from {places.min():.6g} to {places.max():.6g} m "
-            f"and the next node is at {nearest:.6g} m; {remedy}"
+            f"position, width: no node of the outer surface lies between {low:.6g} and "
+            f"{high:.6g} m along the axis, where the rotor reaches from {places.min():.6g} to "
+            f"{places.max():.6g} m and the next node is at {nearest:.6g} m; use another place, a "
+            "wider band or a finer mesh"
         )
     return numbers, weights
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -26,12 +25,10 @@ def davidson_modes(
     inverse: Inverse,
     count: int,
     unit: float,
-    balanced: Callable[[np.ndarray], np.ndarray] | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the `count` lowest modes by Davidson iteration with an approximate ``K⁻¹``.
 
-    `inverse` is an approximate one of the stiffness, `unit` the rounding error of ``K u`` for a
-    displacement of norm 1 [N], and `balanced` takes what reactions balance out of residuals (n, k).
+    `unit` is the rounding error of ``K u`` for a displacement of norm 1 [N].
     Returns as :func:`exudyn_rotor.solvers.modes.lanczos_modes`; ValueError without convergence.
 
     Restarts keep the latest Ritz vectors and those before them ("GD+k"): Stathopoulos, Saad,
@@ -58,9 +55,7 @@ def davidson_modes(
         values, turn = np.linalg.eigh(0.5 * (energy + energy.T))
         values, turn = values[:sought], turn[:, :sought]
         modes, inertia = basis @ turn, (momenta @ turn) * values
-        residual = forces @ turn - inertia
-        if balanced is not None:
-            residual = balanced(residual)
+        residual = inverse.without_reactions(forces @ turn - inertia)
         allowed = _RESIDUAL * np.linalg.norm(inertia, axis=0)
         allowed += _ROUNDING_SHARE * unit * np.linalg.norm(modes, axis=0)
         excess = np.linalg.norm(residual, axis=0) / allowed

@@ -20,7 +20,7 @@ from exudyn_rotor.solvers.factor import (
     row_norm,
 )
 from exudyn_rotor.solvers.two_level import TwoLevel, conjugate_gradients
-from exudyn_rotor.theory.axis import rotations, translations
+from exudyn_rotor.theory.axis import coordinates, rigid_motions
 
 Rotor = Any  # a FiniteElementRotor, of the layer above
 SOLVERS = ("auto", "direct", "iterative")
@@ -80,11 +80,6 @@ def _check_memory(stiffness: sp.csr_array, iterative: bool) -> None:
         )
 
 
-def coordinates(nodes: np.ndarray) -> np.ndarray:
-    """Return the numbers of the coordinates of nodes."""
-    return (3 * np.asarray(nodes)[:, None] + np.arange(3)).ravel()
-
-
 def free_rigid_motions(
     nodes: np.ndarray, mass: sp.csr_array, stiffness: sp.csr_array, count: int
 ) -> np.ndarray:
@@ -94,7 +89,7 @@ def free_rigid_motions(
     counts, but displaces nothing and is not returned. ValueError if the stiffness resists one.
     """
     size = np.linalg.norm(np.ptp(nodes, axis=0)) or 1.0
-    motions = np.hstack([translations(len(nodes)), rotations(nodes, nodes.mean(axis=0)) / size])
+    motions = rigid_motions(nodes / size, nodes.mean(axis=0) / size)
     values, turn = np.linalg.eigh(motions.T @ (mass @ motions))
     seen = values > 1e-12 * values[-1]  # nodes on one line have no moment of inertia about it
     motions = motions @ (turn[:, seen] / np.sqrt(values[seen]))
@@ -113,8 +108,10 @@ def relative_rounding(stiffness: sp.csr_array, rigid: np.ndarray) -> float:
 
     This is the machine precision, or more where the matrix lost digits in an export.
     """
-    terms = np.maximum(row_norm(stiffness) * np.abs(rigid).max(axis=0), np.finfo(float).tiny)
-    strains = np.abs(stiffness @ rigid).max(axis=0) / terms
+    terms = np.maximum(
+        row_norm(stiffness) * np.abs(rigid).max(axis=0, initial=0.0), np.finfo(float).tiny
+    )
+    strains = np.abs(stiffness @ rigid).max(axis=0, initial=0.0) / terms
     return max(np.finfo(float).eps, strains.max(initial=0.0))
 
 
@@ -123,19 +120,13 @@ class InertiaRelief:
 
     For a load ``f`` it gives the ``u`` with ``K u = f − M R Rᵀ f`` and ``RᵀM u = 0``: the load is
     balanced by the inertia forces of the rigid acceleration, and the answer has no rigid part.
+    `rigid` (m, r) are the mass-orthonormal motions ``R`` of :func:`free_rigid_motions`; with
+    ``r = 0`` this is the ordinary inverse.
+
     This is exact with one factorisation: as many coordinates as there are free rigid motions are
     held by springs; a balanced load causes no reactions there, so where the springs are and how
     stiff does not matter. Or conjugate gradients find it, which a balanced load never leads into
-    a rigid motion.
-
-    Parameters
-    ----------
-    stiffness, mass : scipy.sparse.csr_array, shape (m, m)
-    rigid : ndarray, shape (m, r)
-        Mass-orthonormal free rigid motions ``R`` of :func:`free_rigid_motions`; with ``r = 0``
-        this is the ordinary inverse.
-    interpolation : scipy.sparse.csr_array, shape (m, c), optional
-        Displacements from those of the vertices, for iteration; without it there is a factor.
+    a rigid motion, by the `interpolation` (m, c) of displacements from those of the vertices.
 
     ValueError if the stiffness is singular even with the rigid motions held.
     """
@@ -147,7 +138,8 @@ class InertiaRelief:
         rigid: np.ndarray,
         interpolation: sp.csr_array | None = None,
     ) -> None:
-        self.rigid = rigid
+        self.rigid, self.left_out = rigid, rigid.shape[1]
+        self.precision = relative_rounding(stiffness, rigid)
         self._momentum = mass @ rigid
         self.iterative = interpolation is not None
         _check_memory(stiffness, self.iterative)
@@ -181,6 +173,10 @@ class InertiaRelief:
             self._stiffness, self.precondition, columns, self._unit, tolerance
         )
         return self._elastic(solved.reshape(load.shape))
+
+    def without_reactions(self, force: np.ndarray) -> np.ndarray:
+        """Return all of the forces (m, k): there are no reactions."""
+        return force
 
     def precondition(self, load: np.ndarray) -> np.ndarray:
         """Return roughly what :meth:`solve` does, for shape (m, k); symmetric and definite."""

@@ -18,7 +18,6 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pyngcore
-import scipy.linalg as la
 import scipy.sparse as sp
 import scipy.sparse.linalg as sla
 
@@ -54,14 +53,14 @@ class TwoLevel:
         self._interpolation = interpolation
         self._restriction = sp.csr_array(interpolation.T)
         linear = self._restriction @ (stiffness @ interpolation)
-        definite = sp.diags_array(_DEFINITE * linear.diagonal())
-        self._linear_stiffness = sp.csr_array(linear + definite)
+        linear = sp.csr_array(linear + sp.diags_array(_DEFINITE * linear.diagonal()))
         self._linear_mass = sp.csr_array(self._restriction @ (mass @ interpolation))
         motions = rigid[: interpolation.shape[1]]
         values, turn = np.linalg.eigh(motions.T @ (self._linear_mass @ motions))
         motions = motions @ (turn / np.sqrt(values))
-        relief = inertia_relief(self._linear_stiffness, self._linear_mass, motions)
+        relief = inertia_relief(linear, self._linear_mass, motions)
         self._linear_solve: Solve = relief.solve
+        self._flexible = linear.shape[0] - motions.shape[1]
         entries = stiffness.data.astype(np.float32), stiffness.indices, stiffness.indptr
         self._stiffness = sp.csr_array(entries, shape=stiffness.shape)
         self._blocks = _inverse_blocks(stiffness)
@@ -80,13 +79,12 @@ class TwoLevel:
 
     def start(self, count: int) -> np.ndarray:
         """Return the lowest modes (m, count) of the linear elements."""
-        stiffness, mass = self._linear_stiffness, self._linear_mass
-        size = mass.shape[0]
-        if modes.is_small(size, count):
-            dense = stiffness.toarray(), mass.toarray()
-            found = la.eigh(*dense, subset_by_index=[0, min(count, size) - 1])[1]
+        mass, solve = self._linear_mass, self._linear_solve
+        count = min(count, self._flexible)
+        if 4 * count > mass.shape[0]:
+            found = modes.dense_modes(mass, solve, count)[1]
         else:
-            found = modes.lanczos_modes(mass, self._linear_solve, count, _START_TOLERANCE)[1]
+            found = modes.lanczos_modes(mass, solve, count, _START_TOLERANCE)[1]
         return self._interpolation @ found
 
     def _cycle(self, load: np.ndarray) -> np.ndarray:

@@ -99,17 +99,12 @@ class StressField(Result):
                 f"selection: it is of another rotor, {selection.source!r}, than {reduced!r}; take "
                 "the one that was added to the scene, or select_modes(reduced, formulation)"
             )
-        if reduced.shapes is None or reduced.shapes.stress is None:
-            raise ValueError(
-                "reduced: the rotor was reduced without stress modes; use reduce(…, stress=True) "
-                "with a model from NGSolve, and keep the shapes"
-            )
-        columns = reduced.shapes.stress
+        rest = reduced.unshown_stress
         return cls(
             positions=reduced.shapes.nodes,
             triangles=reduced.shapes.triangles,
-            modes=columns @ selection.T,
-            rest=reduced.unshown_stress,
+            modes=reduced.shapes.stress @ selection.T,
+            rest=rest,
             has_static=getattr(reduced.centrifugal, "stress", None) is not None,
         )
 
@@ -139,14 +134,9 @@ class StressField(Result):
             If there is not one finite coordinate per mode, or a node does not exist.
         """
         speed = checks.number(speed, "speed", "rad/s")
-        values = checks.array(modal_coordinates, "modal_coordinates")
         count = self.modes.shape[2]
-        if values.shape != (count,):
-            raise ValueError(
-                f"modal_coordinates: needs {count} modal coordinates, shape ({count},), got the "
-                f"shape {values.shape}; rows over time go to stress_history"
-            )
-        return self.history(values[None], np.array([speed]), nodes)[0]
+        values = checks.vector(modal_coordinates, "modal_coordinates", size=count)
+        return self.history(values[None], [speed], nodes)[0]
 
     def history(
         self, modal_coordinates: ArrayLike, speed: ArrayLike, nodes: Nodes = slice(None)
@@ -154,7 +144,7 @@ class StressField(Result):
         """Return the stress of (s, m) coordinates at s speeds (s, n, 6) [Pa]; see :meth:`at`."""
         shape = (None, self.modes.shape[2])
         values = checks.array(modal_coordinates, "modal_coordinates", shape=shape)
-        speed = checks.array(speed, "speed", "rad/s", shape=(len(values),))
+        speed = checks.one_or_each(speed, "speed", "rad/s", len(values))
         if not isinstance(nodes, slice):
             nodes = checks.whole_numbers(nodes, "nodes", most=len(self.positions) - 1)
         dynamic = np.einsum("nck,sk->snc", self.modes[nodes], values, optimize=True)

@@ -70,10 +70,6 @@ class StressHistory(Result):
     positions: np.ndarray = numbers("nodes", 3)
     triangles: np.ndarray = numbers("triangles", "corners", dtype=int, least=0)
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        checks.whole_numbers(self.nodes, "nodes", most=len(self.positions) - 1)
-
     @property
     def von_mises(self) -> np.ndarray:
         """Von Mises stress of the nodes with a history, shape (s, c) [Pa]."""
@@ -170,25 +166,23 @@ def stress_history(
     [7. 7. 7. 7.] [5. 7.]
     """
     how = "make one with StressField.of(reduced, body)"
-    count_of_modes = checks.instance(field, "field", StressField, how).modes.shape[2]
     time = checks.vector(time, "time", "s", size=None)
-    coordinates = checks.array(modal_coordinates, "modal_coordinates")
-    if not time.size or coordinates.shape != (time.size, count_of_modes):
-        raise ValueError(
-            f"modal_coordinates: needs one row of {count_of_modes} for each of the {time.size} "
-            f"instants of time, at least one, got the shape {coordinates.shape}"
-        )
-    speed = checks.array(speed, "speed", "rad/s")
-    if speed.shape not in ((), time.shape):
-        raise ValueError(
-            f"speed: needs one number, or one for each of the {time.size} times, got the shape "
-            f"{speed.shape}"
-        )
-    speed = np.broadcast_to(speed, time.shape)
+    if not time.size:
+        raise ValueError("time: needs at least one instant, got none")
+    shape = time.size, checks.instance(field, "field", StressField, how).modes.shape[2]
+    coordinates = checks.array(modal_coordinates, "modal_coordinates", shape=shape)
+    speed = checks.one_or_each(speed, "speed", "rad/s", time.size)
     count = checks.count(count, "count", least=1)
     warn_without_static(field, speed)
     peak, when = _envelope(field, coordinates, speed)
-    chosen = np.argsort(peak)[::-1][:count] if nodes is None else _highest_first(nodes, peak)
+    chosen = np.argsort(peak)[::-1]
+    if nodes is None:
+        chosen = chosen[:count]
+    else:
+        given = checks.whole_numbers(nodes, "nodes", most=len(peak) - 1)
+        chosen = chosen[np.isin(chosen, given)]
+        if not chosen.size:
+            raise ValueError(f"nodes: needs node numbers from 0 to {len(peak) - 1}, got none")
     return StressHistory(
         time=time,
         speed=speed,
@@ -199,13 +193,6 @@ def stress_history(
         positions=field.positions,
         triangles=field.triangles,
     )
-
-
-def _highest_first(nodes: Sequence[int], peak: np.ndarray) -> np.ndarray:
-    chosen = checks.whole_numbers(nodes, "nodes", most=len(peak) - 1)
-    if not chosen.size:
-        raise ValueError(f"nodes: needs node numbers from 0 to {len(peak) - 1}, got none")
-    return chosen[np.argsort(peak[chosen])[::-1]]
 
 
 def _envelope(

@@ -57,6 +57,16 @@ def rotations(nodes: Array, center: Array) -> Array:
     return columns.reshape(3, -1).T
 
 
+def rigid_motions(nodes: Array, center: Array) -> Array:
+    """Return the :func:`translations`, then the :func:`rotations` about `center` (3n × 6)."""
+    return np.hstack([translations(len(nodes)), rotations(nodes, center)])
+
+
+def coordinates(nodes: ArrayLike) -> Array:
+    """Return the numbers of the coordinates x, y, z of nodes."""
+    return (3 * np.asarray(nodes)[:, None] + np.arange(3)).ravel()
+
+
 def coupled(matrix: sp.csr_array) -> np.ndarray:
     """Return which coordinates have entries off the diagonal, (3n,); clamped nodes have none."""
     strength = abs(matrix)

@@ -1,16 +1,6 @@
-"""Which coordinates a rotor has: one description for all sections of the paper.
+"""Which coordinates a rotor has: one description for Sections 2.2 to 2.5 of the paper.
 
-====================  ==================  =============================================
-translation           spin                section
-====================  ==================  =============================================
-``'free'``            ``'free'``          2.2: τ ∈ R³, θ, ζ
-``'in-plane'``        ``'free'``          2.3: τ* ∈ R², θ, ζ
-``'none'``            ``'free'``          2.4: θ, ζ
-``'none'``, τ(t)      speed or θ(t)       2.5: ζ
-====================  ==================  =============================================
-
-The other combinations follow by the same rule: a prescribed coordinate leaves the unknowns, and
-its acceleration goes to the right-hand side.
+A prescribed coordinate leaves the unknowns, and its acceleration goes to the right-hand side.
 """
 
 from __future__ import annotations
@@ -156,10 +146,9 @@ def suited_translation(
 ) -> str | PrescribedMotion:
     """Return the translation that ``'auto'`` stands for; anything else as it was given.
 
-    All translations can represent the same displacements, and yet only ``'free'`` cannot give
-    another motion: loads on the frame's node act, and what stands or moves slowly in space does not
-    turn backwards in modes. A rotor that its own stiffness holds in its frame (`grounded`) has no
-    other than ``'none'``.
+    Of those that represent the same displacements only ``'free'`` has loads on the frame's node act
+    and does not turn backwards in modes what stands in space. A rotor that its own stiffness holds
+    in its frame (`grounded`) has no other than ``'none'``.
     """
     if isinstance(translation, PrescribedMotion):
         return translation
@@ -231,16 +220,11 @@ class Formulation:
                 "drive='elastic' needs a prescribed spin; with spin='free' leave it out"
             )
         checks.choice(self.spin_coupling, "spin_coupling", SPIN_COUPLINGS)
-        if self.spin_coupling == "frozen" and self.spin != "free":
+        if self.spin_coupling == "frozen" and not (self.has_spin and self.translation_count):
             raise ValueError(
-                "spin_coupling='frozen' needs spin='free'; a prescribed spin has no equation that "
-                "it would shorten, so leave it out"
-            )
-        if self.spin_coupling == "frozen" and not self.translation_count:
-            raise ValueError(
-                "spin_coupling='frozen' needs translation='free' or 'in-plane': rigid motions that "
-                "are modes turn backwards in the rotor frame, and err with every change of speed "
-                "by the Euler force that a frozen spin leaves out"
+                "spin_coupling='frozen' needs spin='free', whose equation it shortens, and "
+                "translation='free' or 'in-plane': rigid motions that are modes err with every "
+                "change of speed by the Euler force that a frozen spin leaves out"
             )
 
     @property
@@ -358,7 +342,7 @@ class FloatingFrame:
     def at(self, t: float, q: ArrayLike, q_t: ArrayLike) -> Instant:
         """Return an instant, split into its parts."""
         q, q_t = self._checked(q, "q"), self._checked(q_t, "q_t")
-        form, t = self.formulation, checked_time(t)
+        form, t = self.formulation, checks.number(t, "t", "s")
         if form.has_spin:
             theta, omega, omega_t = float(q[self._spin][0]), float(q_t[self._spin][0]), 0.0
         else:
@@ -366,6 +350,14 @@ class FloatingFrame:
             omega_t = form.spin.acceleration(t)
         A = self.orientation @ self._axis.rotation(theta)
         return Instant(omega, omega_t, q[self.modes], q_t[self.modes], A)
+
+    def constant_force(self) -> np.ndarray:
+        """Return the weight on translations and, at constant speed, ``ω²h``, shape (size,)."""
+        force = np.zeros(self.size)
+        force[self.translations] = self.weight
+        if self.formulation.is_constant_speed:
+            force[self.modes] = self.spin_terms.load(self.formulation.spin.speed)
+        return force
 
     def unbalance(self, zeta: np.ndarray) -> np.ndarray:
         """``mχ* + S*ζ``, the bracket of (65): the static unbalance of the deformed rotor."""
@@ -377,10 +369,3 @@ class FloatingFrame:
         if right and values.dtype == float and math.isfinite(values.dot(values)):
             return values
         return checks.vector(values, name, size=self.size)
-
-
-def checked_time(t: float) -> float:
-    """Return a finite time [s]."""
-    if type(t) is not float or not math.isfinite(t):
-        t = checks.number(t, "t", "s")
-    return t

@@ -8,14 +8,12 @@ out of their basis; here linear conditions ``R c_f = 0`` do,
 
 the mean translation and the mean rotation about the axis, with y from the centre of mass and I the
 tensor of inertia about it. There are 4, 3, 1 and 0 of them in Sections 2.2, 2.3, 2.4 and 2.5; one
-in 2.5 as well where the rotor's mean rotation follows θ(t). They neither add nor lose a motion:
-each motion of the nodes is, to first order in c_f, one of the frame and one field c_f that keeps
-them, and only one, since the frame's own motions break them (``R`` times a rigid motion is not
-singular). A complete basis of component modes spans the same fields.
+in 2.5 as well where the rotor's mean rotation follows θ(t). They neither add nor lose a motion, for
+``R`` times the frame's own motions is not singular.
 
-Forces ``Rᵀλ`` that belong to the conditions take up every force in the range of ``Rᵀ``. So of S the
-part along the conditions is zero here, and g is ``g − α r``, with r the row of the spin and α such
-that a rotor in balance has g = 0: the same accelerations, other λ.
+Forces ``Rᵀλ`` of the conditions take up every force in the range of ``Rᵀ``. So of S the part along
+the conditions is zero here, and g is ``g − α r``, with r the row of the spin and α such that a
+rotor in balance has g = 0: the same accelerations, other λ.
 
 Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
 """
@@ -40,17 +38,15 @@ Factors = tuple[np.ndarray, np.ndarray]
 
 @dataclass(frozen=True, eq=False)
 class SumMatrix:
-    """A sparse matrix and low-rank terms, ``A + Σ VᵀWV``, for products with vectors."""
+    """A sparse matrix and one of low rank, ``A + VᵀWV``, for products with vectors."""
 
     sparse: sp.csr_array  # (k, k)
-    factors: tuple[Factors, ...] = ()  # V (r, k) and W (r, r) of every term
+    factors: Factors  # V (r, k) and W (r, r)
 
     def __matmul__(self, vector: np.ndarray) -> np.ndarray:
         """Return the product with a vector (k,)."""
-        product = self.sparse @ vector
-        for V, W in self.factors:
-            product += V.T @ (W @ (V @ vector))
-        return product
+        V, W = self.factors
+        return self.sparse @ vector + V.T @ (W @ (V @ vector))
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,14 +160,13 @@ class FullMotion(Motion):
         none = sp.csr_array(second_order.K2.shape)
         sparse = Stiffening(second_order.K2, none, second_order.K4)
         super().__init__(invariants, formulation, sparse, orientation, plane, gravity)
-        terms, (V, W) = self.spin_terms, second_order.tilt
-        euler = (second_order.euler,)
-        self.second_order = second_order
+        terms, (V, W), euler = self.spin_terms, second_order.tilt, second_order.euler
+        self.second_order, self.sparse_terms = second_order, terms
         self.spin_terms = replace(
             terms,
-            C_hat=SumMatrix(sp.csr_array(terms.C_hat), ((V, -W),)),
-            W=SumMatrix(sp.csr_array(terms.W), euler),
-            B=SumMatrix(sp.csr_array(terms.B), euler),
+            C_hat=SumMatrix(terms.C_hat, (V, -W)),
+            W=SumMatrix(terms.W, euler),
+            B=SumMatrix(terms.B, euler),
         )
 
     @property
@@ -201,14 +196,9 @@ class FullMotion(Motion):
 
         Without low-rank stiffening.
         """
-        form, inv = self.formulation, self.invariants
-        damping, stiffness = inv.D, inv.K
-        if form.is_constant_speed:
-            speed, terms = form.spin.speed, self.spin_terms
-            damping = damping + terms.damping(speed)
-            stiffness = stiffness - speed**2 * terms.C_hat.sparse
-            if terms.K4 is not None:
-                stiffness = stiffness + speed**4 * terms.K4
+        form, inv, terms = self.formulation, self.invariants, self.sparse_terms
+        speed = form.spin.speed if form.is_constant_speed else 0.0
+        damping, stiffness = inv.D + terms.damping(speed), inv.K + terms.stiffness(speed)
         blocks = {("f", "f"): inv.M}
         if form.translation_count:
             blocks["t", "t"] = inv.mass * np.eye(form.translation_count)
@@ -220,14 +210,6 @@ class FullMotion(Motion):
         empty = sp.csr_array((self.size, self.size))
         of_fields = [self._placed({("f", "f"): matrix}, empty) for matrix in (damping, stiffness)]
         return self._placed(blocks, empty), *of_fields
-
-    def constant_force(self) -> np.ndarray:
-        """Return the weight on translations and, at constant speed, ``ω²h``, shape (size,)."""
-        force = np.zeros(self.size)
-        force[self.translations] = self.weight
-        if self.formulation.is_constant_speed:
-            force[self.modes] = self.spin_terms.load(self.formulation.spin.speed)
-        return force
 
     def varying_inertia(self, c: np.ndarray) -> tuple[float, np.ndarray]:
         """Return what adds to Θ (85), and ``Wc`` of (84)."""
@@ -269,14 +251,10 @@ class FullMotion(Motion):
         matrix = sp.csr_array((self.size, self.size))
         if self.formulation.is_constant_speed:
             return matrix
-        terms, now = self.spin_terms, self.at(t, q, q_t)
+        terms, sparse, now = self.spin_terms, self.sparse_terms, self.at(t, q, q_t)
         omega = now.omega
-        block = (-factor_q * omega**2) * terms.C_hat.sparse + (2.0 * factor_v * omega) * terms.G
-        if now.omega_t:
-            block = block + (factor_q * now.omega_t) * terms.W.sparse
-        if terms.K4 is not None:
-            block = block + (factor_q * omega**4) * terms.K4
-        blocks = {("f", "f"): block}
+        stiffness, damping = sparse.stiffness(omega, now.omega_t), sparse.damping(omega)
+        blocks = {("f", "f"): factor_q * stiffness + factor_v * damping}
         if self.formulation.has_spin:
             share = 1.0 if self.formulation.has_frozen_spin else 2.0
             centrifugal = self._centrifugal(now.zeta)

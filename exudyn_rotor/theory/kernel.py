@@ -25,7 +25,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from exudyn_rotor import checks
 from exudyn_rotor.theory.axis import skew
 from exudyn_rotor.theory.formulation import FloatingFrame
 
@@ -43,61 +42,37 @@ def constant_part(motion: FloatingFrame) -> ConstantPart:
     """Return the linear terms with constant coefficients of `motion`."""
     inv, modes = motion.invariants, motion.modes
     stiffness, damping = np.zeros((2, motion.size, motion.size))
-    force = np.zeros(motion.size)
     stiffness[modes, modes], damping[modes, modes] = inv.K, inv.D
-    force[motion.translations] = motion.weight
     if motion.formulation.is_constant_speed:
         speed, terms = motion.formulation.spin.speed, motion.spin_terms
         stiffness[modes, modes] += terms.stiffness(speed)
         damping[modes, modes] += terms.damping(speed)
-        force[modes] = terms.load(speed)
-    return ConstantPart(stiffness, damping, force)
+    return ConstantPart(stiffness, damping, motion.constant_force())
 
 
 class Kernel:
     """Mass matrix, forces and Jacobian of a dense motion, less the constant part.
 
-    Parameters
-    ----------
-    motion : Motion
-        With dense invariants.
-    unknowns : sequence of int
-        Places of the motion's unknowns among `size` coordinates; the modes come last, in a row.
-    size : int
-
-    Attributes
-    ----------
-    rows, columns : ndarray of int
-        Places of the entries of the mass matrix that vary, on or above the diagonal or its mirror
-        image; the inertia about the axis (85), if it is an unknown's, is the first.
-    has_modal_forces, has_forces : bool
-        Whether the constant part leaves out inertia forces on the modes, and any force at all.
+    `unknowns` are the places of the motion's unknowns among `size` coordinates; the modes come
+    last, in a row. The entries of the mass matrix that vary stand at `rows` and `columns`, on or
+    above the diagonal, or in its mirror image; the inertia (85) of a free spin is the first.
     """
 
     def __init__(self, motion: FloatingFrame, unknowns: Sequence[int], size: int) -> None:
-        inv, count = motion.invariants, motion.invariants.size
-        if inv.is_sparse:
+        count, form = motion.invariants.size, motion.formulation
+        if motion.invariants.is_sparse:
             raise ValueError("motion: needs dense invariants")
-        size = checks.count(size, "size", least=motion.size)
-        places = checks.whole_numbers(unknowns, "unknowns", most=size - 1)
-        modes = np.arange(size - count, size)
-        if len(places) != motion.size or np.any(places[motion.size - count :] != modes):
-            raise ValueError(
-                f"unknowns: need {motion.size} places, the last {count} of {size} for the modes, "
-                f"got {checks.shown(places.tolist())}"
-            )
-        form = motion.formulation
         self._motion, self._count, self._first = motion, count, size - count
-        self._translations = np.asarray(places[motion.translations], dtype=int)
-        self._spin = int(places[form.translation_count]) if form.has_spin else None
+        self._translations = np.array(unknowns[motion.translations], dtype=int)
+        self._spin = int(unknowns[form.translation_count]) if form.has_spin else None
         self._varies = form.has_spin and not form.has_frozen_spin  # the spin's own inertia
+        # whether the constant part leaves out inertia forces on the modes
         self.has_modal_forces = not form.is_constant_speed
-        self.has_forces = self.has_modal_forces or motion.is_coupled or motion.has_body_force
         self._force, self._jacobian = np.zeros(size), np.zeros((size, size))
         self._modal_force = self._force[self._first :]
         self._stack(motion)
         self._turning = _Turning(motion)
-        self._place_mass(modes)
+        self._place_mass(np.arange(size - count, size))
         self._factors = np.zeros(3)
         self._last: list | None = None
         self._time = math.nan
@@ -292,20 +267,6 @@ class _Turning:
     """What depends on the angle: NᵀA, NᵀAS, and gravity less the frame's acceleration.
 
     With ``A = eeᵀ + cosθ (I − eeᵀ) + sinθ ẽ`` (55), all of it is linear in ``(1, cosθ, sinθ)``.
-
-    Attributes
-    ----------
-    is_needed, has_body_force : bool
-    e : ndarray, shape (3, 3)
-        ``ẽ``.
-    coupled : ndarray of int
-        Modes that translations are coupled with.
-    A : ndarray, shape (translations, 3)
-        ``NᵀA``, rotor axes to unknown translations.
-    coupling : ndarray
-        ``NᵀAS`` of the coupled modes, row by row.
-    modal, by_deflection, torque
-        ``Sᵀa``, ``S*ᵀa`` and ``(mχ*)ᵀa`` of the body acceleration a in rotor axes.
     """
 
     def __init__(self, motion: FloatingFrame) -> None:
@@ -324,8 +285,8 @@ class _Turning:
         self._angles = np.ones(3)
         self._table = np.vstack([A.reshape(-1, 3), coupling.reshape(-1, 3)])
         self._flat = np.zeros(len(self._table))
-        self.A = self._flat[: A.shape[0] * 3].reshape(-1, 3)
-        self.coupling = self._flat[A.shape[0] * 3 :]
+        self.A = self._flat[: A.shape[0] * 3].reshape(-1, 3)  # NᵀA
+        self.coupling = self._flat[A.shape[0] * 3 :]  # NᵀAS of the coupled modes, row by row
         self._is_coupled = motion.is_coupled
         self._acceleration = form.translation.acceleration if form.moves_origin else None
         self._gravity = motion.gravity
@@ -333,7 +294,7 @@ class _Turning:
         # rows · Aᵀ · orientationᵀ · a
         self._rows = np.einsum("rb,abv,ca->rcv", rows, turns, motion.orientation)
         self._loads = np.einsum("rcv,c->rv", self._rows, motion.gravity)
-        self._body = np.zeros(len(rows))
+        self._body = np.zeros(len(rows))  # Sᵀa, S*ᵀa and (mχ*)ᵀa
         self.modal, self.by_deflection = self._body[: inv.size], self._body[inv.size : -1]
 
     @property

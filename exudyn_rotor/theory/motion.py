@@ -9,16 +9,9 @@ The kinetic energy behind the terms, with ``W = G + B`` and ``Ĉ = C − K2``
 
     T = ½m|τ̇|² + τ̇·A(ω(mχ* + S*ζ) + Sζ̇) + ½ω²(Θ + 2hᵀζ + ζᵀĈζ) + ωζ̇ᵀ(g + Wζ) + ½ζ̇ᵀMζ̇
 
-A free spin may be *frozen*. Then T lacks ``T₁ = ½ω²c + ωζ̇ᵀWζ`` with ``c = 2hᵀζ + ζᵀĈζ``, so that
-(85) is Θ and (84) is g, both constant. The forces on the modes stay those of (87),
-``ω²(h + Ĉζ) − 2ωGζ̇``: what T₁ gives at steady speed, where the Euler force ``−ω̇Wζ`` is zero. Their
-power is ``½ω²ċ``, since G is skew; the torque ``−½ωċ = −ω(h + Ĉζ)ᵀζ̇``, half of (86), takes it from
-the spin, so ``T − T₁ + ½ζᵀKζ`` is conserved exactly. From ``Θω̇ = −½ωċ`` follows ω falling by the
-share c/2Θ, where conserved momentum, ``(Θ + c)ω``, has c/Θ: spin fluctuations come out halved, and
-speeds and angles err by c/2Θ, below 1e-4 for rotors in balance.
-
-A static displacement adds ``−½ω⁴ζᵀK4ζ`` to the Lagrangian function: the force ``−ω⁴K4ζ`` on the
-modes. A free spin does not take it.
+Of a *frozen* free spin T lacks ``½ω²c + ωζ̇ᵀWζ`` with ``c = 2hᵀζ + ζᵀĈζ``, so that (85) is Θ and
+(84) is g (``docs/theory/equations.md``). A static displacement adds ``−½ω⁴ζᵀK4ζ`` to the
+Lagrangian function: the force ``−ω⁴K4ζ`` on the modes. A free spin does not take it.
 
 Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
 """
@@ -32,7 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.theory.formulation import FloatingFrame, checked_time
+from exudyn_rotor.theory.formulation import FloatingFrame
 from exudyn_rotor.theory.kernel import ConstantPart, Kernel, constant_part
 from exudyn_rotor.theory.terms import Terms, terms_of
 
@@ -140,7 +133,7 @@ class Motion(FloatingFrame):
     def mass_matrix(self, t: float, q: ArrayLike) -> np.ndarray:
         """Return the mass matrix (65, 41–43, 84, 85), shape (size, size)."""
         kernel, mass = self._kernel, self._constant_mass.copy()
-        values = kernel.mass_entries(checked_time(t), self._checked(q, "q").tolist())
+        values = kernel.mass_entries(checks.number(t, "t", "s"), self._checked(q, "q").tolist())
         mass[kernel.rows, kernel.columns] = mass[kernel.columns, kernel.rows] = values
         return mass
 
@@ -149,20 +142,17 @@ class Motion(FloatingFrame):
 
         (66), (86), (87), the prescribed accelerations of (108), and App. A.
         """
-        q, q_t = self._checked(q, "q"), self._checked(q_t, "q_t")
+        t, q, q_t = checks.number(t, "t", "s"), self._checked(q, "q"), self._checked(q_t, "q_t")
         fixed = self._constant_part
         constant = fixed.force - fixed.stiffness @ q - fixed.damping @ q_t
-        return constant + self._kernel.forces(checked_time(t), q.tolist(), q_t.tolist())
+        return constant + self._kernel.forces(t, q.tolist(), q_t.tolist())
 
     def jacobian(self, t: float, q: ArrayLike, q_t: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
         """Return the derivatives of :meth:`forces` by q and by q̇, each (size, size)."""
-        q, q_t = self._checked(q, "q").tolist(), self._checked(q_t, "q_t").tolist()
-        by_q = -self._constant_part.stiffness - self._kernel.jacobian(
-            checked_time(t), q, q_t, 1.0, 0.0
-        )
-        by_v = -self._constant_part.damping - self._kernel.jacobian(
-            checked_time(t), q, q_t, 0.0, 1.0
-        )
+        t, q, q_t = checks.number(t, "t", "s"), self._checked(q, "q"), self._checked(q_t, "q_t")
+        state, fixed = (t, q.tolist(), q_t.tolist()), self._constant_part
+        by_q = -fixed.stiffness - self._kernel.jacobian(*state, 1.0, 0.0)
+        by_v = -fixed.damping - self._kernel.jacobian(*state, 0.0, 1.0)
         return by_q, by_v
 
     def energy(

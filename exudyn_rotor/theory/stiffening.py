@@ -1,28 +1,11 @@
 """Centrifugal stiffening: the work of the centrifugal field on second-order displacements.
 
-The paper's equations (84–87, 103–109) hold the softening ``−ω²C`` only. The centrifugal load
-``ω² M x_⊥`` also does work on the second-order part u₂ of a displacement, a stiffness of the same
-order. Without it a rigid rotor tilting in the rotating frame has the stiffness
-``k − ω²(I_t − I_p/2)`` instead of ``k − ω²(I_t − I_p)`` and turns falsely unstable.
-
-Levels
-------
-``'none'``
-    The paper's equations.
-``'tilt'``
-    Exact for the rigid rotations contained in the basis, from M and x alone.
-``'full'``
-    The geometric stiffness of the static centrifugal stress, which stiffens flexible modes, too
-    (blades, discs), and contains ``'tilt'``: a stress in equilibrium does the work of its load.
-    Needs a rotor reduced with a prestress (:mod:`exudyn_rotor.prestress.static_solution`). With
-    its initial displacement there is a stiffness per ω⁴ as well.
-
-``'auto'`` is ``'full'`` where the static stress is known and ``'tilt'`` elsewhere.
-
-Derivation of ``'tilt'``: a displacement is split by mass-orthogonality into translation, rotation
-φ about the centre of mass and a flexible rest ψ; composing them gives
-``u₂ = ½ φ × (φ × y) + φ × ψ`` with y from the centre of mass. The work of a nodal force field
-``f = M F x`` on it is a quadratic form in (φ, ψ) that needs only the invariants J, S and P.
+The paper's equations (84–87, 103–109) hold the softening ``−ω²C`` only; the level ``'none'`` is
+theirs. ``'tilt'`` is exact for the rigid rotations in the basis, from M and x alone: a displacement
+is split by mass-orthogonality into translation, rotation φ about the centre of mass and a flexible
+rest ψ, whose second-order part is ``u₂ = ½ φ × (φ × y) + φ × ψ`` with y from the centre of mass.
+``'full'`` has the geometric stiffness of the static stress, which contains ``'tilt'``, and with an
+initial displacement a stiffness per ω⁴. The derivation is in ``docs/theory/stiffening.md``.
 """
 
 from __future__ import annotations

@@ -72,14 +72,7 @@ class Terms(dict[str | int, Term]):
 def terms_of(motion: FloatingFrame, t: float, q: ArrayLike, q_t: ArrayLike) -> Terms:
     """Return all blocks of a motion at an instant, those of coordinates that it prescribes, too.
 
-    Parameters
-    ----------
-    motion : Motion
-        Of component modes, or of the full model (Ψ = I), whose numbers stand first then.
-    t : float
-        Time [s].
-    q, q_t : array_like, shape (size,)
-        Unknowns of `motion` and their rates.
+    Of the full model (Ψ = I) its own numbers of equations stand first.
     """
     now = motion.at(t, q, q_t)
     parts = [_invariants(motion), _translation(motion, now), _in_plane(motion, now)]

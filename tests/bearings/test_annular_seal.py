@@ -116,7 +116,7 @@ def test_whirl_in_a_seal_is_that_of_the_theory(spin):
     """Of a rigid rotor in two seals: M λ² + 2 [k + d (λ − iΩ/2) + m (λ − iΩ/2)²] = 0."""
     reduced = rings(heavy=0.0, modes=0)
     seals = [seal(), replace(seal(), interface="right")]
-    k, d, m = seals[0].terms(SPEED)
+    k, d, m = seals[0]._terms(SPEED)
     half, mass = 0.5j * SPEED, reduced.invariants.mass
     polynomial = [mass + 2 * m, 2 * (d - 2 * m * half), 2 * (k - d * half + m * half**2)]
     expected = np.roots(polynomial)

@@ -94,8 +94,8 @@ def test_speed_of_a_ring_is_that_of_shaw_and_nussdorfer(clearance, speed):
 def test_a_loaded_ring_is_in_balance_and_loads_are_carried():
     made, speed = floating(load=[3.0, -20.0]), 3e3
     ring = made.ring(speed)
-    torque = made.torque(speed, ring.speed)
-    assert abs(torque) < 1e-9 * made.torque(speed, 0.9 * ring.speed)
+    torque = made._torque(speed, ring.speed)
+    assert abs(torque) < 1e-9 * made._torque(speed, 0.9 * ring.speed)
     for film, whirl, ratio in (
         (made.inner, speed + ring.speed, ring.inner_ratio),
         (made.outer, ring.speed, ring.outer_ratio),
@@ -194,5 +194,5 @@ def test_films_take_a_ring_along_in_a_scene():
     settings.timeIntegration.verboseMode = 0
     mbs.SolveDynamic(settings)
     grown = mbs.GetSensorValues(spin)[-1] - start
-    rate = made.torque(speed, start) / (mass * radius**2)
+    rate = made._torque(speed, start) / (mass * radius**2)
     assert grown == pytest.approx(rate * end, rel=5e-3)  # which falls by the decay in this time

@@ -46,7 +46,7 @@ LEFT_OUT = {
 OF_SCENES = (
     *("law", "law_with_torque", "law_along", "slopes", "clearance_along", "film_edge", "coupling"),
     *("solved", "beside", "reach_along", "coefficients_at", "body_acceleration", "unbalance"),
-    *("forces", "tangent", "transmitted", "energy", "loss", "check_places"),
+    *("springs", "forces", "tangent", "transmitted", "energy", "loss", "check_places"),
 )
 
 
@@ -246,7 +246,7 @@ RIGHT = {
         t time value HarmonicResponse.rates.order
         Pad.start PointMass.mass UnbalanceResponse.rates.order""",
     "unknown": "at interface label name sensor title",
-    "number": "Support.stiffness Support.damping tilt_stiffness tilt_damping",
+    "number": "Support.stiffness Support.damping Support.mass tilt_stiffness tilt_damping",
     "empty": """
         eulerParametersRef rotationMatrixRef triangles variation
         BaseRecord.integrals.times Motion.mass_matrix.q_t

@@ -164,7 +164,7 @@ PLACES = {
         curved_elements, UserWarning, "are replaced by mid nodes"),
     "nonlinear/periodic_response.py:warn_of": (
         unstable_motion_on_rolling_bearings, UserWarning, "values .* the motion is unstable"),
-    "multibody/add_rotor.py:_add_solid": (
+    "multibody/add_rotor.py:add_rotor": (
         scene_of_a_full_lossy_rotor, UserWarning, "A scene runs without it"),
     "multibody/rotor/rotor_body.py:check_connections": (
         asked_for_connections, ConnectionWarning, "does not tilt"),
@@ -187,17 +187,16 @@ ELSEWHERE = {
     "linear/response/steady_response.py:_warn_of_missing": "no values at",
     "linear/response/response.py:warn_of_coarse_peaks": "too far apart to give its size and width",
     "evaluation/separation.py:_warn_of_speeds_left_out": "count, and the response is known from",
-    "linear/model/build.py:warn_of_structural_damping": "campbell finds modes without it",
-    "multibody/add_rotor.py:_add_reduced": "A scene runs without it",
+    "linear/model/build.py:warn_of_omissions": "campbell finds modes without it",
     "solvers/factor.py:_tell_of_mkl": "exudyn-rotor\\[mkl\\]",
-    "solid/meshes/mesh_data.py:warn": "taken as",
+    "solid/meshes/mesh_model.py:import_model": "taken as",
     "theory/stiffening.py:warn_of_left_out": "beyond 'tilt' is left out",
     "ross.py:_check_held": "of shaft elements are left out",
     "bearings/tilting_pad.py:_of_pads": "carry nothing at",
-    "bearings/own_table.py:table_of": "speeds are left out",
+    "bearings/controlled_support.py:table_of": "speeds are left out",
     "linear/own_frequency.py:own_motions": "do not settle at their own frequency",
     "linear/model/linear_model.py:warn_beyond": "keeps its ends for motions of",
-    "linear/over.py:_warn_of_lost": "do not converge for all motions",
+    "linear/over.py:motions_over": "do not converge for all motions",
 }
 TEXTS = {place: text for place, (_, _, text) in PLACES.items()} | ELSEWHERE
 # places that several kinds of bodies reach

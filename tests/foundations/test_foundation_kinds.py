@@ -78,13 +78,13 @@ def test_bad_foundations_are_refused():
     ):  # fmt: skip
         with pytest.raises(error, match=match):
             Foundation(*arguments)
-    with pytest.raises(ValueError, match="frequencies: needs numbers > 0"):
+    with pytest.raises(ValueError, match="frequencies: needs a finite number"):
         Foundation.from_modes([-1.0], 0.01, {"left": [[1.0], [0.0], [0.0]]})
-    with pytest.raises(ValueError, match="damping_ratios: needs numbers from 0 to 1"):
+    with pytest.raises(ValueError, match="damping_ratios: needs a finite number ≥ 0 and ≤ 1"):
         Foundation.from_modes([1.0], 2.0, {"left": [[1.0], [0.0], [0.0]]})
     with pytest.raises((TypeError, ValueError), match="masses: needs"):
         Foundation.from_modes([1.0], 0.02, {"left": [[1.0], [0.0], [0.0]]}, masses=[[1.0], 2.0])
-    with pytest.raises(ValueError, match="stiffness: needs values ≥ 0"):
+    with pytest.raises(ValueError, match="stiffness: needs a finite number"):
         Mount("left", -1.0)
     with pytest.raises(ValueError, match="'left' is no interface of the solid"):
         Foundation.from_solid(replace(rings(), interfaces={}), POINTS)

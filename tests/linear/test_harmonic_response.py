@@ -56,7 +56,7 @@ def test_base_acceleration_is_minus_mass_times_acceleration(speed):
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: Unbalance("mid", 0.0), "leave it out"),
+        (lambda: Unbalance("mid", 0.0), "needs a finite number \\[kg m\\] > 0"),
         (lambda: Unbalance("mid", 1.0, np.inf), "angle"),
         (lambda: permissible_unbalance(2.5, -1.0, 1.0), "mass: needs"),
         (lambda: HarmonicForce("mid", (1.0,)), "two or three"),

@@ -102,7 +102,7 @@ def test_speeds_err_by_the_change_of_the_moment_of_inertia(rings):
     [
         ({"spin_coupling": "frozen", "spin": 10.0}, "needs spin='free'"),
         # wrong by 2 % of the motion under a torque of 50 N m
-        ({"spin_coupling": "frozen", "translation": "none"}, "needs translation='free' or"),
+        ({"spin_coupling": "frozen", "translation": "none"}, "translation='free' or"),
         ({"spin_coupling": "half"}, "spin_coupling"),
     ],
 )

@@ -126,7 +126,7 @@ FAMILY = {
 }
 CASES = [(name, "z", "tilt") for name in FAMILY] + [
     ("2.2", "x", "none"),
-    ("2.3", "skew", "tilt"),
+    ("2.2", "skew", "tilt"),
     ("2.4", "down", "tilt"),
     ("2.5, θ(t)", "off", "tilt"),
     ("2.4", "z", "full"),

@@ -47,7 +47,7 @@ def wheel() -> tuple[float, tuple[float, float]]:
     [
         (("left", 0.2, 0.1), "exists already"),
         (("seat", 0.2, 0.0), "width"),
-        (("seat", 0.9, 0.1), r"position: no node of the outer .* from 0 to 0.4"),
+        (("seat", 0.9, 0.1), r"position, width: no node of the outer .* from 0 to 0.4"),
         (("seat", np.nan, 0.1), "position"),
     ],
 )

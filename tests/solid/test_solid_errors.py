@@ -34,12 +34,11 @@ def make(changes):
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"nodes": np.zeros((3, 2))}, r"nodes: the shape must be \(n, 3\), got \(3, 2\)"),
-        ({"nodes": np.zeros((0, 3))}, r"nodes: the shape must be \(n, 3\)"),
-        ({"nodes": np.zeros((3, 6))}, r"got \(3, 6\); a solid rotor has no nodes with rotations"),
-        ({"nodes": [[0, 0, np.nan], [1, 0, 0], [2, 1, 0]]}, "1 of 3 positions are not finite"),
+        ({"nodes": np.zeros((3, 2))}, r"nodes: needs finite .* of shape \(any, 3\).*\(3, 2\)"),
+        ({"nodes": np.zeros((0, 3))}, "nodes: needs one position or more"),
+        ({"nodes": [[0, 0, np.nan], [1, 0, 0], [2, 1, 0]]}, "nodes: needs finite numbers"),
         ({"mass": np.eye(8)}, r"mass matrix: the shape must be \(9, 9\).*got \(8, 8\)"),
-        ({"stiffness": np.ones(9)}, r"stiffness matrix: needs a square matrix.*\(9,\)"),
+        ({"stiffness": np.ones(9)}, r"stiffness matrix: needs finite numbers of shape .*\(9,\)"),
         ({"mass": np.eye(18)}, r"mass matrix: the shape must be \(9, 9\).*no nodes with rotations"),
         ({"stiffness": None}, r"stiffness matrix: is missing"),
         ({"damping": np.eye(6)}, r"damping matrix: the shape must be \(9, 9\)"),
@@ -61,10 +60,13 @@ def test_shapes(changes, message):
     ("entry", "message"),
     [
         ([], "interface 'a' has no nodes"),
-        ([0, 3], "interface 'a': there is no node 3; the model has the nodes 0 to 2"),
-        ([-1], "interface 'a': there is no node -1"),
+        ([0, 3], "interface 'a': nodes: needs whole numbers ≥ 0 and ≤ 2, got 3"),
+        ([-1], "interface 'a': nodes: .*got -1"),
         ([0, 1, 1], "interface 'a': repeated node numbers 1"),
-        (([0, 1], [1.0, -0.5]), "interface 'a': weights.*cannot be negative, got -0.5"),
+        (
+            ([0, 1], [1.0, -0.5]),
+            "interface 'a': weights: needs shares of an area, none negative.*-0.5",
+        ),
         (
             ([0, 1], [1.0]),
             r"interface 'a': weights: needs finite numbers of shape \(2,\), got \[1.0\]",
@@ -141,7 +143,10 @@ def node_set(name, *numbers):
         ({"nodes": {}}, "got no nodes"),
         ({"massMatrix": None}, "massMatrix is missing"),
         ({"stiffnessMatrix": None}, "stiffnessMatrix is missing"),
-        ({"nodeSets": [node_set("a", 0), node_set("a", 1)]}, r"several node sets.*\['a'\]"),
+        (
+            {"nodeSets": [node_set("a", 0), node_set("a", 1)]},
+            "names of its node sets: 'a' is given twice",
+        ),
         ({"nodeSets": [node_set("a")]}, "interface 'a' has no nodes"),
     ],
 )

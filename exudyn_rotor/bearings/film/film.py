@@ -186,9 +186,8 @@ class OilFilm:
     grid: Grid = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        checks.number(self.radius, "radius", "m", above=0.0)
-        checks.number(self.length, "length", "m", above=0.0)
-        checks.number(self.viscosity, "viscosity", "Pa s", above=0.0)
+        units = {"radius": "m", "length": "m", "viscosity": "Pa s"}
+        checks.keep_numbers(self, units, above=0.0)
         checks.choice(self.cavitation, "cavitation", CAVITATION)
         checks.count(self.nodes, "nodes", least=12, most=10_000)
         checks.count(self.axial_nodes, "axial_nodes", most=1000)
@@ -200,10 +199,9 @@ class OilFilm:
             raise ValueError(
                 f"pads: need clearances far below the radius of {self.radius:g} m, got {widest:g} m"
             )
-        object.__setattr__(self, "pads", pads)
         half = 0.5 * self.length / self.radius
         axial = Axial.volumes(half, self.axial_nodes) if self.axial_nodes else Axial.profile(half)
-        object.__setattr__(self, "grid", Grid(pads, self.nodes, axial))
+        checks.keep(self, pads=pads, grid=Grid(pads, self.nodes, axial))
         if self.clearance <= 0.0:
             raise ValueError("pads: their centers leave no clearance for a journal in the middle")
 

@@ -171,11 +171,14 @@ def _size(amplitudes: np.ndarray) -> np.ndarray:
     return np.linalg.norm(amplitudes[..., :3], axis=-1)
 
 
-def warn(errors: np.ndarray, what: str, model: LinearModel, accuracy: float) -> None:
-    """Warn where an estimated error exceeds the accuracy; `what` names the worst."""
-    worst = np.max(np.nan_to_num(errors), initial=0.0)
-    if worst <= accuracy:
+def warn(
+    errors: np.ndarray | None, told: Callable[..., str], model: LinearModel, accuracy: float | None
+) -> None:
+    """Warn where an estimated error exceeds the accuracy; `told` names the worst by its indices."""
+    worst = 0.0 if errors is None else np.max(np.nan_to_num(errors), initial=0.0)
+    if accuracy is None or worst <= accuracy:
         return
+    what = told(*np.argwhere(errors == worst)[0])
     bases = []
     for name, rotor in model.rotors.items():
         elastic = rotor.size - len(rotor.rigid_kinds)

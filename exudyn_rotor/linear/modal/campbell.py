@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -12,29 +13,9 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear.modal import basis_error
-from exudyn_rotor.linear.modal import campbell_diagram as diagram
-from exudyn_rotor.linear.modal.whirl import (
-    BACKWARD,
-    FORWARD,
-    MIXED,
-    OVERDAMPED,
-    STATIC,
-    WHIRLS,
-    Content,
-    Named,
-    damping_of,
-    oscillates,
-    rounded,
-    signed_diameters,
-    track,
-)
-from exudyn_rotor.linear.model.build import (
-    Target,
-    linear_model,
-    warn_of_left_out_stiffening,
-    warn_of_structural_damping,
-)
+from exudyn_rotor.linear.modal import basis_error, whirl
+from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, Named, OfMotions, rounded
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import ModelResult, basis_column, motions_over, table_lines
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
@@ -44,17 +25,35 @@ from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
 
 # growth below this share of frequency and speed is not marked: what is left of a free spin of a
 # rotor with an uneven mesh looks like that
 _UNSTABLE = 1e-4
 _SPLIT = 4e-8  # of the fastest motion: the split of a double zero by rounding
 _FEWEST = 6  # modes that are listed of a basis with halves of pairs
+_LATERAL = whirl.FORWARD, whirl.BACKWARD, whirl.MIXED, whirl.OVERDAMPED
+# of the excitation's frequency: a mode that keeps to its line, as one fixed in the rotor, does
+# not cross it by rounding
+_ON_THE_LINE = 1e-9
+_STYLES = {  # colour, line
+    whirl.FORWARD: (plotting.COLORS[0], "-"),
+    whirl.BACKWARD: (plotting.COLORS[1], "--"),
+    whirl.MIXED: (plotting.COLORS[2], "-."),
+    whirl.AXIAL: ("0.45", ":"),
+    whirl.TORSIONAL: (plotting.COLORS[3], ":"),
+    whirl.RADIAL: (plotting.COLORS[4], ":"),
+    whirl.STATIC: ("0.7", ":"),
+    whirl.UNKNOWN: ("0.2", "-"),
+    whirl.FOUNDATION: (plotting.COLORS[5], "-"),
+    whirl.OVERDAMPED: ("0.7", ":"),
+}
 
 
 @storable
 @dataclass(frozen=True, eq=False)
-class Campbell(ModelResult):
+class Campbell(OfMotions, ModelResult):
     """Eigenfrequencies over spin speed, at every speed ascending in the :attr:`frame`.
 
     Overdamped motions, which have the inertial frequency 0 and decay, stand behind the others. A
@@ -140,19 +139,6 @@ class Campbell(ModelResult):
         super().__post_init__()
         checks.choice(self.frame, "frame", FRAMES)
 
-    @property
-    def whirl(self) -> np.ndarray:
-        """Sense of every mode, shape (s, k).
-
-        'forward' and 'backward' are seen from outside, relative to the spin; 'mixed' where the
-        weaker sense has more than half the amplitude of the stronger; 'axial', 'torsional' and
-        'radial' for n = 0; 'static' for a wave that stands still in space, like a free rotor that
-        is displaced; 'overdamped' for a lateral motion that decays without oscillating;
-        'unknown' where neither shapes nor interfaces show the mode, or where it has more than four
-        nodal diameters: its inertial frequency is that of the rotor frame then.
-        """
-        return np.array(WHIRLS)[self.whirl_codes]
-
     def tracked(self) -> Campbell:
         """Return the same result with columns that follow each mode over the speeds.
 
@@ -189,11 +175,19 @@ class Campbell(ModelResult):
         modes : ndarray of int, shape (c,)
             Columns of :meth:`tracked`.
         """
-        order = checks.number(order, "order", above=0.0)
         inertial = checks.choice(frame, "frame", FRAMES) == "inertial"
-        tracked = self.tracked()
+        order = checks.number(order, "order", above=0.0)
+        tracked, line = self.tracked(), order * np.abs(self.speeds)[:, None]
         values = tracked.frequencies_inertial if inertial else tracked.frequencies_rotor
-        return diagram.crossings(self.speeds, values, tracked.continued, order)
+        apart = values - line
+        apart[np.abs(apart) <= _ON_THE_LINE * np.maximum(values, line)] = 0.0
+        before, after = apart[:-1], apart[1:]
+        crossed = (before * after < 0.0) | ((after == 0.0) & (before != 0.0))
+        rows, modes = np.nonzero(crossed & tracked.continued[1:])
+        share = before[rows, modes] / (before - after)[rows, modes]
+        speeds = self.speeds[rows] + share * np.diff(self.speeds)[rows]
+        ascending = np.argsort(speeds, kind="stable")
+        return speeds[ascending], modes[ascending]
 
     def plot(
         self,
@@ -233,47 +227,92 @@ class Campbell(ModelResult):
             For an unknown frame or unit, or numbers out of range.
         """
         frame = self.frame if frame is None else checks.choice(frame, "frame", FRAMES)
-        shown, inertial = Units.of(units), frame == "inertial"
-        limits = diagram.checked_range(operating_range)
-        shares = diagram.checked_margins(margins)
+        shown, limits = Units.of(units), checked_range(operating_range)
+        shares = _checked_margins(margins)
         if margins is not None and limits is None:
             raise ValueError("margins: are beside operating_range=(low, high), got none")
         if orders is not None:
-            orders = diagram.checked_orders(orders)
+            orders = checks.vector(np.atleast_1d(orders), "orders", size=None)
+            if orders.size == 0 or np.any(orders <= 0.0):
+                raise ValueError(f"orders: needs positive numbers, got {checks.shown(orders)}")
         ax = plotting.axes_or_new(ax)
-        tracked, speeds = self.tracked(), shown.speeds(self.speeds)
-        values = tracked.frequencies_inertial if inertial else tracked.frequencies_rotor
-        scale = np.maximum(tracked.frequencies_inertial, np.abs(self.speeds)[:, None])
-        unstable = tracked.growth > _UNSTABLE * scale
-        codes, continued = tracked.whirl_codes, tracked.continued
-        moves = oscillates(tracked.growth, tracked.frequencies_inertial)
-        drawn = np.where(moves, shown.frequencies(values), np.nan)
-        handles = diagram.draw_campbell(ax, speeds, drawn, codes, continued, unstable)
+        handles = self.tracked()._draw_modes(ax, frame, shown)
         if limits is not None:
-            handles += diagram.shade_range(ax, limits, shares, shown)
+            handles += shade_range(ax, limits, shares, shown)
         if orders is not None:
-            given = (self.speeds, values, continued, orders, shown)
-            handles += diagram.draw_orders(ax, *given)
-        elif inertial:
-            line = shown.frequencies(np.abs(self.speeds))
-            handles += ax.plot(speeds, line, color="0.6", lw=0.8, label="spin speed")
+            handles += self._draw_orders(ax, frame, shown, orders)
+        elif frame == "inertial":
+            line = shown.speeds(self.speeds), shown.frequencies(np.abs(self.speeds))
+            handles += ax.plot(*line, color="0.6", lw=0.8, label="spin speed")
         ax.set_xlabel(f"spin speed [{shown.speed}]")
         ax.set_ylabel(f"frequency in the {frame} frame [{shown.frequency}]")
-        top = max(np.nanmax(drawn, initial=0.0), shown.frequencies(np.abs(self.speeds).max()))
-        ax.set_ylim(0.0, 1.05 * top or None)
         ax.grid(alpha=0.3)
         plotting.legend_above(ax, 3, handles)
         return ax
 
+    def _draw_modes(self, ax: Axes, frame: str, units: Units) -> list[Line2D]:
+        """Draw each column, coloured by whirl, unstable ones with a cross; return handles."""
+        from matplotlib.lines import Line2D
+
+        values = self.frequencies_inertial if frame == "inertial" else self.frequencies_rotor
+        moves = whirl.oscillates(self.growth, self.frequencies_inertial)
+        speeds, values = (
+            units.speeds(self.speeds),
+            units.frequencies(np.where(moves, values, np.nan)),
+        )
+        marker, seen = {"marker": "o", "ms": 4} if len(speeds) == 1 else {}, set()
+        for column in range(values.shape[1]):
+            code, joined = self.whirl_codes[:, column], self.continued[:, column]
+            # the way to a speed takes its style: at rest the sense is not yet settled
+            style = np.r_[code[:2][-1:], code[1:]]
+            starts = np.flatnonzero(np.r_[True, (style[1:] != style[:-1]) | ~joined[1:]])
+            for start, stop in itertools.pairwise([*starts, len(speeds)]):
+                first = max(start - 1, 0) if joined[start] else start
+                color, line = _STYLES[style[start]]
+                part = slice(first, stop)
+                ax.plot(speeds[part], values[part, column], ls=line, color=color, lw=1.3, **marker)
+                if np.any(np.isfinite(values[part, column])):
+                    seen.add(int(style[start]))
+        handles = [
+            Line2D([], [], color=color, ls=line, label=WHIRLS[code])
+            for code, (color, line) in _STYLES.items()
+            if code in seen
+        ]
+        fastest = np.abs(self.speeds)
+        unstable = self.growth > _UNSTABLE * np.maximum(self.frequencies_inertial, fastest[:, None])
+        if np.any(unstable):
+            rows = np.nonzero(unstable)[0]
+            handles += ax.plot(speeds[rows], values[unstable], "kx", ms=4, label="unstable")
+        top = max(np.nanmax(values, initial=0.0), units.frequencies(fastest.max()))
+        ax.set_ylim(0.0, 1.05 * top or None)
+        return handles
+
+    def _draw_orders(self, ax: Axes, frame: str, units: Units, orders: np.ndarray) -> list[Line2D]:
+        """Draw the lines pΩ and mark where modes cross them; return what the legend needs."""
+        handles, places = [], []
+        last = self.speeds[np.argmax(np.abs(self.speeds))]
+        for order, style in zip(orders, itertools.cycle(plotting.LINES)):
+            label = "spin speed" if order == 1.0 else f"{order:g} × spin speed"
+            line = units.speeds(self.speeds), units.frequencies(order * np.abs(self.speeds))
+            handles += ax.plot(*line, color="0.6", lw=0.8, ls=style, label=label)
+            end = units.speeds(last), units.frequencies(order * abs(last))
+            ax.annotate(f"{order:g}×", end, textcoords="offset points", xytext=(2, 0), fontsize=8,
+                        color="0.4", annotation_clip=True)  # fmt: skip
+            met, _ = self.crossings(order, frame)
+            places += zip(units.speeds(met), units.frequencies(order * np.abs(met)), strict=True)
+        if places:
+            style = {"mfc": "none", "mec": "0.2", "ms": 6, "label": "crossing"}
+            handles += ax.plot(*zip(*places, strict=True), "o", **style)
+        return handles
+
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns, one row for each speed and mode, tracked."""
-        return self.tracked()._columns(Units.of(units), self.order.shape[1])
+        return self.tracked()._columns(Units.of(units))
 
-    def _columns(self, shown: Units, count: int) -> dict[str, np.ndarray]:
-        """Return the first `count` columns of all speeds as those of a table."""
+    def _columns(self, shown: Units) -> dict[str, np.ndarray]:
+        """Return the table as columns, in the order of the result."""
         speed, frequency = f"[{shown.speed}]", f"[{shown.frequency}]"
-        errors = self.basis_errors
-        errors = None if errors is None else errors[:, :count]
+        modes = self.order.shape[1]
         given = {
             f"rotor frame {frequency}": shown.frequencies(self.frequencies_rotor),
             f"inertial {frequency}": shown.frequencies(self.frequencies_inertial),
@@ -285,10 +324,10 @@ class Campbell(ModelResult):
             "continued": self.continued,
         }
         return {
-            f"speed {speed}": np.repeat(shown.speeds(self.speeds), count),
-            "mode": np.tile(np.arange(1, count + 1), len(self.speeds)),
-            **{name: values[:, :count].ravel() for name, values in given.items()},
-            **basis_column(errors, count * len(self.speeds)),
+            f"speed {speed}": np.repeat(shown.speeds(self.speeds), modes),
+            "mode": np.tile(np.arange(1, modes + 1), len(self.speeds)),
+            **{name: values.ravel() for name, values in given.items()},
+            **basis_column(self.basis_errors, self.order.size),
         }
 
     def table(self, count: int | None = None, *, units: str = "rpm") -> str:
@@ -299,7 +338,9 @@ class Campbell(ModelResult):
         modes = self.order.shape[1]
         count = modes if count is None else min(checks.count(count, "count", least=1), modes)
         known = Units.of(units)
-        lines = table_lines(self._columns(known, count), "log decrement", "continued")
+        columns = self._columns(known)
+        shown = {name: values[columns["mode"] <= count] for name, values in columns.items()}
+        lines = table_lines(shown, "log decrement", "continued")
         if self.free_motions:
             lines.append("free motions: " + ", ".join(self.free_motions))
         lost = known.speeds(self.speeds[~np.all(self.continued, axis=1)])
@@ -307,6 +348,13 @@ class Campbell(ModelResult):
             listed = ", ".join(f"{f:.6g}" for f in lost)
             lines.append(f"modes not followed up to [{known.speed}]: {listed}")
         return "\n".join([*lines, *self._closing(self.basis_errors)])
+
+    def _told(self, row: int, column: int) -> str:
+        """Return a mode in words."""
+        shown = Units.of("rpm")
+        heard = shown.frequencies(self.frequencies_inertial[row, column])
+        mode = f"mode {column + 1} ({self.whirl[row, column]}, {heard:.4g} Hz)"
+        return f"{mode} at {shown.speeds(self.speeds[row]):.5g} rpm"
 
 
 def campbell(
@@ -407,20 +455,44 @@ def campbell(
     )  # fmt: skip
     if modes is not None and modes > model.size:
         raise ValueError(f"modes: {modes} is not between 1 and the {model.size} there are")
-    warn_of_structural_damping(model, "campbell finds modes")
-    warn_of_left_out_stiffening(model, np.abs(values).max())
+    warn_of_omissions(model, np.abs(values).max(), "campbell finds modes")
     motions = motions_over(model, values, progress=progress, label="Campbell")
     named = Content.of(model).named(motions)
     if model.free_motions:
         named = _resting(named)
-    order, continued = track(named, model.mass_matrix)
-    first = named.rows(named.motions.known[:1]).columns(order[named.motions.known[:1]])
+    order, continued = whirl.track(named, model.mass_matrix)
+    first = named.rows(named.motions.known[:1])
     kept = _ascending(first, frame)[0, : modes or _complete(first, model)]
-    tracked = named.columns(order[:, kept])
-    errors = None if accuracy is None else basis_error.motion_errors(model, tracked)
-    result = _collected(tracked, continued[:, kept], errors, model, frame, modes)
+    named = named.columns(order[:, kept])
+    upwards = _ascending(named, frame)
+    found = named.columns(upwards)
+    growth, bounds = found.motions.values.real, found.motions.bounds[:, None]
+    growth = np.where(np.abs(growth) <= bounds, 0.0, growth)
+    errors = None if accuracy is None else basis_error.motion_errors(model, found)
     if errors is not None:
-        _warn_of_basis(result, model, accuracy)
+        judged = basis_error.judged(found.inertial, growth, values, modes is not None)
+        errors = np.where(judged, errors, np.nan)
+    ratio, decrement = whirl.damping_of(growth, found.inertial)
+    result = Campbell(
+        speeds=values,
+        frequencies_rotor=found.rotor,
+        growth=growth,
+        frequencies_inertial=found.inertial,
+        damping_ratio=ratio,
+        log_decrement=decrement,
+        whirl_codes=found.codes,
+        nodal_diameters=found.diameters,
+        vectors=found.motions.main,
+        order=np.argsort(upwards, axis=1),
+        continued=continued[:, kept],
+        free_motions=model.free_motions,
+        stiffening=model.stiffening,
+        basis_errors=errors,
+        frame=frame,
+        axes=model.axes,
+        unevenness=model.unevenness,
+    )
+    basis_error.warn(errors, result._told, model, accuracy)
     return result
 
 
@@ -429,12 +501,11 @@ def _resting(found: Named) -> Named:
     values = found.motions.values
     split = _SPLIT * np.nanmax(np.abs(values), axis=1, keepdims=True, initial=0.0)
     rests = np.hypot(found.inertial, values.real) <= split
-    motions = replace(found.motions, values=np.where(rests, 1j * values.imag, values))
-    lateral = rests & np.isin(found.codes, (FORWARD, BACKWARD, MIXED, OVERDAMPED))
+    lateral = rests & np.isin(found.codes, _LATERAL)
     return found._replace(
-        motions=motions,
+        motions=replace(found.motions, values=np.where(rests, 1j * values.imag, values)),
         inertial=np.where(rests, 0.0, found.inertial),
-        codes=np.where(lateral, STATIC, found.codes),
+        codes=np.where(lateral, whirl.STATIC, found.codes),
     )
 
 
@@ -446,14 +517,10 @@ def _ascending(found: Named, frame: str) -> np.ndarray:
     main, other = found.inertial, found.rotor
     if frame == "rotor":
         main, other = other, main
-    last = np.isnan(found.motions.values) | _overdamped(found)
-    keys = [-found.motions.values.real, signed_diameters(found.codes, found.diameters), other, main]
-    return np.lexsort([*map(rounded, keys), last], axis=-1)
-
-
-def _overdamped(found: Named) -> np.ndarray:
-    growth, bounds = found.motions.values.real, found.motions.bounds[:, None]
-    return (found.inertial == 0.0) & (growth < -bounds)
+    growth = found.motions.values.real
+    overdamped = (found.inertial == 0.0) & (growth < -found.motions.bounds[:, None])
+    keys = [-growth, whirl.signed_diameters(found.codes, found.diameters), other, main]
+    return np.lexsort([*map(rounded, keys), np.isnan(growth) | overdamped], axis=-1)
 
 
 def _complete(first: Named, model: LinearModel) -> int:
@@ -462,50 +529,38 @@ def _complete(first: Named, model: LinearModel) -> int:
     return max(min(_FEWEST, first.inertial.shape[1]), below)
 
 
-def _collected(
-    tracked: Named,
-    continued: np.ndarray,
-    errors: np.ndarray | None,
-    model: LinearModel,
-    frame: str,
-    modes: int | None,
-) -> Campbell:
-    """Return the result, whose columns ascend at every speed."""
-    speeds, upwards = tracked.motions.speeds, _ascending(tracked, frame)
-    order = np.argsort(upwards, axis=1)
-    order[np.isnan(tracked.motions.bounds)] = np.arange(order.shape[1])
-    found = tracked.columns(upwards)
-    growth, bounds = found.motions.values.real, found.motions.bounds[:, None]
-    growth = np.where(np.abs(growth) <= bounds, 0.0, growth)
-    if errors is not None:
-        chosen = basis_error.judged(found.inertial, growth, speeds, modes is not None)
-        errors = np.where(chosen, np.take_along_axis(errors, upwards, 1), np.nan)
-    ratio, decrement = damping_of(growth, found.inertial)
-    return Campbell(
-        speeds=speeds,
-        frequencies_rotor=found.rotor,
-        growth=growth,
-        frequencies_inertial=found.inertial,
-        damping_ratio=ratio,
-        log_decrement=decrement,
-        whirl_codes=found.codes,
-        nodal_diameters=found.diameters,
-        vectors=found.motions.main,
-        order=order,
-        continued=continued,
-        free_motions=model.free_motions,
-        stiffening=model.stiffening,
-        basis_errors=errors,
-        frame=frame,
-        axes=model.axes,
-        unevenness=model.unevenness,
-    )
+def checked_range(values: ArrayLike | None) -> np.ndarray | None:
+    """Return the lowest and the highest operating speed [rad/s], or None."""
+    if values is None:
+        return None
+    low, high = checks.vector(values, "operating_range", "rad/s", size=2)
+    if not 0.0 <= low < high:
+        raise ValueError(
+            "operating_range: needs the lowest and the highest speed [rad/s], got "
+            f"{checks.shown(values)}"
+        )
+    return np.array([low, high])
 
 
-def _warn_of_basis(result: Campbell, model: LinearModel, accuracy: float) -> None:
-    """Warn where the basis leaves out too much for the modes that count."""
-    errors, shown = np.nan_to_num(result.basis_errors), Units.of("rpm")
-    at = np.unravel_index(np.argmax(errors), errors.shape)
-    heard, speed = shown.frequencies(result.frequencies_inertial[at]), result.speeds[at[0]]
-    mode = f"mode {at[1] + 1} ({result.whirl[at]}, {heard:.4g} Hz)"
-    basis_error.warn(errors, f"{mode} at {shown.speeds(speed):.5g} rpm", model, accuracy)
+def _checked_margins(margins: ArrayLike | None) -> np.ndarray:
+    """Return the shares of separation below and above the range; zeros for None."""
+    values = checks.vector((0.0, 0.0) if margins is None else margins, "margins", size=2)
+    if np.any(values < 0.0) or values[0] >= 1.0:
+        raise ValueError(
+            "margins: needs shares of the lowest and of the highest speed, as (0.16, 0.26), got "
+            + checks.shown(margins)
+        )
+    return values
+
+
+def shade_range(ax: Axes, limits: np.ndarray, margins: np.ndarray, units: Units) -> list[Patch]:
+    """Shade operating speeds [rad/s] and the margins beside them; return what the legend needs."""
+    low, high = units.speeds(limits)
+    handles = [ax.axvspan(low, high, color=plotting.COLORS[2], alpha=0.15, lw=0.0)]
+    handles[0].set_label("operating range")
+    if np.any(margins > 0.0):
+        beside = [((1.0 - margins[0]) * low, low), (high, (1.0 + margins[1]) * high)]
+        drawn = [ax.axvspan(*span, color="0.75", alpha=0.5, lw=0.0) for span in beside]
+        drawn[0].set_label("separation margin")
+        handles.append(drawn[0])
+    return handles

@@ -1,41 +1,76 @@
-"""Critical speeds of a rotor; the equations are in :mod:`exudyn_rotor.linear.modal.resonance`."""
+"""Critical speeds of a rotor, also over the stiffness of its supports.
+
+The equations are in :mod:`exudyn_rotor.linear.modal.resonance`.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
+from tqdm import tqdm
 
-from exudyn_rotor import checks
-from exudyn_rotor.bearings.given import Given
+from exudyn_rotor import checks, plotting
+from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.given import Given, given_supports
+from exudyn_rotor.bearings.magnetic import MagneticBearing
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.modal import basis_error
-from exudyn_rotor.linear.modal.resonance import (
-    NO_EQUATIONS,
-    Resonance,
-    Search,
-    Stiffness,
-    groups_of,
-)
-from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, signed_diameters
-from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
-from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.modal.resonance import SAME, Search, Stiffness, groups_of
+from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, Named, signed_diameters
+from exudyn_rotor.linear.model.assembly import NO_EQUATIONS
+from exudyn_rotor.linear.model.body import EVEN
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
+from exudyn_rotor.linear.model.linear_model import AXES, warn_of_refused
 from exudyn_rotor.linear.over import ModelResult, basis_column, table_lines
 from exudyn_rotor.linear.solve.motions import Motions
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import numbers, storable, words
+from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.solvers.factor import one_thread
+from exudyn_rotor.theory.stiffening import CHOICES
 from exudyn_rotor.units import Units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _JUDGED = 6  # critical speeds that count where no largest speed is given
 _ALIKE = 0.5  # likeness of two shapes below which they are not the same motion
-_BESIDE, _ERROR = 0.97, 1e-6  # of a critical speed: where its change is told, and its error
+_ERROR = 1e-6  # last change of a critical speed in a richer basis
+# relative distance of the speeds of one motion in the two planes of a rotor that counts as round
+_PLANES = 0.5 * EVEN
+_CURVE = 200  # speeds of a bearing's own curve
+_FILM = 1e-3  # error of a critical speed on films
+
+
+class _Undamped(ModelResult):
+    """Base of results of critical speeds of one order."""
+
+    def table(self, *, units: str = "rpm") -> str:
+        """Return the critical speeds as lines of text.
+
+        Parameters
+        ----------
+        units : {'rpm', 'Hz', 'SI'}
+            'SI' rad/s.
+        """
+        lines = [f"undamped critical speeds of order {self.order:g}"]
+        lines += table_lines(self.columns(units)) if np.any(self.speeds > 0.0) else ["none"]
+        return "\n".join([*lines, *self._closing(self.basis_errors)])
+
+    def _told(self, *at: int) -> str:
+        """Return a critical speed in words."""
+        return f"the critical speed of {Units.of('rpm').speeds(self.speeds[at]):.5g} rpm"
 
 
 @storable
 @dataclass(frozen=True, eq=False)
-class CriticalSpeeds(ModelResult):
+class CriticalSpeeds(_Undamped):
     """Critical speeds, ascending; an uneven rotor has both of a pair, from 0.5 % apart on.
 
     Attributes
@@ -96,18 +131,6 @@ class CriticalSpeeds(ModelResult):
     @property
     def splits(self) -> None:
         """None: two planes of an averaged mesh have one critical speed."""
-
-    def table(self, *, units: str = "rpm") -> str:
-        """Return the critical speeds as lines of text.
-
-        Parameters
-        ----------
-        units : {'rpm', 'Hz', 'SI'}
-            'SI' rad/s.
-        """
-        lines = [f"undamped critical speeds of order {self.order:g}"]
-        lines += table_lines(self.columns(units)) if self.speeds.size else ["none"]
-        return "\n".join([*lines, *self._closing(self.basis_errors)])
 
 
 def critical_speeds(
@@ -182,51 +205,41 @@ def critical_speeds(
                   954.93        15.9155                 0  1  forward
     stiffening: tilt
     """
-    given = checked(order, max_speed, nodal_diameters)
     checks.accuracy(accuracy)
     model = linear_model(
         target, supports=supports, foundation=foundation, body=body, stiffening=stiffening,
         axes=axes,
     ).undamped()  # fmt: skip
-    search = Search(model, *given)
+    search = Search(model, order, nodal_diameters, max_speed)
     result = collected(search, accuracy is not None)
     search.warn()
     model.warn_beyond(result.order * result.speeds)
     if result.speeds.size:
-        warn_of_left_out_stiffening(model, max_speed or result.speeds[0])
-    warn_of_critical(model, result.speeds, result.basis_errors, accuracy)
+        warn_of_omissions(model, max_speed or result.speeds[0])
+    basis_error.warn(result.basis_errors, result._told, model, accuracy)
     return result
 
 
-def checked(
-    order: float, max_speed: float | None, nodal_diameters: Sequence[int]
-) -> tuple[float, list[int], float | None]:
-    """Return order, nodal diameters and largest speed of an analysis."""
-    order = checks.number(order, "order", least=0.0)
-    if max_speed is not None:
-        max_speed = checks.number(max_speed, "max_speed", "rad/s", above=0.0)
-    values = checks.whole_numbers(nodal_diameters, "nodal_diameters", most=4)
-    if not values.size:
-        raise ValueError("nodal_diameters: needs at least one whole number from 0 to 4, got none")
-    return order, sorted({int(n) for n in values}), max_speed
-
-
 def collected(search: Search, estimate: bool) -> CriticalSpeeds:
-    """Return the result of a search; errors by the basis where they are asked for."""
-    model = search.model
-    found, rotor, codes, diameters = _named(search.resonances(), search.content)
-    speeds = np.array([one.speed for one in found])
-    errors = None
+    """Return the result of a search; errors by the basis where they are asked for.
+
+    Critical speeds of one speed stand from backward to forward waves.
+    """
+    model, named = search.model, search.content.named(search.motions(), apart=True)
+    senses = signed_diameters(named.codes, named.diameters)[:, 0]
+    named = named.rows(np.lexsort((senses, groups_of(named.motions.speeds))))
+    if model.turns:
+        named = named.rows(_of_one_plane(named))
+    motions, errors = named.motions, None
     if estimate and basis_error.is_known(model, 1.0):
-        errors = _basis_errors(search, found)
-    shapes = [x[np.argmax(np.linalg.norm(x, axis=1))] for _, x, _ in found]
-    shapes = np.array(shapes, dtype=complex).reshape(-1, model.size).T
+        errors = _basis_errors(search, motions)
+    shapes = motions.main[:, :, 0].T
     return CriticalSpeeds(
         order=search.order,
-        speeds=speeds,
-        frequencies_rotor=rotor * speeds,
-        whirl=tuple(WHIRLS[code] for code in codes),
-        nodal_diameters=diameters,
+        speeds=motions.speeds,
+        frequencies_rotor=named.rotor[:, 0],
+        whirl=tuple(WHIRLS[code] for code in named.codes[:, 0]),
+        nodal_diameters=named.diameters[:, 0],
         vectors=shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300),
         stiffening=model.stiffening,
         basis_errors=errors,
@@ -235,59 +248,274 @@ def collected(search: Search, estimate: bool) -> CriticalSpeeds:
     )
 
 
-def _named(
-    found: Sequence[Resonance], content: Content
-) -> tuple[list[Resonance], np.ndarray, np.ndarray, np.ndarray]:
-    """Return ascending critical speeds, those of one speed from backward to forward waves.
+def _of_one_plane(named: Named) -> list[int]:
+    """Return which critical speeds are not of the same motion in the other plane of a rotor.
 
-    With their frequencies in the frame of the rotor over Ω, whirl codes and nodal diameters.
+    Bending modes of which a basis holds one half alone make both planes of a round rotor differ.
+    The softer plane has more modes.
     """
-    rotor, codes, diameters = [np.zeros(len(found), dtype=kind) for kind in (float, int, int)]
-    for i, (_, vectors, multiples) in enumerate(found):
-        center = multiples[len(multiples) // 2]
-        orders = np.round(multiples - center).astype(int)
-        shape = vectors[None, :, :, None] / np.linalg.norm(vectors)
-        # all frequencies go with the speed, so that one speed stands for all
-        motion = Motions(np.ones(1), np.array([[1j * center]]), shape, orders, np.zeros(1))
-        name = content.named(motion, apart=True)
-        codes[i], diameters[i] = name.codes[0, 0], name.diameters[0, 0]
-        rotor[i] = name.rotor[0, 0]
-    groups = groups_of(np.array([one.speed for one in found]))
-    row = np.lexsort((signed_diameters(codes, diameters), groups))
-    return [found[i] for i in row], rotor[row], codes[row], diameters[row]
+    speeds, kinds = named.motions.speeds, np.hstack([named.codes, named.diameters])
+    kept: list[int] = []
+    for row, speed in enumerate(speeds):
+        near = (1.0 - speeds[kept] / speed > SAME) & (1.0 - speeds[kept] / speed < _PLANES)
+        if not np.any(near & np.all(kinds[kept] == kinds[row], axis=1)):
+            kept.append(row)
+    return kept
 
 
 @one_thread()
-def _basis_errors(search: Search, found: Sequence[Resonance]) -> np.ndarray:
+def _basis_errors(search: Search, found: Motions) -> np.ndarray:
     """Return relative errors of the lowest critical speeds by the basis, NaN of others, (c,).
 
     Each motion is followed into the model with the shapes that the basis lacks.
     """
-    model, errors = search.model, np.full(len(found), np.nan)
-    judged = found if search.limit is not None else found[:_JUDGED]
+    model, errors = search.model, np.full(len(found.speeds), np.nan)
+    judged = len(errors) if search.limit is not None else min(len(errors), _JUDGED)
     if model.is_full:
-        errors[: len(judged)] = 0.0
+        errors[:judged] = 0.0
         return errors
     stiffness = Stiffness(model.richer, search.order)
     lifted = basis_error.lifting(model, model.richer)
-    for i, one in enumerate(judged):
-        lift = one.vectors @ lifted.T
+    for row, speed in enumerate(found.speeds[:judged]):
+        vectors, center = found.vectors[row, :, :, 0], found.values[row, 0].imag / speed
+        held = np.any(vectors, axis=1)  # the harmonics that it was found with
+        x = vectors[held] @ lifted.T
         try:
-            pair = one.speed, stiffness.within(lift)
-            speed, x = stiffness.refined(pair, one.multiples, _BESIDE * one.speed, _ERROR)
+            better, y = stiffness.refined(speed, x, center + found.orders[held], _ERROR)
         except NO_EQUATIONS:
             continue
-        x, y = lift, stiffness.motions(x, one.multiples)
         likeness = abs(np.vdot(x, y)) ** 2 / (np.vdot(x, x) * np.vdot(y, y)).real
         if likeness > _ALIKE:
-            errors[i] = abs(speed / one.speed - 1.0)
+            errors[row] = abs(better / speed - 1.0)
     return errors
 
 
-def warn_of_critical(
-    model: LinearModel, speeds: np.ndarray, errors: np.ndarray | None, accuracy: float | None
-) -> None:
-    """Warn where the basis leaves out too much for some critical speed [rad/s]."""
-    if errors is not None and np.any(errors > 0.0):
-        worst = Units.of("rpm").speeds(speeds.flat[np.nanargmax(errors)])
-        basis_error.warn(errors, f"the critical speed of {worst:.5g} rpm", model, accuracy)
+@storable
+@dataclass(frozen=True, eq=False)
+class CriticalSpeedMap(_Undamped):
+    """Critical speeds over the stiffness of supports.
+
+    Attributes
+    ----------
+    stiffnesses : ndarray, shape (s,)
+        [N/m]
+    speeds : ndarray, shape (s, c)
+        Critical speeds at every stiffness, ascending; NaN where there are fewer [rad/s].
+    whirl_codes : ndarray of int, shape (s, c)
+        Index into :attr:`CriticalSpeeds.whirl` words; −1 where the speed is NaN.
+    order : float
+    basis_errors : ndarray, shape (s, c), or None
+        Estimated relative errors by the basis of a reduced rotor, at the first, the middle and the
+        last stiffness, NaN as in :class:`CriticalSpeeds`; None where they are not known.
+    bearing_speeds : ndarray, shape (b,), or None
+        Speeds at which the stiffness of a given bearing is known [rad/s].
+    bearing_stiffnesses : ndarray, shape (b, 2), or None
+        Its direct stiffnesses k11 and k22 there [N/m].
+    stiffening, axes, unevenness
+        See :class:`Stability`.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import CriticalSpeedMap
+    >>> print(CriticalSpeedMap([1e4, 4e4], [[50.0], [100.0]], [[0], [0]], 1.0).table())
+    undamped critical speeds of order 1
+    stiffness [N/m]  critical speed [rpm]  whirl
+              10000               477.465  forward
+              40000                954.93  forward
+    error of the basis: not known
+    """
+
+    stiffnesses: np.ndarray = numbers("stiffnesses")
+    speeds: np.ndarray = numbers("stiffnesses", "speeds", finite=False)
+    whirl_codes: np.ndarray = numbers(
+        "stiffnesses", "speeds", dtype=int, least=-1, most=len(WHIRLS) - 1
+    )
+    order: float
+    basis_errors: np.ndarray | None = numbers("stiffnesses", "speeds", finite=False, optional=True)
+    bearing_speeds: np.ndarray | None = numbers("points", optional=True)
+    bearing_stiffnesses: np.ndarray | None = numbers("points", 2, optional=True)
+
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+        """Return the table as columns, one row for each critical speed; see :meth:`table`."""
+        shown = Units.of(units)
+        rows, places = np.nonzero(self.whirl_codes >= 0)
+        errors = self.basis_errors
+        errors = None if errors is None else errors[rows, places]
+        return {
+            "stiffness [N/m]": self.stiffnesses[rows],
+            f"critical speed [{shown.speed}]": shown.speeds(self.speeds[rows, places]),
+            "whirl": np.array(WHIRLS)[self.whirl_codes[rows, places]],
+            **basis_column(errors, len(rows)),
+        }
+
+    def plot(self, ax: Axes | None = None, *, units: str = "rpm") -> Axes:
+        """Draw the critical speeds over the stiffness, both logarithmic, as lines.
+
+        A bearing is drawn by its own direct stiffnesses over the speed. `units` are those of
+        :meth:`table`.
+        """
+        shown = Units.of(units)
+        ax = plotting.axes_or_new(ax)
+        styles = {FORWARD: (plotting.COLORS[0], "o"), BACKWARD: (plotting.COLORS[1], "v")}
+        for code in np.unique(self.whirl_codes[self.whirl_codes >= 0]):
+            color, marker = styles.get(int(code), (plotting.COLORS[2], "s"))
+            # the first, second, … of a whirl at each stiffness make a line; NaN are sorted last
+            drawn = np.sort(np.where(self.whirl_codes == code, shown.speeds(self.speeds), np.nan))
+            handles = ax.loglog(self.stiffnesses, drawn, marker + "-", color=color, ms=3.5, lw=0.9)
+            handles[0].set_label(WHIRLS[code])
+        if self.bearing_speeds is not None:
+            for column, style in enumerate(("--", ":")):
+                ax.loglog(
+                    self.bearing_stiffnesses[:, column], shown.speeds(self.bearing_speeds), style,
+                    color="0.3", lw=1.2, label=f"bearing, k{column + 1}{column + 1}",
+                )  # fmt: skip
+        ends = self.stiffnesses.min(), self.stiffnesses.max()
+        if ends[0] < ends[1]:  # also where no critical speed is found
+            room = (ends[1] / ends[0]) ** 0.05
+            ax.set_xlim(ends[0] / room, ends[1] * room)
+        ax.set_xlabel("support stiffness [N/m]")
+        ax.set_ylabel(f"undamped critical speed of order {self.order:g} [{shown.speed}]")
+        ax.grid(alpha=0.3, which="both")
+        plotting.legend_above(ax, 4)
+        return ax
+
+
+def critical_speed_map(
+    target: ReducedRotor | SolidRotor,
+    interfaces: Sequence[str] | str,
+    stiffnesses: ArrayLike,
+    *,
+    supports: Sequence[Given] | Given = (),
+    foundation: Foundation | None = None,
+    order: float = 1.0,
+    max_speed: float | None = None,
+    nodal_diameters: Sequence[int] = (1,),
+    bearing: Given | None = None,
+    stiffening: str = "auto",
+    axes: str = "auto",
+    accuracy: float | None = 1e-2,
+    progress: bool = False,
+) -> CriticalSpeedMap:
+    """Compute the undamped critical speeds over the stiffness of isotropic supports.
+
+    Parameters
+    ----------
+    target : ReducedRotor or SolidRotor
+    interfaces : str or sequence of str
+        Where a support of each stiffness is put, the same at all of them.
+    stiffnesses : array_like, shape (s,)
+        Positive [N/m].
+    supports : sequence of Support or bearings, optional
+        Further supports that do not change; magnetic bearings by their static stiffness.
+    foundation : Foundation, optional
+        What carries all supports, as in :func:`linear_model`.
+    order, max_speed, nodal_diameters, stiffening, axes, accuracy
+        See :func:`critical_speeds`; the basis is looked at at the first, the middle and the last
+        stiffness.
+    bearing : Support or bearing, optional
+        One whose own stiffness over the speed is drawn beside the critical speeds: these meet it
+        where they are those of the rotor on such bearings.
+    progress : bool, optional
+        Show a progress bar.
+
+    Raises
+    ------
+    ValueError
+        For stiffnesses that are not positive and finite, or an interface that is unknown or given
+        twice.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, critical_speed_map
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
+    >>> critical_speed_map(rotor, ["left", "right"], [5e3, 2e4]).speeds.round(6)
+    array([[ 50.,  50.,  50.,  50.],
+           [100., 100., 100., 100.]])
+    """
+    checks.instance(target, "target", (ReducedRotor, SolidRotor))
+    values = np.atleast_1d(checks.array(stiffnesses, "stiffnesses", "N/m"))
+    if values.ndim != 1 or values.size == 0 or np.any(values <= 0.0):
+        raise ValueError(
+            "stiffnesses: needs positive finite numbers [N/m], got " + checks.shown(stiffnesses)
+        )
+    names = checks.different(
+        checks.labels(interfaces, "interfaces", target.interfaces), "interfaces"
+    )
+    if not names:
+        raise ValueError("interfaces: needs at least one name, got none")
+    checks.choice(stiffening, "stiffening", CHOICES)
+    checks.choice(axes, "axes", AXES)
+    checks.accuracy(accuracy)
+    checks.flag(progress, "progress")
+    if bearing is not None:
+        checks.instance(bearing, "bearing", (Support, Bearing, MagneticBearing))
+    kept = given_supports(supports)
+    first = linear_model(
+        target, supports=_with(kept, names, values[0]), foundation=foundation,
+        stiffening=stiffening, axes=axes,
+    ).undamped()  # fmt: skip
+    judged = basis_error.points(len(values)) if basis_error.is_known(first, accuracy) else []
+    solved: list[CriticalSpeeds | None] = []
+    failed: list[tuple[str, Exception]] = []
+    for row, stiffness in enumerate(tqdm(values, "critical speed map", disable=not progress)):
+        model = replace(first, supports={"": _with(kept, names, stiffness)})
+        # a map takes what a film is within its own smoothness
+        given = order, nodal_diameters, max_speed
+        search = Search(model, *given, 1e-7 if model.table_speeds.size else _FILM)
+        try:
+            solved.append(collected(search, row in judged))
+        except ValueError as error:  # as of a support whose stiffness is negative
+            solved.append(None)
+            failed.append((f"{stiffness:.4g} N/m", error))
+    warn_of_refused(failed, len(values))
+    search.warn()
+    shape = len(values), max(len(entry.speeds) for entry in solved if entry)
+    speeds, errors, codes = np.full(shape, np.nan), np.full(shape, np.nan), np.full(shape, -1)
+    for row, entry in enumerate(solved):
+        if entry:
+            here = row, slice(len(entry.speeds))
+            speeds[here], codes[here] = entry.speeds, [WHIRLS.index(word) for word in entry.whirl]
+            errors[here] = np.nan if entry.basis_errors is None else entry.basis_errors
+    if np.any(speeds > 0.0):
+        warn_of_omissions(first, max_speed or np.nanmin(speeds))
+    top = max_speed or float(np.nanmax(speeds, initial=1.0))
+    own = (None, None) if bearing is None else _curve(bearing, top)
+    result = CriticalSpeedMap(
+        values,
+        speeds,
+        codes,
+        order,
+        basis_errors=errors if len(judged) else None,
+        bearing_speeds=own[0],
+        bearing_stiffnesses=own[1],
+        stiffening=first.stiffening,
+        axes=first.axes,
+        unevenness=first.unevenness,
+    )
+    basis_error.warn(result.basis_errors, result._told, first, accuracy)
+    return result
+
+
+def _with(supports: tuple[Given, ...], names: Sequence[str], stiffness: float) -> tuple[Given, ...]:
+    return (*supports, *(Support(name, float(stiffness)) for name in names))
+
+
+def _curve(bearing: Given, top: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return speeds up to the largest [rad/s], and the direct stiffnesses (b, 2) of a bearing."""
+    one = bearing if isinstance(bearing, Support) else bearing.linearised()
+    if not isinstance(one, Support):  # it has states of its own
+        one = Support(one.interface, one.static_stiffness)
+    speeds, stiffnesses = [], []
+    for speed in np.linspace(top / _CURVE, top, _CURVE).tolist():
+        try:
+            one.check_range(speed)
+            stiffnesses.append(np.diag(one.matrices(speed)[0])[:2])
+            speeds.append(speed)
+        except NO_EQUATIONS:
+            continue
+    return np.array(speeds), np.array(stiffnesses).reshape(-1, 2)

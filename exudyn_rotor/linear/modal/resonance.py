@@ -12,8 +12,7 @@ zeros of one eigenvalue between neighbours are missed.
 
 In the axes of an uneven rotor a wave n answers at f = p − n. Supports that differ in their two
 directions couple f, f ± 2, …: H is a matrix of blocks, of which five are solved, and then more are
-added to each motion by itself until its critical speed stands still. Source: Genta, Dynamics of
-Rotating Systems (2005).
+added to each motion by itself. Source: Genta, Dynamics of Rotating Systems (2005).
 """
 
 from __future__ import annotations
@@ -22,52 +21,39 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
 
-from exudyn_rotor.bearings.support import NoCoefficientsError
+from exudyn_rotor import checks
 from exudyn_rotor.calls import user_level
-from exudyn_rotor.linear.equations import PeriodicSystem, UnconvergedError
+from exudyn_rotor.linear.equations import PeriodicSystem
 from exudyn_rotor.linear.modal.whirl import Content
-from exudyn_rotor.linear.model.assembly import rotors_of
-from exudyn_rotor.linear.model.body import EVEN
+from exudyn_rotor.linear.model.assembly import NO_EQUATIONS, rotors_of
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.solve.hill import real_waves
+from exudyn_rotor.linear.solve.motions import Motions, joined_motions
 from exudyn_rotor.solvers.factor import one_thread
 
-NO_EQUATIONS = NoCoefficientsError, UnconvergedError
 _SHARE = 0.4  # of a motion's energy that must turn with the excitation
 # a motion whose mean order is below minus this share of the order is the conjugate of another
 _CONJUGATE = 0.25
-_SAME = 1e-7  # relative distance of speeds that are one
-# relative distance of the speeds of one motion in the two planes of a rotor that counts as round,
-# and likeness of the two motions
-_PLANES, _ALIKE = 0.5 * EVEN, 0.975
+SAME = 1e-7  # relative distance of speeds that are one
 _FINE, _DIGITS = 1e-9, 7  # of a place between two speeds, and digits of places that are one
 _AT_REST = 1e-8  # rad/s: a rotor runs, and its inertia is below the rounding of any stiffness
 _FREE = 1e-13  # share of the largest stiffness that is rounding
 _NO_INERTIA = 1e-6  # share of the largest inertia
 _BRACKETS = 200  # speeds at which signs of eigenvalues are looked at; half of them for blocks
 _SLOW, _RATIO = 12, 2.0**0.25  # speeds on each side of the first of these, and their ratio
-_FEW, _MOST = 4, 16  # harmonics on each side of the middle one
-_HARMONICS = 1e-6  # relative change of a critical speed by further ones
+_FEW, _MORE = 4, (8, 12, 16)  # harmonics on each side of the middle one
+_EDGE, _CLOSE = 1e-10, 1e-5  # energy of the last ones that is none, and a last change of a speed
 _ITERATIONS = 12
-_STEP = 1e-4  # relative distance of speeds between which H has a slope
+_BESIDE = 0.97  # of a critical speed: from where its slope is told at first
+_STEP = 1e-6  # relative distance of speeds between which H has a slope
 _FAR = 0.5  # share of a critical speed by which the same motion may differ
 _BEYOND = 0.1  # of the distance of two speeds: a zero between them may come out so far outside
 
-Pair = tuple[float, np.ndarray]  # a speed [rad/s] and a null vector of H there
-
-
-class Resonance(NamedTuple):
-    """A critical speed [rad/s] and its motion, harmonics (h, k) at `multiples` (h,) of it."""
-
-    speed: float
-    vectors: np.ndarray
-    multiples: np.ndarray
+Zero = tuple[float, np.ndarray]  # a speed at which H is singular [rad/s], and a motion (h, c)
 
 
 @dataclass(eq=False)
@@ -82,59 +68,58 @@ class Stiffness:
     order: float
     known: dict[float, PeriodicSystem] = field(default_factory=dict)
 
+    def __post_init__(self) -> None:
+        basis = self.model.moving_basis
+        self.basis = np.eye(self.model.size) if basis is None else basis
+
     def system(self, speed: float) -> PeriodicSystem:
         """Return the equations at a speed [rad/s]."""
         if speed not in self.known:
-            system, basis = self.model.at(speed, self.order * speed), self.model.moving_basis
-            self.known[speed] = system if basis is None else system.projected(basis)
+            system = self.model.at(speed, self.order * speed)
+            self.known[speed] = system.projected(self.basis)
         return self.known[speed]
-
-    def stacked(self, speeds: np.ndarray) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
-        """Return the equations at speeds (s,) where there are any, and why there are none else."""
-        basis = self.model.moving_basis
-        stack, refused = self.model.systems(speeds, self.order * speeds)
-        projects = basis is not None and stack is not None
-        return stack.projected(basis) if projects else stack, refused
 
     def __call__(self, speed: float, multiples: np.ndarray) -> np.ndarray:
         """Return H at a speed for frequencies `multiples` (h,) of it, (h·k, h·k)."""
         return dynamic_stiffness(self.system(speed), multiples)
 
     def motions(self, vectors: np.ndarray, multiples: np.ndarray) -> np.ndarray:
-        """Return vectors (h·k, …) of H as harmonics (h, c, …) in all coordinates of the model."""
-        basis = self.model.moving_basis
-        harmonics = vectors.reshape(len(multiples), -1, *vectors.shape[1:])
-        return harmonics if basis is None else np.einsum("ck,hk...->hc...", basis, harmonics)
+        """Return vectors (h·k, n) of H as harmonics (h, c, n) in all coordinates of the model."""
+        return self.basis @ vectors.reshape(len(multiples), -1, vectors.shape[1])
 
-    def within(self, vectors: np.ndarray) -> np.ndarray:
-        """Return harmonics (h, c) as a vector (h·k,) of H."""
-        basis = self.model.moving_basis
-        return (vectors if basis is None else vectors @ basis).ravel()
+    def refined(
+        self,
+        speed: float,
+        motion: np.ndarray,
+        multiples: np.ndarray,
+        tolerance: float,
+        before: float | None = None,
+    ) -> tuple[float, np.ndarray]:
+        """Return the zero next to a speed and a motion (h, c), and its motion.
 
-    def refined(self, found: Pair, multiples: np.ndarray, before: float, tolerance: float) -> Pair:
-        """Return the zero next to a speed and a vector, by inverse iteration.
-
-        The slope of H is taken between the last two speeds, of which `before` is the first. NaN
-        where it does not converge.
+        By inverse iteration, with the slope of H between the last two speeds, of which `before` is
+        the first, a slower one by default. The last relative change is below the `tolerance`, and
+        the error its square; NaN where it does not converge.
         """
-        speed, x = found
-        last, earlier = before, self(before, multiples)
+        x, begin = (motion @ self.basis).ravel(), speed
+        last = _BESIDE * speed if before is None else before
+        earlier = self(last, multiples)
         for _ in range(_ITERATIONS):
             H = self(speed, multiples)
-            if abs(speed - last) > _STEP * speed or last == before:
+            if abs(speed - last) > _STEP * speed or speed == begin:
                 slope = (H - earlier) / (speed - last)
                 last, earlier = speed, H
             try:
                 moved = np.linalg.solve(H, slope @ x)
             except np.linalg.LinAlgError:  # there already
-                return speed, x
+                return speed, motion
             change = (np.vdot(x, x) / np.vdot(x, moved)).real
-            x, speed = moved / np.linalg.norm(moved), speed - change
-            if not abs(speed - found[0]) < _FAR * found[0]:
+            x, speed = moved / np.linalg.norm(moved), float(speed - change)
+            if not abs(speed - begin) < _FAR * begin:
                 break
             if abs(change) <= tolerance * speed:
-                return float(speed), x
-        return np.nan, x
+                return speed, self.motions(x[:, None], multiples)[..., 0]
+        return np.nan, motion
 
 
 def dynamic_stiffness(system: PeriodicSystem, multiples: np.ndarray) -> np.ndarray:
@@ -179,6 +164,14 @@ class Search:
     refused: dict[float, Exception] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        self.order = checks.number(self.order, "order", least=0.0)
+        if self.limit is not None:
+            self.limit = checks.number(self.limit, "max_speed", "rad/s", above=0.0)
+        self.diameters = checks.whole_numbers(self.diameters, "nodal_diameters", most=4)
+        if not self.diameters.size:
+            raise ValueError(
+                "nodal_diameters: needs at least one whole number from 0 to 4, got none"
+            )
         self.varies = self.model.stiffness_varies
         if self.limit is None and self.varies:
             raise ValueError(
@@ -189,8 +182,8 @@ class Search:
         self.content = Content.of(self.model)
 
     @one_thread()
-    def resonances(self) -> list[Resonance]:
-        """Return all critical speeds up to the limit, ascending.
+    def motions(self) -> Motions:
+        """Return the motions at all critical speeds up to the limit, one at each, ascending.
 
         Raises
         ------
@@ -198,22 +191,22 @@ class Search:
             Where a support has a negative stiffness.
         """
         step = self.grid.step if self.varies else self.stiffness.system(1.0).step
-        most, found = _FEW // (step or 1), []
-        for center in self._centers(step):
-            few = center + step * np.arange(-most, most + 1) if step else np.array([center])
-            pairs = self._bracketed(few) if self.varies else _direct(self.stiffness, few)
-            reach = np.inf if self.limit is None else self.limit
-            answering = self._answering([pair for pair in pairs if pair[0] <= reach], few)
-            settled = (self._settled(one, step) if step else one for one in answering)
-            found += [one for one in settled if one is not None]
-        return self._of_one_plane(sorted(found, key=lambda one: one.speed))
+        found = [one for center in self._centers(step) for one in self._around(center, step)]
+        if not found:
+            shape = 0, 1, self.model.size, 1
+            return Motions(
+                np.zeros(0), np.zeros((0, 1)), np.zeros(shape), np.arange(1), np.zeros(0)
+            )
+        found.sort(key=lambda one: one.speeds[0])
+        rows = [(np.array([row]), one) for row, one in enumerate(found)]
+        return joined_motions(np.concatenate([one.speeds for one in found]), rows)
 
     def _centers(self, step: int) -> list[float]:
         """Return the frequencies over Ω at which waves answer; of those that are coupled, one."""
         model = self.model
         ratios = {model.ratios[body.name] for body in rotors_of(model.bodies)}
         shifts = []
-        for n in self.diameters:
+        for n in np.unique(self.diameters).tolist():
             for sign in (1, -1) if n and self.order else (1,):  # at order 0 they are conjugates
                 # waves of more diameters stay in the axes of their rotor
                 shifts += [sign * n * r for r in ratios] if n > 1 else [sign * n * model.turns]
@@ -222,6 +215,45 @@ class Search:
         for f in centers:
             first.setdefault(round(f % step, 9) % step if step else f, f)
         return list(first.values())
+
+    def _around(self, center: float, step: int) -> list[Motions]:
+        """Return the motions that answer at a frequency over Ω, with harmonics beside it."""
+        few = _FEW // step if step else 0
+        orders = step * np.arange(-few, few + 1)
+        given = self.stiffness, center + orders
+        zeros = self._bracketed(given[1]) if self.varies else _direct(*given)
+        zeros = [zero for zero in zeros if self.limit is None or zero[0] <= self.limit]
+        if not zeros:
+            return []
+        zeros.sort(key=lambda zero: zero[0])
+        speeds, vectors = np.array([zero[0] for zero in zeros]), np.array([x for _, x in zeros])
+        vectors = self._apart(speeds, np.moveaxis(vectors, 0, 2), center + orders)
+        found = []
+        for i in np.flatnonzero(self._answers(vectors, center + orders)):
+            one = speeds[i], vectors[..., i], center
+            found.append(self._settled(*one, step) if step else _motion(*one, orders))
+        return [one for one in found if one is not None]
+
+    def _settled(
+        self, speed: float, motion: np.ndarray, center: float, step: int
+    ) -> Motions | None:
+        """Return a motion with as many harmonics as it needs; None where there are too few."""
+        last = speed
+        for most in _MORE:
+            orders = step * np.arange(-(most // step), most // step + 1)
+            room = (len(orders) - len(motion)) // 2
+            motion = np.pad(motion, ((room, room), (0, 0)))
+            try:
+                last, motion = self.stiffness.refined(last, motion, center + orders, _CLOSE)
+            except NO_EQUATIONS:  # beside the end of a table
+                break
+            energy = np.sum(np.abs(motion) ** 2, axis=1)
+            if np.isnan(last):
+                break
+            if energy[0] + energy[-1] <= _EDGE * energy.sum():
+                return _motion(last, motion, center, orders)
+        self.lost.append(speed)
+        return None
 
     # ------------------------------------------------------------------ stiffness over the speed
 
@@ -236,97 +268,59 @@ class Search:
         slow = first * _RATIO ** np.arange(-_SLOW, _SLOW)
         even = np.linspace(first, self.limit, count)
         wanted = np.unique([*even, *slow, *kinks[(kinks > first) & (kinks < self.limit)]])
-        wanted = wanted[np.diff(wanted, prepend=0.0) > _SAME * first]
-        stack, errors = self.stiffness.stacked(wanted)
+        wanted = wanted[np.diff(wanted, prepend=0.0) > SAME * first]
+        stack, errors = self.model.systems(wanted, self.order * wanted)
         if stack is None or len(stack.speed) < 2:
             raise errors[min(errors)]
         self.refused = {float(wanted[i]): errors[i] for i in errors if wanted[i] >= first}
-        return stack
+        return stack.projected(self.stiffness.basis)
 
-    def _bracketed(self, multiples: np.ndarray) -> list[Pair]:
-        """Return where H is singular, by its eigenvalues over the grid, and null vectors."""
-        stack, found = dynamic_stiffness(self.grid, multiples), []
+    def _bracketed(self, multiples: np.ndarray) -> list[Zero]:
+        """Return where H is singular, by its eigenvalues over the grid."""
+        speeds, stack = self.grid.speed, dynamic_stiffness(self.grid, multiples)
         h, basis = len(multiples), np.eye(stack.shape[-1])
-        is_even = h > 1 and h % 2 and np.array_equal(multiples, -multiples[::-1])
-        if is_even:  # H is real in cosines and sines
+        if h > 1 and np.array_equal(multiples, -multiples[::-1]):  # real in cosines and sines
             basis = np.kron(real_waves(h), np.eye(len(basis) // h))
             stack = (basis.conj().T @ stack @ basis).real
-        lost, signs = np.array(list(self.refused)), _eigenvalues(stack) < 0.0
-        for row, (low, high) in enumerate(pairwise(self.grid.speed.tolist())):
-            if np.any((low < lost) & (lost < high)):
-                continue
-            A, B = stack[row], stack[row + 1]
-            for j in np.flatnonzero(signs[row] != signs[row + 1]):
-                at = brentq(_between, 0.0, 1.0, args=(A, B, j), xtol=_FINE)
-                at = np.round(at, _DIGITS)  # of zeros that are one, orthogonal vectors
-                vectors = np.linalg.eigh((1.0 - at) * A + at * B)[1]
-                guess = low + (high - low) * at, basis @ vectors[:, j]
-                exact, slack = self._exact(guess, multiples), _BEYOND * (high - low)
-                if low - slack < exact[0] < high + slack:
-                    found.append(exact)
-                else:
-                    self.jumps.append(guess[0])
+        signs = _eigenvalues(stack) < 0.0
+        gaps = np.diff(np.searchsorted(sorted(self.refused), speeds)) > 0
+        found = []
+        for row, j in np.argwhere((signs[:-1] != signs[1:]) & ~gaps[:, None]):
+            A, change = stack[row], stack[row + 1] - stack[row]
+            width = speeds[row + 1] - speeds[row]
+            at = brentq(_between, 0.0, 1.0, args=(A, change, j), xtol=_FINE)
+            at = np.round(at, _DIGITS)  # of zeros that are one, orthogonal vectors
+            guess, vectors = speeds[row] + at * width, basis @ np.linalg.eigh(A + at * change)[1]
+            exact = guess, self.stiffness.motions(vectors[:, [j]], multiples)[..., 0]
+            try:
+                before = float(speeds[row + (at < 0.5)])
+                exact = self.stiffness.refined(*exact, multiples, self.error, before)
+            except NO_EQUATIONS:  # beyond the end of a table, by rounding
+                pass
+            if abs(exact[0] - speeds[row] - 0.5 * width) < (0.5 + _BEYOND) * width:
+                found.append(exact)
+            else:
+                self.jumps.append(float(guess))
         return found
-
-    def _exact(self, found: Pair, multiples: np.ndarray) -> Pair:
-        """Return a zero with the equations that are there."""
-        try:
-            return self.stiffness.refined(found, multiples, self._before(found[0]), self.error)
-        except NO_EQUATIONS:  # beyond the end of a table, by rounding
-            return found
-
-    def _before(self, speed: float) -> float:
-        """Return a slower speed, for the slope of H."""
-        if not self.varies:
-            return (1.0 - _STEP) * speed
-        lower = self.grid.speed[self.grid.speed < (1.0 - _STEP) * speed]
-        return float(lower[-1] if lower.size else self.grid.speed[1])
-
-    def _settled(self, found: Resonance, step: int) -> Resonance | None:
-        """Add harmonics to a motion until its critical speed does not change; None if it does."""
-        speed, vectors, multiples = found
-        beyond = step * np.array([1, 2])
-        for _ in range(_FEW, _MOST, 2 * step):
-            last, vectors = speed, np.pad(vectors, ((2, 2), (0, 0)))
-            multiples = np.r_[multiples[0] - beyond[::-1], multiples, multiples[-1] + beyond]
-            pair = last, self.stiffness.within(vectors)
-            # what is left is the square of a change
-            allowed = 0.1 * np.sqrt(_HARMONICS)
-            speed, x = self.stiffness.refined(pair, multiples, self._before(last), allowed)
-            vectors = self.stiffness.motions(x, multiples)
-            if abs(speed - last) <= _HARMONICS * last:
-                return Resonance(speed, vectors, multiples)
-            if np.isnan(speed):
-                break
-        self.lost.append(found.speed)
-        return None
 
     # ------------------------------------------------------------------ which motions answer
 
-    def _answering(self, pairs: list[Pair], multiples: np.ndarray) -> list[Resonance]:
-        """Return the motions that turn with the excitation; of one and its conjugate, one."""
-        if not pairs:
-            return []
-        pairs = sorted(pairs, key=lambda pair: pair[0])
-        speeds = np.array([speed for speed, _ in pairs])
-        vectors = np.array([vector for _, vector in pairs], dtype=complex).T
-        vectors = self.stiffness.motions(vectors, multiples)
+    def _apart(self, speeds: np.ndarray, vectors: np.ndarray, multiples: np.ndarray) -> np.ndarray:
+        """Return motions (h, c, n), of which those of one speed turn one way in time, or space."""
         vectors = vectors / np.linalg.norm(vectors, axis=(0, 1))
-        # each motion of one speed turns one way in time, or in space
         seen = multiples[:, None] + self.content.shifts
         senses = 10.0 * np.sign(np.where(np.abs(seen) < 1e-9, 0.0, seen)) + self.content.waves
         groups = groups_of(speeds)
         for group in np.flatnonzero(np.bincount(groups) > 1):
             chosen = groups == group
             vectors[..., chosen] = self.content.extremal(vectors[None][..., chosen], senses)[0]
-        share, mean = self._shares(vectors, multiples)
-        kept = np.flatnonzero((share >= _SHARE) & (mean >= -_CONJUGATE))
-        return [Resonance(speeds[i], vectors[:, :, i], multiples) for i in kept]
+        return vectors
 
-    def _shares(self, vectors: np.ndarray, multiples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the share of energy of motions (h, c, n) that turns so, and the mean order, (n,).
+    def _answers(self, vectors: np.ndarray, multiples: np.ndarray) -> np.ndarray:
+        """Return which motions (h, c, n) turn with the excitation; of one and its conjugate, one.
 
-        The mean order is over p; it is negative of the conjugate of another motion.
+        By the share of energy that turns so, and by the mean order, which is negative of the
+        conjugate of another motion.
         """
         content, p = self.content, self.order
         energies = content.energies(vectors[None])[0]
@@ -338,34 +332,7 @@ class Search:
         # what stands still beside the rotor answers to all
         turning += _is_order(multiples, p) @ standing
         mean = np.einsum("hw,hwn->n", seen, energy)
-        return turning / total, mean / (total * (p or 1.0))
-
-    def _of_one_plane(self, found: list[Resonance]) -> list[Resonance]:
-        """Return critical speeds without those of the same motion in the other plane of a rotor.
-
-        Bending modes of which a basis holds one half alone make both planes of a round rotor
-        differ. The motion seen from outside is the same in both; the softer plane has more modes.
-        """
-        kept: list[tuple[Resonance, np.ndarray]] = []
-        for one in found:
-            seen = self._seen(one)
-            for other, before in kept if self.model.turns else ():
-                near = _SAME < 1.0 - other.speed / one.speed < _PLANES
-                if near and abs(np.vdot(before, seen)) > _ALIKE:
-                    break
-            else:
-                kept.append((one, seen))
-        return [one for one, _ in kept]
-
-    def _seen(self, one: Resonance) -> np.ndarray:
-        """Return the amplitudes of all waves that turn with the excitation, of unit length."""
-        content, parts = self.content, []
-        shifts, rows = [*content.shifts, 0.0], [*content.rows[:-5], content.rows[-1]]
-        for shift, R in zip(shifts, rows, strict=True):
-            at = np.isclose(one.multiples + shift, self.order, rtol=0.0, atol=1e-9)
-            parts.append(R @ one.vectors[at].sum(axis=0))
-        seen = np.concatenate(parts)
-        return seen / max(np.linalg.norm(seen), 1e-300)
+        return (turning >= _SHARE * total) & (mean >= -_CONJUGATE * (p or 1.0) * total)
 
     # ------------------------------------------------------------------ what is left out
 
@@ -381,7 +348,7 @@ class Search:
         if self.lost:
             told.append(
                 f"near {_shown(self.lost)} rad/s they still change with harmonics up to the "
-                f"{_MOST}th, and are left out"
+                f"{_MORE[-1]}th, and are left out"
             )
         if self.jumps:
             told.append(
@@ -391,6 +358,12 @@ class Search:
         if told:
             what = "; ".join(told)
             warnings.warn(f"critical speeds: {what}", UserWarning, stacklevel=user_level())
+
+
+def _motion(speed: float, motion: np.ndarray, center: float, orders: np.ndarray) -> Motions:
+    """Return the motion (h, c) at a critical speed, its harmonics beside a frequency over Ω."""
+    values = np.array([[1j * center * speed]])
+    return Motions(np.array([speed]), values, motion[None, :, :, None], orders, np.zeros(1))
 
 
 def _shown(speeds: Sequence[float]) -> str:
@@ -404,7 +377,7 @@ def _is_order(frequencies: np.ndarray, order: float) -> np.ndarray:
 
 def groups_of(speeds: np.ndarray) -> np.ndarray:
     """Return the number of each of ascending speeds, the same where they are one."""
-    return np.cumsum(np.diff(speeds, prepend=speeds[:1]) > _SAME * speeds)
+    return np.cumsum(np.diff(speeds, prepend=speeds[:1]) > SAME * speeds)
 
 
 def _eigenvalues(H: np.ndarray) -> np.ndarray:
@@ -414,12 +387,12 @@ def _eigenvalues(H: np.ndarray) -> np.ndarray:
     return np.where(np.abs(values) <= rounding, 0.0, values)
 
 
-def _between(at: float, A: np.ndarray, B: np.ndarray, j: int) -> float:
+def _between(at: float, A: np.ndarray, change: np.ndarray, j: int) -> float:
     """Return an eigenvalue of what lies between two matrices, at a share from 0 to 1."""
-    return _eigenvalues((1.0 - at) * A + at * B)[j]
+    return _eigenvalues(A + at * change)[j]
 
 
-def _direct(stiffness: Stiffness, multiples: np.ndarray) -> list[Pair]:
+def _direct(stiffness: Stiffness, multiples: np.ndarray) -> list[Zero]:
     """Return all zeros of ``H = A − Ω² B``, A not negative, with null vectors.
 
     Free motions, the null space R of A, follow the others by their inertia: ``Rᴴ B φ = 0``. Those
@@ -443,4 +416,5 @@ def _direct(stiffness: Stiffness, multiples: np.ndarray) -> list[Pair]:
     inverse, shapes = np.linalg.eigh(W.conj().T @ B @ W)
     positive = inverse > 1e-12 * np.abs(inverse).max(initial=0.0)
     speeds = 1.0 / np.sqrt(inverse[positive])
-    return list(zip(speeds.tolist(), (W @ shapes[:, positive]).T, strict=True))
+    motions = stiffness.motions(W @ shapes[:, positive], multiples)
+    return list(zip(speeds.tolist(), np.moveaxis(motions, 2, 0), strict=True))

@@ -59,6 +59,36 @@ _LEAST_LIKENESS, _MOST_CHANGES = 0.25, 3.0
 _ALIKE = 1e-6  # relative distance of λ of motions whose shapes are arbitrary
 
 
+class OfMotions:
+    """Base of results that hold whirl codes and nodal diameters of motions."""
+
+    @property
+    def whirl(self) -> np.ndarray:
+        """Sense of every motion, shape as `whirl_codes`.
+
+        'forward' and 'backward' are seen from outside, relative to the spin; 'mixed' where the
+        weaker sense has more than half the amplitude of the stronger; 'axial', 'torsional' and
+        'radial' for n = 0; 'static' for a wave that stands still in space, like a free rotor that
+        is displaced; 'overdamped' for a lateral motion that decays without oscillating;
+        'unknown' where neither shapes nor interfaces show the mode, or where it has more than four
+        nodal diameters: its inertial frequency is that of the rotor frame then.
+        """
+        return np.array(WHIRLS)[self.whirl_codes]
+
+    @property
+    def families(self) -> np.ndarray:
+        """Kind of every motion, shape as `whirl_codes`.
+
+        'lateral', 'torsional', 'axial', 'disc' (two nodal diameters and more), 'foundation', or
+        'other'.
+        """
+        special = {TORSIONAL: 1, AXIAL: 2, RADIAL: 4, UNKNOWN: 4, FOUNDATION: 5}
+        kinds = np.where(self.nodal_diameters >= 2, 3, 0)
+        for code, kind in special.items():
+            kinds = np.where(self.whirl_codes == code, kind, kinds)
+        return np.array(FAMILIES)[kinds]
+
+
 class Named(NamedTuple):
     """Motions at s speeds with their names.
 
@@ -164,13 +194,14 @@ class Content:
         # equal but for rounding is equal
         energy = np.round(energy[:, :, :-5] / np.maximum(whole, 1e-300)[:, None, None], _DIGITS)
         above = (orders[:, None] + self.shifts).ravel()  # of all waves in all harmonics
-        best = _strongest(energy.reshape(len(values), -1, energy.shape[-1]), above)
+        by_wave = energy.sum(axis=1)
+        energy = energy.reshape(len(values), len(above), values.shape[1])
+        best = _strongest(energy, above)
         still = _STATIC * np.abs(speeds) + motions.bounds[:, None]
         seen = nu[:, None, :] + above[:, None] * speeds[:, :, None]
         wave = np.tile(self.waves, len(orders))[:, None]
         turns = np.sign(wave * seen) * np.where(speeds < 0.0, -1.0, 1.0)[:, :, None]
         turns = np.where(np.abs(seen) <= still[:, None], 0.0, turns)
-        energy = energy.reshape(turns.shape)
         forward, backward = (
             np.round(np.sum(energy * (turns == sense), axis=1), _DIGITS) for sense in (1.0, -1.0)
         )
@@ -183,7 +214,6 @@ class Content:
         codes = np.where((turning == 0.0) & (wave != 0), STATIC, codes)
         named = np.array([AXIAL, TORSIONAL, RADIAL])[np.argmax(directions[:3], axis=0)]
         codes = np.where(wave == 0, named, codes)
-        by_wave = energy.reshape(len(values), len(orders), -1, energy.shape[-1]).sum(axis=1)
         fitted = by_wave.sum(axis=1)
         unseen = whole <= 1e-12 * np.max(whole, axis=1, keepdims=True, initial=0.0)
         unseen |= (fitted < _NOT_FITTED) & (np.max(directions[:3], axis=0) < 0.5 * whole)
@@ -330,15 +360,6 @@ def damping_of(growth: np.ndarray, frequency: np.ndarray) -> tuple[np.ndarray, n
     ratio = np.where(still, -np.sign(growth), -growth / np.where(size > 0.0, size, 1.0))
     decrement = -2.0 * np.pi * growth / np.where(still, np.nan, frequency)
     return ratio + 0.0, np.where(growth == 0.0, 0.0, decrement) + 0.0
-
-
-def families(codes: np.ndarray, diameters: np.ndarray) -> np.ndarray:
-    """Return which of :data:`FAMILIES` modes belong to, from whirl codes and nodal diameters."""
-    special = {TORSIONAL: 1, AXIAL: 2, RADIAL: 4, UNKNOWN: 4, FOUNDATION: 5}
-    kinds = np.where(np.asarray(diameters) >= 2, 3, 0)
-    for code, kind in special.items():
-        kinds = np.where(np.asarray(codes) == code, kind, kinds)
-    return np.array(FAMILIES)[kinds]
 
 
 def signed_diameters(codes: np.ndarray, diameters: np.ndarray) -> np.ndarray:

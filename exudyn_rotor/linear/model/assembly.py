@@ -28,6 +28,7 @@ from exudyn_rotor.linear.equations import (
     add,
     congruent,
     difference,
+    products,
     rate_of,
     stacked,
     turned,
@@ -147,12 +148,12 @@ class Element:
         put(found, "K", 0, congruent(U, K))
         first = rate_of(U)
         if first and np.any(D):
-            put(found, "K", 1, congruent(U, D, first))
+            put(found, "K", 1, products(U, D, first))
         for mass in masses:  # ü = d²(U y)/dt²; in axes that turn it is alike in all directions
             put(found, "M", 0, {0: congruent(U, mass)[0]})
             if first:
-                put(found, "D", 1, congruent(U, 2.0 * mass, first))
-                put(found, "K", 2, congruent(U, mass, rate_of(first)))
+                put(found, "D", 1, products(U, 2.0 * mass, first))
+                put(found, "K", 2, products(U, mass, rate_of(first)))
         return found
 
     def check_axes(self, turns: int) -> None:

@@ -1,22 +1,17 @@
 """Motion of a rotor over time while a record shakes the ground.
 
-The equations are ``ż = A(θ) z + B Σ L_n exp(inθ) a(t)`` with the load ``f = −Sᵀ a`` (109). In each
-step the record is the straight line with its mean and first moment, both exact.
-
-- Constant equations are followed exactly, whatever decays or swings fast: one matrix exponential of
-  the state beside the line of the load, which turns with exp(inθ).
-- Periodic equations take steps of Radau's method with three stages. It is of fifth order, and what
-  decays within a step decays. What a step does is periodic in its first angle, and so known by a
-  few Fourier terms. Source: Hairer, Wanner, Solving Ordinary Differential Equations II, Sect. IV.5.
-
-Steps are halved until the motion no longer changes, and straight lines between them follow it: a
-rotor may swing faster than its record.
+``ż = A(θ) z + Σ L_n exp(inθ) a(t)`` with the load ``f = −Sᵀ a`` (109). In each step the record is
+the straight line with its mean and first moment. Constant equations are followed exactly by a
+matrix exponential. Periodic ones take steps of Radau's method with three stages, of fifth order, in
+which what decays within a step decays (Hairer, Wanner, Solving Ordinary Differential Equations II,
+Sect. IV.5); a step is periodic in its first angle, and known by a few Fourier terms.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import cycle
 from typing import TYPE_CHECKING
 
 import exudyn
@@ -27,12 +22,7 @@ from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.foundations.record import BaseRecord
 from exudyn_rotor.linear.equations import Terms, UnconvergedError, at_angle, states_of
-from exudyn_rotor.linear.model.build import (
-    Target,
-    linear_model,
-    warn_of_left_out_stiffening,
-    warn_of_structural_damping,
-)
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.response.loads import At, Place, checked_places, places
 from exudyn_rotor.linear.response.response import DIRECTIONS, AtPlaces
@@ -120,8 +110,8 @@ class BaseResponse(AtPlaces):
         shown = Units.of(units)
         most = np.abs(self.motion[..., :3]).max(axis=0).T
         across, times = np.array([self.peak(place) for place in self.places]).reshape(-1, 2).T
-        columns = {"place": np.array(self.places)}
-        columns |= {f"{name} [m]": most[i] for i, name in enumerate(DIRECTIONS[:3])}
+        columns = {f"{name} [m]": most[i] for i, name in enumerate(DIRECTIONS[:3])}
+        columns = {"place": np.array(self.places)} | columns
         lines = text_table(columns | {"across [m]": across, "at [s]": times})
         at = f"{shown.speeds(self.speed):g} {shown.speed}"
         return "\n".join([f"largest motion against the ground at {at}", *lines])
@@ -139,12 +129,10 @@ class BaseResponse(AtPlaces):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the displacement across the axis over time."""
         ax = plotting.axes_or_new(ax)
-        for index, place in enumerate(self.places):
-            across = np.hypot(*self.motion[:, index, :2].T)
-            color = plotting.COLORS[index % len(plotting.COLORS)]
+        for place, color in zip(self.places, cycle(plotting.COLORS), strict=False):
+            across = np.hypot(*self.displacement(place)[:, :2].T)
             ax.plot(self.time, 1e6 * across, color=color, label=place)
-        ax.set_xlabel("time [s]")
-        ax.set_ylabel("displacement across the axis [µm]")
+        ax.set(xlabel="time [s]", ylabel="displacement across the axis [µm]")
         ax.legend()
         return ax
 
@@ -211,17 +199,14 @@ def base_response(
     if end_time is not None:
         end = checks.number(end_time, "end_time", "s", above=start)
     at = checked_places(at)
-    refusal = (
-        "target: a motion of the ground needs a reduced rotor on supports, and a foundation with "
-        "its participation; in a scene, use add_base_motion"
-    )
-    if isinstance(target, exudyn.MainSystem):
-        raise ValueError(refusal)
-    model = linear_model(target, supports=supports, stiffening=stiffening)
-    if model.base_loads(speed) is None:
-        raise ValueError(refusal)
-    warn_of_structural_damping(model, "base_response computes motion over time")
-    warn_of_left_out_stiffening(model, speed)
+    is_scene = isinstance(target, exudyn.MainSystem)
+    model = None if is_scene else linear_model(target, supports=supports, stiffening=stiffening)
+    if is_scene or model.base_loads(speed) is None:
+        raise ValueError(
+            "target: a motion of the ground needs a reduced rotor on supports, and a foundation "
+            "with its participation; in a scene, use add_base_motion"
+        )
+    warn_of_omissions(model, speed, "base_response computes motion over time")
     model.check_without_frequency("a motion of the ground")
     model = model.for_responses
     observed = places(model, at, speed)
@@ -235,25 +220,12 @@ def base_response(
 
 @dataclass(frozen=True, eq=False)
 class _ShakenRotor:
-    """Equations of first order, the record along (n1, n2, e), and what is looked at.
-
-    Attributes
-    ----------
-    speed : float
-        Ω [rad/s].
-    A : mapping of int to ndarray, shape (2k, 2k)
-        Fourier terms of the rates per state.
-    loads : mapping of int to ndarray, shape (2k, 3)
-        Fourier terms of the rates per acceleration of the ground.
-    seen : sequence of mapping of int to ndarray, shape (6, 2k)
-        Fourier terms of the motion of each place per state, axes that stand still.
-    record : BaseRecord
-    """
+    """Equations of first order by Fourier terms of the spin angle, and the record (n1, n2, e)."""
 
     speed: float
-    A: Terms
-    loads: Terms
-    seen: Sequence[Terms]
+    A: Terms  # rates per state (2k, 2k)
+    loads: Terms  # rates per acceleration of the ground (2k, 3)
+    seen: Sequence[Terms]  # motion of each place per state (6, 2k), axes that stand still
     record: BaseRecord
 
     @classmethod
@@ -293,11 +265,13 @@ class _ShakenRotor:
             along = np.abs(motion[..., 2]).max()
             across = max(np.abs(motion[..., :2]).max(), _ROUNDS * along)
             sizes = np.array([across, across, max(along, _SMALL * across)])
-            sizes = np.where(sizes > 0.0, sizes, 1.0)
+            sizes[sizes == 0.0] = 1.0
             if last is not None:
-                change = np.abs(motion[: 2 * len(last) : 2] - last[: len(motion[::2])])[..., :3]
-                is_settled = (change / sizes).max() <= _HALVED * tolerance
-                if is_settled and _follow(motion[..., :3] / sizes):
+                moved = motion[: 2 * len(last) - 1, :, :3] / sizes
+                change = moved[::2] - last[..., :3] / sizes
+                bent = moved[1::2] - 0.5 * (moved[:-1:2] + moved[2::2])
+                is_settled = np.abs(change).max() <= _HALVED * tolerance
+                if is_settled and np.abs(bent).max(initial=0.0) <= _BETWEEN:
                     return time[::2], motion[::2]
             step, last = 0.5 * step, motion
         raise UnconvergedError(
@@ -319,13 +293,12 @@ class _ShakenRotor:
         after = step * np.arange(count + 1)
         times, angles = self.record.times[0] + after, self.speed * after
         lines = self._lines(times, step)
-        turn = int(np.ceil(np.sqrt(count)))  # of constant equations any number of steps
-        if not self.is_constant:
-            turn = min(round(2.0 * np.pi / abs(self.speed) / step), count)
         with np.errstate(over="ignore", invalid="ignore"):  # told by who asked
             if self.is_constant:
+                turn = int(np.ceil(np.sqrt(count)))  # any number of steps
                 by_state, added = self._exact(step, angles[:-1], lines)
             else:
+                turn = min(round(2.0 * np.pi / abs(self.speed) / step), count)
                 by_state, by_line = self._radau(step)
                 added = np.zeros((count, len(self.A[0])))
                 for n, X in enumerate(_matrices(by_line, angles[:turn])):
@@ -338,10 +311,7 @@ class _ShakenRotor:
         return times, motion
 
     def _lines(self, times: np.ndarray, step: float) -> np.ndarray:
-        """Return first value and slope (t, 6) of the line in every step.
-
-        It has the mean and the first moment of the record.
-        """
+        """Return first value and slope (t, 6) of the line in every step."""
         velocity, place = self.record.integrals(times)
         mean = np.diff(velocity, axis=0) / step
         moment = 0.5 * step * (velocity[1:] + velocity[:-1]) - np.diff(place, axis=0)
@@ -367,7 +337,7 @@ class _ShakenRotor:
         """Return Fourier terms of what a step does with state (2k, 2k) and line (2k, 6)."""
         size, first = len(self.A[0]), 2.0 * np.pi * np.arange(_ANGLES) / _ANGLES
         stages = np.add.outer(first, self.speed * step * _STAGES)
-        rates, loads = (_at_angles(each, stages) for each in (self.A, self.loads))
+        rates, loads = (at_angle(each, stages) for each in (self.A, self.loads))
         loads = np.concatenate([loads, (step * _STAGES)[:, None, None] * loads], axis=3)
         left = -step * np.einsum("ij,njab->niajb", _RADAU, rates).reshape(_ANGLES, 3 * size, -1)
         right = step * np.einsum("ij,njab->niab", _RADAU, loads).reshape(_ANGLES, 3 * size, 6)
@@ -382,15 +352,10 @@ class _ShakenRotor:
         return tuple({n: spectrum[n][:, part] for n in known} for part in parts)
 
 
-def _at_angles(terms: Terms, angles: np.ndarray) -> np.ndarray:
-    """Return matrices at spin angles [rad], stacked."""
-    return sum(np.multiply.outer(np.exp(1j * n * angles), X) for n, X in terms.items()).real
-
-
 def _matrices(terms: Terms, angles: np.ndarray) -> Iterator[np.ndarray]:
     """Give the matrices at spin angles [rad], one after the other."""
     for first in range(0, len(angles), _AT_ONCE):
-        yield from _at_angles(terms, angles[first : first + _AT_ONCE])
+        yield from at_angle(terms, angles[first : first + _AT_ONCE])
 
 
 def _followed(by_state: Terms, angles: np.ndarray, added: np.ndarray) -> np.ndarray:
@@ -401,7 +366,7 @@ def _followed(by_state: Terms, angles: np.ndarray, added: np.ndarray) -> np.ndar
     """
     (count, size), turn = added.shape, len(angles)
     turns = -(-count // turn)
-    added = np.concatenate([added, np.zeros((turns * turn - count, size))])
+    added = np.pad(added, ((0, turns * turn - count), (0, 0)))
     added = added.reshape(turns, turn, size).swapaxes(0, 1)
     states, whole = np.zeros((turn + 1, turns, size)), np.eye(size)
     for n, E in enumerate(_matrices(by_state, angles)):
@@ -414,13 +379,3 @@ def _followed(by_state: Terms, angles: np.ndarray, added: np.ndarray) -> np.ndar
             states[n + 1] = states[n] @ E.T + added[n]
     states = np.concatenate([states[:turn].swapaxes(0, 1).reshape(-1, size), states[turn, -1:]])
     return states[: count + 1]
-
-
-def _follow(moved: np.ndarray) -> bool:
-    """Return whether straight lines between every second of the displacements follow the others.
-
-    The largest displacement is one.
-    """
-    moved = moved[: 2 * ((len(moved) - 1) // 2) + 1]
-    off = moved[1::2] - 0.5 * (moved[:-1:2] + moved[2::2])
-    return bool(np.abs(off).max(initial=0.0) <= _BETWEEN)

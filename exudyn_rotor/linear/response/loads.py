@@ -1,10 +1,4 @@
-"""Loads on rotors and where they act: places, unbalances, harmonic forces, ground that shakes.
-
-Balance quality grades are those of ISO 21940-11:2016, "Mechanical vibration — Rotor balancing —
-Part 11: Procedures and tolerances for rotors with rigid behaviour", Sect. 5 and 6: grade
-G = e_per Ω in mm/s, with the permissible residual specific unbalance e_per and the highest service
-speed Ω.
-"""
+"""Loads on rotors and where they act: places, unbalances, harmonic forces, ground that shakes."""
 
 from __future__ import annotations
 
@@ -53,22 +47,15 @@ class Place:
     def pulled(self, wrench: np.ndarray, frame: str, speed: float) -> Harmonics:
         """Return the generalised force, as harmonics (k,), of a force and moment (6,).
 
-        Along and about (n1, n2, e), which stand still or turn with the rotor.
-
-        Raises
-        ------
-        ValueError
-            For what turns with a rotor of another speed than that of the analysis [rad/s].
+        Along and about (n1, n2, e), which stand still or turn with the rotor at a speed [rad/s].
         """
-        turning = {0: np.eye(6)}
         if frame == "rotor" and self.ratio not in (0.0, 1.0):
             owner, _, _ = self.label.partition(":")
             raise ValueError(
                 f"at: {self.label!r}: turns with {self.ratio:g} times the speed of the analysis; "
                 f"give train.relative_to({owner!r}), over the speed of that rotor"
             )
-        if frame == "rotor" and speed:
-            turning = turning_harmonics(6)
+        turning = turning_harmonics(6) if frame == "rotor" and speed else {0: np.eye(6)}
         pairs = product(self.seen.items(), turning.items())
         return _sum({m + n: U.T @ (R @ wrench)} for (m, U), (n, R) in pairs)
 
@@ -77,18 +64,11 @@ def place(model: LinearModel, at: At, speed: float = 1.0) -> Place:
     """Find an interface by its name, a mesh node by its number or by a position [m].
 
     The motion is seen at a speed [rad/s]: at rest, or at any other.
-
-    Raises
-    ------
-    ValueError
-        If there is no such interface or node, or the rotor was stored without mode shapes.
     """
     if isinstance(at, str):
-        known = model.interfaces
-        if at not in known:
-            raise ValueError(
-                f"at: {at!r}: no such interface; the rotor has: {', '.join(known) or 'none'}"
-            )
+        if at not in model.interfaces:
+            known = ", ".join(model.interfaces) or "none"
+            raise ValueError(f"at: {at!r}: no such interface; the rotor has: {known}")
         body, _ = model.owner(at)
         return Place(at, model.seen(at, speed), False, getattr(body, "ratio", 0.0))
     [first, *others] = model.rotors.values()
@@ -99,27 +79,25 @@ def place(model: LinearModel, at: At, speed: float = 1.0) -> Place:
             f"at: {at!r}: mesh nodes need a rotor with its mode shapes, not one "
             "without_shapes(); name an interface"
         )
-    nodes, number = first.shapes.nodes, at
-    if not isinstance(at, int):
-        number = int(np.argmin(np.linalg.norm(nodes - np.asarray(at), axis=1)))
-    elif at >= len(nodes):
-        raise ValueError(f"at: {at}: no such node; the mesh has nodes 0 to {len(nodes) - 1}")
+    number = node_number(first.shapes.nodes, at)
     return Place(f"node {number}", model.seen_at_node(number, speed), is_node=True)
 
 
-def checked_places(at: Sequence[At] | At | None) -> tuple[At, ...] | None:
-    """Return places as a tuple; None for all interfaces.
+def node_number(nodes: np.ndarray, at: int | Sequence[float]) -> int:
+    """Return the number of a mesh node, of the nearest one to a position [m]."""
+    if not isinstance(at, int):
+        return int(np.argmin(np.linalg.norm(nodes - np.asarray(at), axis=1)))
+    if at >= len(nodes):
+        raise ValueError(f"at: {at}: no such node; the mesh has nodes 0 to {len(nodes) - 1}")
+    return at
 
-    Raises
-    ------
-    TypeError, ValueError
-        If one is neither a name, nor a number, nor a position.
-    """
+
+def checked_places(at: Sequence[At] | At | None) -> tuple[At, ...] | None:
+    """Return places as a tuple; None for all interfaces."""
     if at is None:
         return None
-    if isinstance(at, str | int | np.integer):
-        at = (at,)
-    listed = checks.items(at, "at", "places of the rotor in a sequence")
+    listed = [at] if isinstance(at, str | int | np.integer) else at
+    listed = checks.items(listed, "at", "places of the rotor in a sequence")
     return tuple(checks.place(one, f"at[{index}]") for index, one in enumerate(listed))
 
 
@@ -139,6 +117,8 @@ def places(model: LinearModel, at: Sequence[At] | None, speed: float = 1.0) -> l
 
 def permissible_unbalance(grade: float, mass: float, speed: float) -> float:
     """Return the permissible residual unbalance of a rotor, ``U = G m / Ω`` [kg m].
+
+    By ISO 21940-11:2016, Sect. 5 and 6, for rotors with rigid behaviour.
 
     Parameters
     ----------
@@ -198,17 +178,11 @@ class Unbalance:
     angle: float = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "at", checks.place(self.at, "at"))
+        checks.keep(self, at=checks.place(self.at, "at"))
         where = f"unbalance at {self.at!r}"
-        amount = checks.number(self.amount, f"{where}: amount", "kg m")
-        if amount <= 0.0:
-            raise ValueError(
-                f"{where}: amount needs a positive number [kg m], got {amount!r}; turn it by its "
-                "angle, leave it out if there is none"
-            )
+        amount = checks.number(self.amount, f"{where}: amount", "kg m", above=0.0)
         angle = checks.number(self.angle, f"{where}: angle", "rad")
-        for name, value in (("amount", amount), ("angle", angle)):
-            object.__setattr__(self, name, value)
+        checks.keep(self, amount=amount, angle=angle)
 
     @classmethod
     def from_grade(
@@ -298,10 +272,10 @@ class HarmonicForce:
 
     def __post_init__(self) -> None:
         checks.choice(self.frame, "frame", FRAMES)
-        object.__setattr__(self, "at", checks.place(self.at, "at"))
-        for name, unit in (("force", "N"), ("moment", "N m")):
-            vector = _vector(getattr(self, name), f"{name} at {self.at!r}", unit)
-            object.__setattr__(self, name, vector)
+        checks.keep(self, at=checks.place(self.at, "at"))
+        force = _vector(self.force, f"force at {self.at!r}", "N")
+        moment = _vector(self.moment, f"moment at {self.at!r}", "N m")
+        checks.keep(self, force=force, moment=moment)
 
     def _harmonics(self, model: LinearModel, speed: float) -> Harmonics:
         """Return the harmonics (k,) of the load at a spin speed [rad/s]."""
@@ -351,8 +325,7 @@ class BaseAcceleration:
     acceleration: ArrayLike
 
     def __post_init__(self) -> None:
-        vector = _vector(self.acceleration, "acceleration", "m/s²")
-        object.__setattr__(self, "acceleration", vector)
+        checks.keep(self, acceleration=_vector(self.acceleration, "acceleration", "m/s²"))
 
     def _harmonics(self, model: LinearModel, speed: float) -> Harmonics:
         """Return the harmonics (k,) of the load at a spin speed [rad/s]."""
@@ -369,33 +342,15 @@ class BaseAcceleration:
 
 
 def total(
-    loads: Sequence[HarmonicForce | BaseAcceleration], model: LinearModel, speed: float
+    loads: Iterable[HarmonicForce | BaseAcceleration], model: LinearModel, speed: float
 ) -> Harmonics:
-    """Return the harmonics (k,) of the sum of all loads at a spin speed [rad/s].
-
-    Raises
-    ------
-    ValueError
-        If there is no load or all of them are zero.
-    """
-    found = _sum(load._harmonics(model, speed) for load in loads)
-    if not any(np.any(force) for force in found.values()):
-        raise ValueError(
-            "no load, so no response: give loads=[HarmonicForce(…)] that move the rotor"
-        )
-    return found
+    """Return the harmonics (k,) of the sum of all loads at a spin speed [rad/s]."""
+    return _sum(load._harmonics(model, speed) for load in loads)
 
 
 def unbalance_load(model: LinearModel, unbalances: Sequence[Unbalance], own: bool) -> Harmonics:
-    """Return the harmonics (k,) of the load per Ω² of all unbalances.
-
-    Raises
-    ------
-    ValueError
-        If there is no unbalance at all.
-    """
-    turning = [rotor for name, rotor in model.rotors.items() if model.ratios[name] == 1.0]
-    balanced = all(map(_is_balanced, turning))
+    """Return the harmonics (k,) of the load per Ω² of all unbalances."""
+    balanced = all(_is_balanced(rotor) for rotor in _turning(model).values())
     if not unbalances and (balanced or not own):
         reason = "the rotor itself is balanced" if own else "own=False leaves out the rotor's own"
         raise ValueError(f"no unbalance, so no response: {reason}; give unbalances=[Unbalance(…)]")
@@ -413,17 +368,18 @@ def _sum(parts: Iterable[Harmonics]) -> Harmonics:
 
 def in_words(model: LinearModel, unbalances: Sequence[Unbalance], own: bool) -> tuple[str, ...]:
     """Return the unbalances as text, the own one with its amount beside those that are given."""
-    found = tuple(map(str, unbalances))
-    if not own:
-        return found
-    given = sum(unbalance.amount for unbalance in unbalances)
-    for name, rotor in model.rotors.items():
-        if model.ratios[name] == 1.0:
-            amount = float(np.linalg.norm(_static_unbalance(rotor)))
-            share = f", {amount / given:.2g} of the amount given" if given else ""
-            whose = f"rotor {name!r}" if name else "the rotor"
-            found += (f"eccentricity of {whose}, with its mesh: {1e6 * amount:.4g} g mm{share}",)
-    return found
+    given, found = sum(unbalance.amount for unbalance in unbalances), list(map(str, unbalances))
+    for name, rotor in _turning(model).items() if own else ():
+        amount = np.linalg.norm(_static_unbalance(rotor))
+        share = f", {amount / given:.2g} of the amount given" if given else ""
+        whose = f"rotor {name!r}" if name else "the rotor"
+        found.append(f"eccentricity of {whose}, with its mesh: {1e6 * amount:.4g} g mm{share}")
+    return tuple(found)
+
+
+def _turning(model: LinearModel) -> dict[str, ReducedRotor]:
+    """Return the rotors that turn with the speed of the analysis, by their names."""
+    return {name: rotor for name, rotor in model.rotors.items() if model.ratios[name] == 1.0}
 
 
 def _static_unbalance(rotor: ReducedRotor) -> np.ndarray:

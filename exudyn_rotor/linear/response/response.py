@@ -11,11 +11,10 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.calls import user_level
-from exudyn_rotor.linear.over import NOT_KNOWN, table_lines
+from exudyn_rotor.linear.over import ModelResult, basis_column, table_lines
 from exudyn_rotor.plotting import COLORS, LINES, axes_or_new, figure, legend_above, plot_orbits
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.theory.rotating_axes import FRAMES
-from exudyn_rotor.theory.stiffening import LEVELS
 from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:
@@ -27,7 +26,6 @@ HALF_POWER = np.sqrt(0.5)  # of the size at a peak
 STILL = 1e-6  # share of a peak below which a neighbour stands still, as at rest without a load
 _CONSTANT = 1e-12  # share of the largest frequency that is none
 _NO_MOTION = 1e-12  # of the largest amplitude
-_DRAWN = (*DIRECTIONS, *CIRCULAR)
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +45,7 @@ class AtPlaces(Result):
 
 
 @dataclass(frozen=True, eq=False)
-class Response(AtPlaces):
+class Response(AtPlaces, ModelResult):
     """Steady motion ``u(t) = Re Σ_n a_n exp(i rate_n t)`` at places of the rotor.
 
     Attributes
@@ -68,15 +66,14 @@ class Response(AtPlaces):
         harmonic that is largest across the axis; a motion counts as at least a tenth of the largest
         at that speed or frequency. They are estimated at all peaks and at the first, middle and
         last point, which the table names; NaN elsewhere. None where they are not known.
-    stiffening : str or None
-        Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
+    stiffening, axes, unevenness
+        See :class:`Stability`.
     """
 
     orders: np.ndarray = numbers("orders", dtype=int)
     motion: np.ndarray = numbers("abscissa", "places", "orders", 6, dtype=complex, finite=False)
     frame: str
     basis_errors: np.ndarray | None = numbers("abscissa", "places", finite=False, optional=True)
-    stiffening: str | None = field(default=None, kw_only=True)
 
     _over: ClassVar[str] = "speeds"
     _what: ClassVar[str] = "spin speed"
@@ -84,8 +81,6 @@ class Response(AtPlaces):
     def __post_init__(self) -> None:
         super().__post_init__()
         checks.choice(self.frame, "frame", FRAMES)
-        if self.stiffening is not None:
-            checks.choice(self.stiffening, "stiffening", LEVELS)
 
     @property
     def abscissa(self) -> np.ndarray:
@@ -117,7 +112,8 @@ class Response(AtPlaces):
         ----------
         place : str, optional
             The first one by default.
-        direction : {'n1', 'n2', 'e', 'tilt n1', 'tilt n2', 'twist'}
+        direction : {'n1', 'n2', 'e', 'tilt n1', 'tilt n2', 'twist', 'forward', 'backward'}
+            The last two are the circular components of :meth:`whirl`.
         order : int, optional
             :attr:`main_order` by default.
 
@@ -126,7 +122,8 @@ class Response(AtPlaces):
         ValueError
             For an unknown place or direction, or a harmonic that does not matter.
         """
-        checks.choice(direction, "direction", DIRECTIONS)
+        if checks.choice(direction, "direction", (*DIRECTIONS, *CIRCULAR)) in CIRCULAR:
+            return self.whirl(place, order)[CIRCULAR.index(direction)]
         return self._harmonic(place, order)[:, DIRECTIONS.index(direction)]
 
     def whirl(
@@ -137,10 +134,8 @@ class Response(AtPlaces):
         ``u_n1 + i u_n2 = forward exp(i|rate|t) + backward exp(−i|rate|t)``; forward is from n1 to
         n2, the sense of a positive spin.
         """
-        order = self._order(order)
-        motion = self._harmonic(place, order)
-        turned = (self.rates(order) < 0.0)[:, None]
-        a, b = np.where(turned, motion.conj(), motion)[:, :2].T
+        motion, backward = self._harmonic(place, order), self.rates(self._order(order)) < 0.0
+        a, b = np.where(backward[:, None], motion.conj(), motion)[:, :2].T
         return 0.5 * (a + 1j * b), 0.5 * (a - 1j * b).conj()
 
     def semi_axes(
@@ -167,7 +162,7 @@ class Response(AtPlaces):
         """
         major, _ = self.semi_axes(place, order)
         inner = np.flatnonzero((major[1:-1] > major[:-2]) & (major[1:-1] >= major[2:])) + 1
-        name, values = self.places[self._at(place)], self.abscissa
+        name, values = self._named(place), self.abscissa
         if inner.size == 0:
             raise ValueError(
                 f"{name}: the motion has no peak between {values[0]:g} and {values[-1]:g} rad/s; "
@@ -192,10 +187,8 @@ class Response(AtPlaces):
             See :meth:`phasor`.
         points : int, optional
         """
-        value = checks.number(value, "value", "rad/s")
         points = checks.count(points, "points", least=2)
-        index = int(np.argmin(np.abs(self.abscissa - value)))
-        order = self._order(order)
+        index, order = self._nearest(value), self._order(order)
         motion = self._harmonic(place, order)[index, :2]
         sense = -1.0 if self.rates(order)[index] < 0.0 else 1.0
         angle = sense * np.linspace(0.0, 2.0 * np.pi, points)
@@ -212,21 +205,17 @@ class Response(AtPlaces):
 
     def _columns(self, place: str, order: int, units: str) -> dict[str, np.ndarray]:
         """Return the columns of one place and harmonic."""
-        values, unit = self._shown(units)
-        columns = {
-            f"{self._what} [{unit}]": values,
-            "place": np.full(len(values), place),
-            "order": np.full(len(values), order),
-        }
-        for name in ("n1", "n2", "e"):
+        (values, unit), columns = self._shown(units), {}
+        columns[f"{self._what} [{unit}]"] = values
+        columns |= {"place": np.full(len(values), place), "order": np.full(len(values), order)}
+        for name in DIRECTIONS[:3]:
             phasor = self.phasor(place, name, order)
             phases = np.where(np.abs(phasor) <= self._rounding, 0.0, np.degrees(np.angle(phasor)))
             columns |= {f"{name} [m]": np.abs(phasor), f"{name} phase [deg]": phases}
-        forward, backward = np.abs(self.whirl(place, order))
-        errors = np.full(len(values), np.nan)
-        if self.basis_errors is not None:
-            errors = self.basis_errors[:, self._at(place)]
-        return columns | {"forward [m]": forward, "backward [m]": backward, "basis error": errors}
+        columns |= {f"{name} [m]": np.abs(self.phasor(place, name, order)) for name in CIRCULAR}
+        errors = self.basis_errors
+        errors = None if errors is None else errors[:, self._at(place)]
+        return columns | basis_column(errors, len(values))
 
     def _shown(self, units: str) -> tuple[np.ndarray, str]:
         """Return what the response was computed over in its unit, and that unit."""
@@ -244,13 +233,11 @@ class Response(AtPlaces):
         units : {'rpm', 'Hz', 'SI'}
             'rpm' is for spin speeds, frequencies are in Hz then; 'SI' is rad/s.
         """
-        place, order = self.places[self._at(place)], self._order(order)
+        place, order = self._named(place), self._order(order)
         left_out = "place", "order", "e [m]", "e phase [deg]"
         lines = [self._title(place, order)]
         lines += table_lines(self._columns(place, order, units), *left_out)
-        if self.stiffening:
-            lines.append(f"stiffening: {self.stiffening}")
-        return "\n".join(lines if self.basis_errors is not None else [*lines, NOT_KNOWN])
+        return "\n".join([*lines, *self._closing(self.basis_errors)])
 
     def plot(
         self,
@@ -267,7 +254,8 @@ class Response(AtPlaces):
         ----------
         place : str, optional
             The first one by default.
-        directions : sequence of {'n1', 'n2', 'e', 'forward', 'backward'}
+        directions : sequence of str
+            See :meth:`phasor`.
         order : int, optional
             Harmonic; the main one by default.
         ax : two matplotlib Axes, optional
@@ -280,31 +268,28 @@ class Response(AtPlaces):
         ndarray of matplotlib.axes.Axes, shape (2,)
             Size and phase, as ``plt.subplots(2)`` returns them.
         """
-        names = checks.labels(directions, "directions", _DRAWN)
-        values, unit = self._shown(units)
-        place, order = self.places[self._at(place)], self._order(order)
-        if ax is None:
-            ax = figure(2, 1, size=(7.0, 5.5), sharex=True)[1]
         from matplotlib.axes import Axes
         from matplotlib.ticker import MultipleLocator
 
+        names = checks.labels(directions, "directions", (*DIRECTIONS, *CIRCULAR))
+        (values, unit), place, order = self._shown(units), self._named(place), self._order(order)
+        if ax is None:
+            ax = figure(2, 1, size=(7.0, 5.5), sharex=True)[1]
         pair = checks.instances(ax, "ax", Axes)
         if len(pair) != 2:
             raise ValueError(f"ax: needs two Axes, for size and phase, got {len(pair)}")
         size, phase = pair
         style = {"lw": 1.4, "marker": "." if len(values) == 1 else None}  # one point is no line
-        curves = {name: self._drawn(name, place, order) for name in names}
-        for (name, curve), color, line in zip(curves.items(), COLORS, LINES, strict=False):
+        curves = [self.phasor(place, name, order) for name in names]
+        for name, curve, color, line in zip(names, curves, COLORS, LINES, strict=False):
             size.plot(values, 1e6 * np.abs(curve), label=name, color=color, ls=line, **style)
             phase.plot(values, _phase(curve), color=color, ls=line, **style)
-        # nothing is nowhere on a log scale
-        moves = any(np.any(np.nan_to_num(curve)) for curve in curves.values())
-        size.set_yscale("log" if moves else "linear")
+        if np.any(np.nan_to_num(curves)):  # nothing is nowhere on a log scale
+            size.set_yscale("log")
         size.set_ylabel("amplitude [µm]")
         size.set_title(self._title(place, order), loc="right", fontsize=10)
-        phase.set_ylabel("phase [deg]")
+        phase.set(xlabel=f"{self._what} [{unit}]", ylabel="phase [deg]")
         phase.yaxis.set_major_locator(MultipleLocator(90.0))
-        phase.set_xlabel(f"{self._what} [{unit}]")
         for one in pair:
             one.grid(alpha=0.3, which="both")
         legend_above(size, 4)
@@ -328,30 +313,27 @@ class Response(AtPlaces):
         ----------
         place, order, units
             See :meth:`plot`.
-        direction : {'n1', 'n2', 'e', 'forward', 'backward'}
+        direction : str
+            See :meth:`phasor`.
         ax : matplotlib.axes.Axes, optional
             A new figure by default.
         """
-        checks.choice(direction, "direction", _DRAWN)
-        shown = self._shown(units)
-        place, order = self.places[self._at(place)], self._order(order)
-        ax = axes_or_new(ax, (5.5, 5.5))
-        amplitudes = self._drawn(direction, place, order)
-        known = np.isfinite(amplitudes)
-        at, curve = shown[0][known], 1e6 * amplitudes[known]
+        (values, unit), place, order = self._shown(units), self._named(place), self._order(order)
+        curve = 1e6 * self.phasor(place, direction, order)
+        known = np.isfinite(curve)
+        values, curve, ax = values[known], curve[known], axes_or_new(ax, (5.5, 5.5))
         ax.plot(curve.real, curve.imag, color=COLORS[0], lw=1.4)
         path = np.cumsum(np.abs(np.diff(curve, prepend=curve[:1])))
         even = np.searchsorted(path, np.linspace(0.0, path[-1], 5)) if path.size else []
+        style = {"textcoords": "offset points", "xytext": (5, 4), "fontsize": 8}
         for index in np.unique(even).astype(int):
             point = curve.real[index], curve.imag[index]
             ax.plot(*point, "o", color=COLORS[1], ms=4)
-            ax.annotate(f"{at[index]:.5g} {shown[1]}", point, textcoords="offset points",
-                        xytext=(5, 4), fontsize=8)  # fmt: skip
+            ax.annotate(f"{values[index]:.5g} {unit}", point, **style)
         ax.axhline(0.0, color="0.6", lw=0.7)
         ax.axvline(0.0, color="0.6", lw=0.7)
         ax.set_aspect("equal", adjustable="datalim")
-        ax.set_xlabel(f"in phase, {direction} [µm]")
-        ax.set_ylabel("a quarter turn ahead [µm]")
+        ax.set(xlabel=f"in phase, {direction} [µm]", ylabel="a quarter turn ahead [µm]")
         ax.grid(alpha=0.3)
         ax.set_title(self._title(place, order), loc="right", fontsize=10)
         return ax
@@ -382,29 +364,27 @@ class Response(AtPlaces):
         units : {'rpm', 'Hz', 'SI'}
             Of the title.
         """
-        value, (shown, unit) = checks.number(value, "value", "rad/s"), self._shown(units)
-        names = self.places
-        if places is not None:
-            names = checks.labels(places, "places", self.places)
-        order = self._order(order)
-        ax = axes_or_new(ax, (5.5, 5.5))
+        shown, unit = self._shown(units)
+        names = self.places if places is None else checks.labels(places, "places", self.places)
         orbits = {name: self.orbit(value, name, order) for name in names}
-        plot_orbits(ax, orbits)
+        ax = plot_orbits(axes_or_new(ax, (5.5, 5.5)), orbits)
+        arrow = {"arrowstyle": "->", "lw": 1.4}
         for points, color in zip(orbits.values(), COLORS, strict=False):
             x, y = 1e6 * points.T
             ax.plot(x[0], y[0], "o", color=color, ms=5)
-            ax.annotate("", (x[24], y[24]), (x[20], y[20]),
-                        arrowprops={"arrowstyle": "->", "color": color, "lw": 1.4})  # fmt: skip
+            ax.annotate("", (x[24], y[24]), (x[20], y[20]), arrowprops=arrow | {"color": color})
         ax.set(xlabel="n1 [µm]", ylabel="n2 [µm]")
-        nearest = shown[np.argmin(np.abs(self.abscissa - value))]
-        ax.set_title(f"{self._what} {nearest:.4g} {unit}", loc="right", fontsize=10)
+        nearest = f"{self._what} {shown[self._nearest(value)]:.4g} {unit}"
+        ax.set_title(nearest, loc="right", fontsize=10)
         return ax
 
-    def _drawn(self, name: str, place: str, order: int) -> np.ndarray:
-        """Return the amplitudes along a direction, or of a circular component, shape (s,)."""
-        if name in CIRCULAR:
-            return self.whirl(place, order)[CIRCULAR.index(name)]
-        return self.phasor(place, name, order)
+    def _named(self, place: str | None) -> str:
+        """Return a place, the first one by default."""
+        return self.places[self._at(place)]
+
+    def _nearest(self, value: float) -> int:
+        """Return the number of the computed speed or frequency nearest to a value [rad/s]."""
+        return int(np.argmin(np.abs(self.abscissa - checks.number(value, "value", "rad/s"))))
 
     def _title(self, place: str, order: int) -> str:
         return f"{place}, order {order}, {self.frame} frame"

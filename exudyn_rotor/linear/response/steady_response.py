@@ -17,14 +17,14 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.linear.modal.basis_error import basis_errors, warn
-from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import forced_over
 from exudyn_rotor.linear.response.loads import (
     At,
     BaseAcceleration,
     HarmonicForce,
-    Place,
+    Harmonics,
     Unbalance,
     checked_places,
     in_words,
@@ -39,8 +39,6 @@ from exudyn_rotor.solvers.factor import one_thread
 from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.units import Units
 
-Coordinates = dict[int, np.ndarray]  # harmonics (s, k) over speeds or frequencies
-Motions = dict[int, np.ndarray]  # harmonics (s, p, 6) of places
 _AT_ONCE = 2_000_000  # entries of the matrices that are solved in one call
 _MOST_TURN = 0.3  # phase [rad] between neighbours: 1 − cos(0.15) = 1 % of a peak lies between
 _SMALL = 1e-3  # share of the largest motion below which a motion does not count
@@ -129,13 +127,11 @@ def unbalance_response(
     """
     values = checks.spin_speeds(speeds, allow_negative)
     unbalances = checks.instances(unbalances, "unbalances", Unbalance)
-    checks.flag(own, "own")
-    _check(frame, tolerance, refine, accuracy)
-    at = checked_places(at)
+    options = at, frame, tolerance, refine, accuracy
+    sweep = _OverSpeed(*options, unbalances=unbalances, own=checks.flag(own, "own"))
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
-    warn_of_left_out_stiffening(model, np.abs(values).max())
-    sweep = _OverSpeed(model.for_responses, at, frame, tolerance, unbalances=unbalances, own=own)
-    values, found = sweep.over(values, refine, accuracy)
+    warn_of_omissions(model, np.abs(values).max())
+    values, found = sweep.over(model.for_responses, values)
     loads = in_words(model, unbalances, own)
     return UnbalanceResponse(frame=frame, speeds=values, loads=loads, **found)
 
@@ -199,20 +195,11 @@ def harmonic_response(
     )
     speed = checks.number(speed, "speed", "rad/s")
     loads = checks.instances(loads, "loads", (HarmonicForce, BaseAcceleration))
-    _check(frame, tolerance, refine, accuracy)
-    at = checked_places(at)
+    sweep = _OverFrequency(at, frame, tolerance, refine, accuracy, loads=loads, speed=speed)
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
-    warn_of_left_out_stiffening(model, speed)
-    sweep = _OverFrequency(model.for_responses, at, frame, tolerance, loads=loads, speed=speed)
-    values, found = sweep.over(values, refine, accuracy)
+    warn_of_omissions(model, speed)
+    values, found = sweep.over(model.for_responses, values)
     return HarmonicResponse(frame=frame, frequencies=values, speed=speed, **found)
-
-
-def _check(frame: str, tolerance: float, refine: bool, accuracy: float | None) -> None:
-    checks.choice(frame, "frame", FRAMES)
-    checks.tolerance(tolerance)
-    checks.flag(refine, "refine")
-    checks.accuracy(accuracy)
 
 
 # ------------------------------------------------------------------ over speeds or frequencies
@@ -220,115 +207,90 @@ def _check(frame: str, tolerance: float, refine: bool, accuracy: float | None) -
 
 @dataclass(frozen=True, eq=False)
 class _Sweep:
-    """Steady motions of a model at places, over speeds or frequencies.
+    """Steady motions at places, seen at a spin `speed` or any but 0, over speeds or frequencies."""
 
-    Places are looked at in the axes of the `frame`, at a spin `speed` or any but 0 [rad/s].
-    Harmonics that matter are larger than the `tolerance`, a share of the largest. Where there are
-    no equations, as a warning has `told`, motions are NaN.
-    """
-
-    model: LinearModel
-    at: Sequence[At] | None
+    at: Sequence[At] | At | None
     frame: str
     tolerance: float
-    told: list[float] = field(default_factory=list)
+    refine: bool
+    accuracy: float | None
     speed: float = field(default=1.0, kw_only=True)
     unit: ClassVar[str]
 
-    def over(
-        self, values: np.ndarray, refine: bool, accuracy: float | None
-    ) -> tuple[np.ndarray, dict[str, object]]:
+    def __post_init__(self) -> None:
+        checks.keep(self, at=checked_places(self.at))
+        checks.choice(self.frame, "frame", FRAMES)
+        checks.tolerance(self.tolerance)
+        checks.flag(self.refine, "refine")
+        checks.accuracy(self.accuracy)
+
+    def over(self, model: LinearModel, values: np.ndarray) -> tuple[np.ndarray, dict[str, object]]:
         """Return speeds or frequencies, and the fields of a response there."""
-        model, observed = self.model, places(self.model, self.at, self.speed)
-        found = self.coordinates(model, values)
-        if refine:
-            values, found = self._refined(values, found, observed)
-        self._warn_of_missing(values, found)
-        motions = self.joined(self._seen(observed, found), values)
-        errors = basis_errors(model, accuracy, values, motions, self._at_places)
-        if errors is not None and np.any(np.isfinite(errors)):
-            at, place = np.unravel_index(np.nanargmax(errors), errors.shape)
-            where = f"{Units.of(self.unit).speeds(values[at]):.5g} {self.unit}"
-            what = f"the motion of {observed[place].label!r} at {where}"
-            warn(errors, what, model, accuracy)
-        orders, motion = _collected(motions, observed, self.tolerance, model.radius)
+        motions, known = self._motions(model, values)
+        _warn_of_missing(values, motions, known)
+        if self.refine:
+            values, motions = self._refined(model, values, motions)
+        motions, observed = self.joined(motions, values), places(model, self.at, self.speed)
+        errors = basis_errors(model, self.accuracy, values, motions, self._joined_motions)
+
+        def told(row: int, place: int) -> str:
+            where = f"{Units.of(self.unit).speeds(values[row]):.5g} {self.unit}"
+            return f"the motion of {observed[place].label!r} at {where}"
+
+        warn(errors, told, model, self.accuracy)
+        orders = np.array(sorted(motions))
+        motion = np.stack([motions[n] for n in orders.tolist()], axis=2)
+        # a rotation counts as the displacement that it makes at the rotor's radius of gyration
+        sizes = np.abs(motion * np.repeat([1.0, model.radius], 3)).max(axis=(1, 3))
+        sizes = np.nan_to_num(sizes).max(axis=0)
+        matters = sizes > self.tolerance * sizes.max()
+        if not np.any(matters):
+            matters[np.argmin(np.abs(orders))] = True
+        motion[:, [one.is_node for one in observed], :, 3:] = np.nan
         return values, {
             "places": tuple(one.label for one in observed),
-            "orders": orders,
-            "motion": motion,
+            "orders": orders[matters],
+            "motion": motion[:, :, matters],
             "basis_errors": errors,
             "stiffening": model.stiffening,
+            "axes": model.axes,
+            "unevenness": model.unevenness,
         }
 
-    def _seen(self, observed: Sequence[Place], found: Coordinates) -> Motions:
-        """Return the motions of places."""
-        frame = self.frame if self.speed else "inertial"  # at θ = 0 the axes are the same
-        parts = [one.motion(found, frame) for one in observed]
-        none = np.zeros((len(next(iter(found.values()))), 6), dtype=complex)
-        orders = sorted({n for part in parts for n in part})
-        return {n: np.stack([part.get(n, none) for part in parts], axis=1) for n in orders}
-
-    def _at_places(self, model: LinearModel, values: np.ndarray) -> Motions:
-        """Return the motions that a model has at values."""
+    def _motions(self, model: LinearModel, values: np.ndarray) -> tuple[Harmonics, np.ndarray]:
+        """Return the motions of places, and at which values there are equations, (s,)."""
         observed = places(model, self.at, self.speed)
-        return self.joined(self._seen(observed, self.coordinates(model, values)), values)
+        frame = self.frame if self.speed else "inertial"  # at θ = 0 the axes are the same
+        found, known = self.coordinates(model, values)
+        parts = [one.motion(found, frame) for one in observed]
+        none = np.zeros((len(values), 6), dtype=complex)
+        orders = sorted({n for part in parts for n in part})
+        motions = {n: np.stack([part.get(n, none) for part in parts], axis=1) for n in orders}
+        return motions, known
 
-    def _warn_of_missing(self, values: np.ndarray, found: Coordinates) -> None:
-        """Warn where there is no steady motion, but for what was told already.
-
-        Raises
-        ------
-        ValueError
-            Where there is no motion at all.
-        """
-        missing = np.any([np.isnan(X).any(axis=1) for X in found.values()], axis=0)
-        untold = values[missing & ~np.isin(values, self.told)]
-        if not untold.size:
-            return
-        why = "a constant load acts on a motion that nothing holds, or nothing damps a resonance"
-        shown = ", ".join(f"{value:.5g}" for value in untold[:5]) + " …" * (untold.size > 5)
-        if np.all(missing):
-            raise ValueError(f"no steady motion at {shown} rad/s: {why}")
-        text = f"no steady motion at {shown} rad/s, NaN there: {why}"
-        warnings.warn(text, UserWarning, stacklevel=user_level())
+    def _joined_motions(self, model: LinearModel, values: np.ndarray) -> Harmonics:
+        return self.joined(self._motions(model, values)[0], values)
 
     def _refined(
-        self, values: np.ndarray, found: Coordinates, observed: Sequence[Place]
-    ) -> tuple[np.ndarray, Coordinates]:
+        self, model: LinearModel, values: np.ndarray, motions: Harmonics
+    ) -> tuple[np.ndarray, Harmonics]:
         """Add points until the phase of every motion turns little between neighbours.
 
-        No point is added where there is no steady motion, as at a resonance without damping, nor
-        beside such a value.
+        None is added where there is no steady motion, as at a resonance without damping.
         """
         given, narrowest = values, _NARROWEST * np.ptp(values)
         for _ in range(_MOST_ROUNDS):
-            wide = (np.diff(values) > narrowest) & (self._turns(observed, found) > _MOST_TURN)
+            wide = (np.diff(values) > narrowest) & (_turns(motions) > _MOST_TURN)
             between = np.flatnonzero(wide)[: len(given) + _MOST_ADDED - len(values)]
             if between.size == 0:
                 break
             added = 0.5 * (values[between] + values[between + 1])
-            values, found = (
-                np.r_[values, added],
-                _stacked(found, self.coordinates(self.model, added)),
-            )
+            values = np.concatenate([values, added])
             order = np.argsort(values)
-            values, found = values[order], {n: X[order] for n, X in found.items()}
-        known = np.isfinite(sum(X.sum(axis=1) for X in found.values())) | np.isin(values, given)
-        return values[known], {n: X[known] for n, X in found.items()}
-
-    def _turns(self, observed: Sequence[Place], found: Coordinates) -> np.ndarray:
-        """Return the largest change of phase between neighbours, shape (s − 1,) [rad].
-
-        Half a turn beside rest without a load, where there is no phase and may be a resonance.
-        """
-        moved = [
-            each[..., :3].reshape(len(each), -1) for each in self._seen(observed, found).values()
-        ]
-        phasors = np.hstack(moved)
-        size, product = np.abs(phasors), phasors[1:] * phasors[:-1].conj()
-        matters = np.maximum(size[1:], size[:-1]) > _SMALL * np.nan_to_num(size).max()
-        turned = np.where(product == 0.0, np.pi, np.abs(np.angle(product)))
-        return np.where(matters, turned, 0.0).max(axis=1)
+            motions = _stacked(motions, self._motions(model, added)[0])
+            values, motions = values[order], {n: a[order] for n, a in motions.items()}
+        kept = ~_is_missing(motions) | np.isin(values, given)
+        return values[kept], {n: a[kept] for n, a in motions.items()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -339,39 +301,36 @@ class _OverSpeed(_Sweep):
     own: bool = field(kw_only=True)
     unit: ClassVar[str] = "rpm"
 
-    def coordinates(self, model: LinearModel, values: np.ndarray) -> Coordinates:
-        """Return the harmonics (s, k) of the coordinates of a model at speeds (s,)."""
-        # no unbalance acts along the axis, where nothing may hold the rotor
-        load, basis = unbalance_load(model, self.unbalances, self.own), model.moving_basis
-        found = {0: np.zeros((len(values), model.size), dtype=complex)}
-        moving = np.flatnonzero(values)  # at rest there is no load
-        if not moving.size:
-            return found
+    def coordinates(self, model: LinearModel, values: np.ndarray) -> tuple[Harmonics, np.ndarray]:
+        """Return the coordinates of a model, and at which speeds (s,) it has equations."""
+        load = unbalance_load(model, self.unbalances, self.own)
+        moving, known = np.flatnonzero(values), np.ones(len(values), dtype=bool)
+        if not moving.size:  # at rest there is no load
+            return {0: np.zeros((len(values), model.size), dtype=complex)}, known
         stack = model.at_all(values[moving])
         model.warn_beyond(np.abs(values[moving]))
-        lost, rows = moving[~stack.known], moving[stack.known]
-        self.told.extend(values[lost].tolist())
-        if lost.size:
-            stack = stack[np.flatnonzero(stack.known)]
+        known[moving] = stack.known
+        if not np.all(known):
+            stack = stack[stack.known]
+        rows = moving[known[moving]]
         squares, none = values[rows, None] ** 2, np.zeros(len(rows))
+        # no unbalance acts along the axis, where nothing may hold the rotor
+        options = {"held": model.moving_basis, "tolerance": self.tolerance}
 
-        def solve(part: slice) -> Coordinates:
+        def solve(part: slice) -> Harmonics:
             acting = {n: squares[part] * F for n, F in load.items()}
-            options = {"held": basis, "tolerance": self.tolerance}
             return forced_motions(stack[part], acting, none[part], **options)
 
+        found = {}
         for n, X in _in_parts(solve, len(rows), model.size).items():
-            found.setdefault(n, np.zeros_like(found[0]))[rows] = X
-        for X in found.values():
-            X[lost] = np.nan
-        return found
+            found[n] = np.zeros((len(values), model.size), dtype=complex)
+            found[n][~known] = np.nan
+            found[n][rows] = X
+        return found, known
 
-    def joined(self, motions: Motions, values: np.ndarray) -> Motions:
+    def joined(self, motions: Harmonics, values: np.ndarray) -> Harmonics:
         """Return real periodic motions by their harmonics n ≥ 0: ``Re Σ a_n exp(inΩt)``."""
-        folded: Motions = {0: np.zeros_like(next(iter(motions.values())))}
-        for n, a in motions.items():
-            folded[abs(n)] = folded.get(abs(n), 0.0) + (a if n > 0 else a.conj())
-        return folded | {0: folded[0].real + 0j}
+        return _joined(motions, np.zeros(len(values)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -381,46 +340,85 @@ class _OverFrequency(_Sweep):
     loads: Sequence[HarmonicForce | BaseAcceleration] = field(kw_only=True)
     unit: ClassVar[str] = "Hz"
 
-    def coordinates(self, model: LinearModel, values: np.ndarray) -> Coordinates:
-        """Return the harmonics (s, k) of the coordinates of a model at frequencies (s,)."""
+    def coordinates(self, model: LinearModel, values: np.ndarray) -> tuple[Harmonics, np.ndarray]:
+        """Return the coordinates of a model, and at which frequencies (s,) it has equations."""
         load = total(self.loads, model, self.speed)
+        if not any(map(np.any, load.values())):
+            what = "give loads=[HarmonicForce(…)] that move the rotor"
+            raise ValueError(f"no load, so no response: {what}")
         model.warn_beyond(np.abs(np.add.outer(values, self.speed * np.array(list(load)))))
         options = {"driven": model.free_spins, "tolerance": self.tolerance}
 
-        def solve(part: slice) -> Coordinates:
+        def solve(part: slice) -> Harmonics:
             return forced_over(model, self.speed, load, values[part], **options)
 
-        return _in_parts(solve, len(values), model.size)
+        return _in_parts(solve, len(values), model.size), np.ones(len(values), dtype=bool)
 
-    def joined(self, motions: Motions, values: np.ndarray) -> Motions:
-        """Return motions in which no two harmonics ω + nΩ have one frequency.
-
-        Where ω + nΩ = −(ω + mΩ), the conjugate of the harmonic with the negative rate is added to
-        the other one.
-        """
+    def joined(self, motions: Harmonics, values: np.ndarray) -> Harmonics:
+        """Return motions in which no two harmonics ω + nΩ have one frequency."""
         if self.speed == 0.0:
             return motions
-        joined = {n: a.copy() for n, a in motions.items()}
-        twice = 2.0 * values / self.speed
-        whole = np.abs(twice - np.round(twice)) <= _WHOLE * np.maximum(np.abs(twice), 1.0)
-        for row in np.flatnonzero(whole):
-            opposite = -round(twice[row])  # the harmonics n and opposite − n have opposite rates
-            for n, a in motions.items():
-                if (2 * n - opposite) * self.speed < 0.0:
-                    partner = joined.setdefault(opposite - n, np.zeros_like(a))
-                    partner[row] += a[row].conj()
-                    joined[n][row] = 0.0
-        return joined
+        return _joined(motions, 2.0 * values / self.speed, np.sign(self.speed))
+
+
+def _joined(motions: Harmonics, twice: np.ndarray, sense: float = 1.0) -> Harmonics:
+    """Return motions in which no two harmonics ω + nΩ have one frequency, given 2ω/Ω (s,).
+
+    Where ω + nΩ = −(ω + mΩ), the conjugate of the harmonic with the negative rate is added to the
+    other one. Ω has the sign `sense`.
+    """
+    joined = {n: a.copy() for n, a in motions.items()}
+    nearest = np.round(twice)
+    nearest[np.abs(twice - nearest) > _WHOLE * np.maximum(np.abs(twice), 1.0)] = np.nan
+    for both in np.unique(nearest[np.isfinite(nearest)]).astype(int):
+        rows = nearest == both
+        for n, a in motions.items():
+            if sense * (2 * n + both) < 0.0:
+                partner = joined.setdefault(-both - n, np.zeros_like(a))
+                partner[rows] += a[rows].conj()
+                joined[n][rows] = 0.0
+    return joined
+
+
+def _is_missing(motions: Harmonics) -> np.ndarray:
+    """Return at which values (s,) there is no steady motion."""
+    return np.isnan(sum(a.sum(axis=(1, 2)) for a in motions.values()))
+
+
+def _warn_of_missing(values: np.ndarray, motions: Harmonics, known: np.ndarray) -> None:
+    """Warn where equations that are known have no steady motion; refuse a sweep without any."""
+    missing = _is_missing(motions)
+    untold = values[missing & known]
+    if not untold.size:
+        return
+    why = "a constant load acts on a motion that nothing holds, or nothing damps a resonance"
+    shown = ", ".join(f"{value:.5g}" for value in untold[:5]) + " …" * (untold.size > 5)
+    if np.all(missing):
+        raise ValueError(f"no steady motion at {shown} rad/s: {why}")
+    text = f"no steady motion at {shown} rad/s, NaN there: {why}"
+    warnings.warn(text, UserWarning, stacklevel=user_level())
+
+
+def _turns(motions: Harmonics) -> np.ndarray:
+    """Return the largest change of phase between neighbours, shape (s − 1,) [rad].
+
+    Half a turn beside rest without a load, where there is no phase and may be a resonance.
+    """
+    phasors = np.hstack([a[..., :3].reshape(len(a), -1) for a in motions.values()])
+    size, product = np.abs(phasors), phasors[1:] * phasors[:-1].conj()
+    matters = np.maximum(size[1:], size[:-1]) > _SMALL * np.nan_to_num(size).max()
+    turned = np.where(product == 0.0, np.pi, np.abs(np.angle(product)))
+    return np.where(matters, turned, 0.0).max(axis=1)
 
 
 @one_thread()
-def _in_parts(solve: Callable[[slice], Coordinates], count: int, size: int) -> Coordinates:
+def _in_parts(solve: Callable[[slice], Harmonics], count: int, size: int) -> Harmonics:
     """Return harmonics (count, size), solved for some of the rows at a time: for memory."""
     most = max(1, _AT_ONCE // size**2)
     return _stacked(*(solve(slice(first, first + most)) for first in range(0, count, most)))
 
 
-def _stacked(*parts: Coordinates) -> Coordinates:
+def _stacked(*parts: Harmonics) -> Harmonics:
     """Return harmonics at all values of parts; one may be in some of them only."""
     if len(parts) == 1:
         return parts[0]
@@ -429,19 +427,3 @@ def _stacked(*parts: Coordinates) -> Coordinates:
         n: np.concatenate([part.get(n, zero) for part, zero in zip(parts, none, strict=True)])
         for n in sorted({n for part in parts for n in part})
     }
-
-
-def _collected(
-    motions: Motions, observed: Sequence[Place], tolerance: float, length: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the orders (h,) that matter anywhere, and the motions (s, p, h, 6)."""
-    orders = np.array(sorted(motions))
-    full = np.stack([motions[n] for n in orders.tolist()], axis=2)
-    # a rotation counts as the displacement that it makes at the rotor's radius of gyration
-    sizes = np.abs(full * np.repeat([1.0, length], 3)).max(axis=(1, 3))
-    sizes = np.nan_to_num(sizes).max(axis=0)
-    keep = sizes > tolerance * sizes.max()
-    if not np.any(keep):
-        keep[np.argmin(np.abs(orders))] = True
-    full[:, [one.is_node for one in observed], :, 3:] = np.nan
-    return orders[keep], full[:, :, keep]

@@ -11,7 +11,8 @@ from exudyn_rotor import checks
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.linear.model.scene.steady_motion import steady_motion
 from exudyn_rotor.multibody.full.full_body import reduced_body
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState, spin_at_start
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState
+from exudyn_rotor.theory.rotating_axes import axial_rotation
 
 _TOLD = 1e-5  # share of the motion in higher harmonics that a warning tells
 
@@ -51,12 +52,11 @@ class SteadyState:
 
     def __post_init__(self) -> None:
         checks.instance(self.scene, "scene", LinearScene, "steady_state(body) makes one")
-        object.__setattr__(self, "speed", checks.number(self.speed, "speed", "rad/s"))
+        speed = checks.number(self.speed, "speed", "rad/s")
         orders = checks.array(self.orders, "orders", shape=(None,), dtype=int)
-        object.__setattr__(self, "orders", orders)
         shape = (len(orders), self.scene.size)
         harmonics = checks.array(self.harmonics, "harmonics", shape=shape, dtype=complex)
-        object.__setattr__(self, "harmonics", harmonics)
+        checks.keep(self, speed=speed, orders=orders, harmonics=harmonics)
 
     def __repr__(self) -> str:
         """Return one line."""
@@ -78,7 +78,7 @@ class SteadyState:
             Spin angle θ [rad]; the one with which the rotor starts by default.
         """
         scene, body = self.scene, self.scene.body
-        angle = spin_at_start(body)[0] if angle is None else checks.number(angle, "angle", "rad")
+        angle = body.placement.angle if angle is None else checks.number(angle, "angle", "rad")
         turned = np.exp(1j * self.orders * angle)
         y = (turned @ self.harmonics).real
         y_t = (turned @ (1j * self.orders[:, None] * self.speed * self.harmonics)).real
@@ -108,15 +108,12 @@ class SteadyState:
             angles = np.array([checks.number(angle, "angle", "rad")])
         rows = scene.interface_motion(interface)
         seen = (np.exp(1j * np.outer(angles, self.orders)) @ self.harmonics).real @ rows.T
-        # a frame that moves starts in its origin, which may be off the axis
-        start = np.zeros(2)
-        if scene.count:
-            start = (scene.axes.T @ body.axis.radial(body.frame.origin))[:2]
-        for motion, theta in zip(seen, angles, strict=True):
-            turn = np.array([[np.cos(theta), -np.sin(theta)], [np.sin(theta), np.cos(theta)]])
-            motion[:2] = turn @ (motion[:2] - start) + start
-            motion[3:5] = turn @ motion[3:5]
-        return seen.mean(axis=0)
+        start = np.zeros((2, 3))
+        if scene.count:  # a frame that moves starts in its origin, which may be off the axis
+            start[0, :2] = (scene.axes.T @ body.axis.radial(body.frame.origin))[:2]
+        turns = np.array([axial_rotation(theta) for theta in angles])
+        motion = np.einsum("tij,tkj->tki", turns, seen.reshape(-1, 2, 3) - start) + start
+        return motion.mean(axis=0).ravel()
 
 
 def steady_state(
@@ -207,7 +204,7 @@ def steady_state(
     tolerance = checks.tolerance(tolerance)
     body.check_assembled()
     scene = LinearScene.of(body.mbs, body)
-    speed = spin_at_start(body)[1] if speed is None else checks.number(speed, "speed", "rad/s")
+    speed = body.placement.speed if speed is None else checks.number(speed, "speed", "rad/s")
     begin = None if start is None else _begin(scene, start)
     found = SteadyState(scene, speed, *steady_motion(scene, speed, tolerance, begin))
     if speed and found.left_out > max(tolerance, _TOLD):

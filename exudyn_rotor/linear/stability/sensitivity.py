@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.controlled_support import ControlledSupport
-from exudyn_rotor.bearings.given import Given, given_supports
+from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import Terms
@@ -188,10 +188,15 @@ def sensitivity(
     if values[0] <= 0.0:
         raise ValueError(f"frequencies: needs values above zero [rad/s], got {values[0]:g}")
     speed = checks.number(speed, "speed", "rad/s", least=0.0)
-    bearings = _bearings(rotor, supports)
+    model = linear_model(rotor, supports=supports, foundation=foundation, stiffening=stiffening)
+    bearings = [
+        (f"{name}:{one.interface}".removeprefix(":"), one)
+        for name, given in model.supports.items()
+        for one in given
+        if isinstance(one, MagneticBearing)
+    ]
     if not bearings:
         raise ValueError("supports: needs a MagneticBearing, whose loop has a sensitivity")
-    model = linear_model(rotor, supports=supports, foundation=foundation, stiffening=stiffening)
     assembly = model.assembly(speed)
     loops = [
         (element.matrices(speed), motion)
@@ -216,21 +221,6 @@ def sensitivity(
     ]
     names = [f"{name}, {number}" for name, _ in bearings for number in (1, 2)]
     return Sensitivity(tuple(names), values, np.array(rows), speed)
-
-
-def _bearings(
-    rotor: ReducedRotor | SolidRotor | RotorTrain, supports: Sequence[Given]
-) -> list[tuple[str, MagneticBearing]]:
-    """Return the magnetic bearings with their names, in the order of the model's coordinates."""
-    given = [("", given_supports(supports))]
-    if isinstance(rotor, RotorTrain):
-        given += [(f"{name}:", own) for name, own in rotor.supports.items()]
-    return [
-        (name + one.interface, one)
-        for name, each in given
-        for one in each
-        if isinstance(one, MagneticBearing)
-    ]
 
 
 def _of_axis(

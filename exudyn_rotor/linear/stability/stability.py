@@ -1,4 +1,4 @@
-"""Stability of a rotor on its supports over the spin speed.
+"""Stability of a rotor on its supports, over the spin speed and over two parameters.
 
 The exponents λ of all motions are eigenvalues where the equations are constant, as of a round rotor
 on any supports, or of an uneven one on supports alike in all directions, else Floquet exponents
@@ -7,35 +7,41 @@ on any supports, or of an uneven one on supports alike in all directions, else F
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
+from tqdm import tqdm
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.linear.modal import basis_error
 from exudyn_rotor.linear.modal.whirl import (
     FAMILIES,
+    UNKNOWN,
     WHIRLS,
     Content,
+    OfMotions,
     damping_of,
-    families,
     rounded,
 )
-from exudyn_rotor.linear.model.build import (
-    Target,
-    linear_model,
-    warn_of_left_out_stiffening,
-    warn_of_structural_damping,
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
+from exudyn_rotor.linear.model.linear_model import LinearModel, warn_of_refused
+from exudyn_rotor.linear.over import (
+    NOT_KNOWN,
+    ModelResult,
+    basis_column,
+    motions_in,
+    motions_over,
+    table_lines,
 )
-from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.over import ModelResult, basis_column, motions_over, table_lines
 from exudyn_rotor.linear.solve.motions import METHODS, Motions
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.results import numbers, storable
+from exudyn_rotor.results import Result, numbers, storable, words
+from exudyn_rotor.solvers.factor import one_thread
 from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:
@@ -43,11 +49,12 @@ if TYPE_CHECKING:
 
 _SHOWN = 4.0  # times the strongest decay of lateral motions: what is drawn reaches down to there
 WHAT = "stability finds exponents"  # of structural damping, for the warning
+_EVEN = 1e-6  # relative difference of ratios of values that are spaced logarithmically
 
 
 @storable
 @dataclass(frozen=True, eq=False)
-class Stability(ModelResult):
+class Stability(OfMotions, ModelResult):
     """Exponents over spin speed.
 
     A speed without values, as beyond a table, has a row of NaN and is not stable.
@@ -102,20 +109,6 @@ class Stability(ModelResult):
     whirl_codes: np.ndarray = numbers("speeds", "modes", dtype=int, least=0, most=len(WHIRLS) - 1)
     nodal_diameters: np.ndarray = numbers("speeds", "modes", dtype=int, least=-1)
     basis_errors: np.ndarray | None = numbers("speeds", finite=False, optional=True)
-
-    @property
-    def whirl(self) -> np.ndarray:
-        """Sense of every motion, shape as exponents; the words of :attr:`Campbell.whirl`."""
-        return np.array(WHIRLS)[self.whirl_codes]
-
-    @property
-    def families(self) -> np.ndarray:
-        """Kind of every motion, shape as exponents.
-
-        'lateral', 'torsional', 'axial', 'disc' (two nodal diameters and more), 'foundation', or
-        'other'.
-        """
-        return families(self.whirl_codes, self.nodal_diameters)
 
     @property
     def log_decrement(self) -> np.ndarray:
@@ -206,14 +199,10 @@ class Stability(ModelResult):
     def _told(self, at: tuple[int, int], shown: Units) -> str:
         """Return a motion in words: growth, speed, frequency, whirl, log decrement."""
         speed, n = shown.speeds(self.speeds[at[0]]), self.nodal_diameters[at]
-        parts = [
-            f"{self.exponents[at].real:.4g} 1/s at {speed:.6g} {shown.speed}",
-            f"{shown.frequencies(self.frequencies_inertial[at]):.5g} {shown.frequency}",
-            f"{self.whirl[at]}" + (f", n = {n}" if n >= 0 else ""),
-        ]
-        if np.isfinite(self.log_decrement[at]):
-            parts.append(f"log decrement {self.log_decrement[at]:.3g}")
-        return ", ".join(parts)
+        place = f"{speed:.6g} {shown.speed}"
+        heard = f"{shown.frequencies(self.frequencies_inertial[at]):.5g} {shown.frequency}"
+        whirl = f"{self.whirl[at]}" + (f", n = {n}" if n >= 0 else "")
+        return _in_words(self.exponents[at].real, place, heard, whirl, self.log_decrement[at])
 
     def plot(self, ax: Axes | None = None, *, units: str = "rpm") -> Axes:
         """Draw the growth over the spin speed, of each family and of the least stable motion.
@@ -319,15 +308,18 @@ def stability(
     check_options(tolerance, accuracy, method)
     checks.flag(progress, "progress")
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening, axes=axes)
-    warn_of_structural_damping(model, WHAT)
-    warn_of_left_out_stiffening(model, values[-1])
+    warn_of_omissions(model, values[-1], WHAT)
     motions = motions_over(
         model, values, held=True, method=method, tolerance=tolerance, progress=progress,
         label="stability",
     )  # fmt: skip
     result = of_motions(model, Content.of(model), motions, accuracy)
-    if result.basis_errors is not None:
-        _warn_of_basis(result, model, accuracy)
+
+    def told(row: int) -> str:
+        worst = result._told((row, result.least_stable[row]), Units.of("rpm"))
+        return f"the least stable motion ({worst})"
+
+    basis_error.warn(result.basis_errors, told, model, accuracy)
     return result
 
 
@@ -336,24 +328,22 @@ def of_motions(
 ) -> Stability:
     """Return the result of motions of a model, in each row the least stable motion first."""
     named = content.named(motions)
-    errors = None if accuracy is None else basis_error.motion_errors(model, named, held=True)
     keys = rounded(named.inertial), -rounded(named.motions.values.real, nan=-2.0)
-    order = np.lexsort(keys)
-    found = named.columns(order)
+    found = named.columns(np.lexsort(keys))
+    errors = None if accuracy is None else basis_error.motion_errors(model, found, held=True)
     values, bounds = found.motions.values, found.motions.bounds
     growth = np.fmax.reduce(values.real, axis=1, initial=np.nan)
     moving = np.abs(values.real) > bounds[:, None]
     if errors is not None:
-        first = np.argmax(moving, axis=1)[:, None]  # the least stable one
-        errors = np.take_along_axis(np.take_along_axis(errors, order, 1), first, 1)[:, 0]
-        errors = np.where(moving.any(axis=1), errors, np.nan)
+        least_stable = np.argmax(moving, axis=1)[:, None]
+        errors = np.take_along_axis(np.where(moving, errors, np.nan), least_stable, 1)[:, 0]
     return Stability(
         speeds=found.motions.speeds,
-        exponents=values.real + 1j * np.where(np.isnan(values), np.nan, found.rotor),
+        exponents=values.real + 1j * found.rotor,
         growth=growth,
         stable=growth <= bounds,
         bounds=bounds,
-        frequencies_inertial=np.where(np.isnan(values), np.nan, found.inertial),
+        frequencies_inertial=found.inertial,
         whirl_codes=found.codes,
         nodal_diameters=found.diameters,
         basis_errors=errors,
@@ -370,18 +360,256 @@ def check_options(tolerance: float, accuracy: float | None, method: str = "auto"
     checks.accuracy(accuracy)
 
 
-def least_stable_of(motions: Motions) -> np.ndarray:
-    """Return which motion is the least stable one of those that are not neutral, (s,)."""
-    growth = motions.values.real
-    moves = np.abs(growth) > motions.bounds[:, None]
-    return np.argmax(rounded(np.where(moves, growth, np.nan), nan=-2.0), axis=1)
+@storable
+@dataclass(frozen=True, eq=False)
+class StabilityMap(OfMotions, Result):
+    """Growth over two parameters; a point without values is NaN and not stable.
+
+    Attributes
+    ----------
+    x, y : ndarray, shapes (a,), (b,)
+    growth : ndarray, shape (a, b)
+        Largest real part of the exponents [1/s], 0 where a free motion is neutral.
+    stable : ndarray of bool, shape (a, b)
+    frequencies_inertial : ndarray, shape (a, b)
+        Of the least stable motion that is not neutral, seen from outside [rad/s].
+    whirl_codes, nodal_diameters : ndarray of int, shape (a, b)
+        Of that motion, as those of :class:`Campbell`; see :attr:`whirl` and :attr:`families`.
+    log_decrement : ndarray, shape (a, b)
+        Of that motion; NaN where it does not oscillate.
+    labels : tuple of str
+        Names of x and y.
+    basis_errors : ndarray, shape (a, b), or None
+        Estimated relative error of the least stable motion by the basis of a reduced rotor, as
+        :attr:`Stability.basis_errors`, at the corners and in the middle; NaN elsewhere, None where
+        nothing is known.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import StabilityMap
+    >>> motion = {"frequencies_inertial": [[60.0], [70.0]], "log_decrement": [[0.05], [-0.04]]}
+    >>> motion |= {"whirl_codes": [[0], [0]], "nodal_diameters": [[1], [1]]}
+    >>> given = {"x": [1.0, 2.0], "y": [10.0], "growth": [[-0.5], [0.5]], "labels": ("c", "speed")}
+    >>> print(StabilityMap(stable=[[True], [False]], **given, **motion).table())
+    growth [1/s]; columns: speed
+                           c           10
+                           1         -0.5
+                           2          0.5*
+    least stable: lateral motion, 0.5 1/s at (2, 10), 11.141 Hz, forward, log decrement -0.04
+    error of the basis: not known
+    """
+
+    x: np.ndarray = numbers("x")
+    y: np.ndarray = numbers("y")
+    growth: np.ndarray = numbers("x", "y", finite=False)
+    stable: np.ndarray = numbers("x", "y", dtype=bool)
+    frequencies_inertial: np.ndarray = numbers("x", "y", finite=False)
+    whirl_codes: np.ndarray = numbers("x", "y", dtype=int, least=0, most=len(WHIRLS) - 1)
+    nodal_diameters: np.ndarray = numbers("x", "y", dtype=int, least=-1)
+    log_decrement: np.ndarray = numbers("x", "y", finite=False)
+    labels: tuple[str, ...] = words(2, default=("x", "y"))
+    basis_errors: np.ndarray | None = numbers("x", "y", finite=False, optional=True)
+
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+        """Return the table as columns, one row for each point.
+
+        `units` are those of the frequency; x and y are as they were given.
+        """
+        shown = Units.of(units)
+        first, second = self.labels
+        return {
+            first: np.repeat(self.x, len(self.y)),
+            second: np.tile(self.y, len(self.x)),
+            "growth [1/s]": self.growth.ravel(),
+            "stable": self.stable.ravel(),
+            f"inertial [{shown.frequency}]": shown.frequencies(self.frequencies_inertial).ravel(),
+            "log decrement": self.log_decrement.ravel(),
+            "whirl": self.whirl.ravel(),
+            "kind": self.families.ravel(),
+            **basis_column(self.basis_errors, self.growth.size),
+        }
+
+    def table(self) -> str:
+        """Return the growth [1/s] at every point as lines of text; '*' marks instability."""
+        first, second = self.labels
+        lines = [f"growth [1/s]; columns: {second}", f"{first:>24}"]
+        lines[-1] += "".join(f"{value:13.5g} " for value in self.y).rstrip()
+        marks = np.where(self.stable | np.isnan(self.growth), " ", "*")
+        for value, growth, marked in zip(self.x, self.growth, marks, strict=True):
+            entries = (f"{g:13.5g}{mark}" for g, mark in zip(growth, marked, strict=True))
+            lines.append(f"{value:24.6g}" + "".join(entries).rstrip())
+        if np.any(np.isfinite(self.growth)):
+            at = np.unravel_index(np.nanargmax(self.growth), self.growth.shape)
+            place = f"({self.x[at[0]]:.5g}, {self.y[at[1]]:.5g})"
+            heard = f"{Units.of('Hz').frequencies(self.frequencies_inertial[at]):.5g} Hz"
+            told = _in_words(self.growth[at], place, heard, self.whirl[at], self.log_decrement[at])
+            lines.append(f"least stable: {self.families[at]} motion, {told}")
+        if self.basis_errors is None:
+            lines.append(NOT_KNOWN)
+        elif np.any(self.basis_errors > 0.0):
+            lines.append(f"basis error up to {np.nanmax(self.basis_errors):.1e}")
+        return "\n".join(lines)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the growth as a contour plot, with the limit of stability as a line.
+
+        An axis is logarithmic where its values are spaced so. Where one parameter has one value,
+        the picture has coloured points.
+        """
+        ax = plotting.axes_or_new(ax)
+        ax.set(xlabel=self.labels[0], ylabel=self.labels[1])
+        ax.set_xscale("log" if _is_geometric(self.x) else "linear")
+        ax.set_yscale("log" if _is_geometric(self.y) else "linear")
+        neutral = np.where(self.stable, np.minimum(self.growth, 0.0), self.growth)
+        growth = np.ma.masked_invalid(neutral).T
+        largest = np.abs(growth).max() or 1.0
+        if min(self.growth.shape) == 1:  # contours need two values of each
+            places = np.meshgrid(self.x, self.y)
+            filled = ax.scatter(*places, c=growth, cmap="RdBu_r", vmin=-largest, vmax=largest)
+            ax.figure.colorbar(filled, ax=ax, label="growth [1/s]")
+            return ax
+        from matplotlib.ticker import MaxNLocator
+
+        levels = MaxNLocator(20, symmetric=True).tick_values(-largest, largest)
+        filled = ax.contourf(self.x, self.y, growth, levels, cmap="RdBu_r")
+        ax.figure.colorbar(filled, ax=ax, label="growth [1/s]")
+        if not (self.stable.all() or not self.stable.any()):
+            verdict = np.where(self.stable, -1.0, 1.0).T
+            crossing = growth if growth.min() < -1e-6 * largest else verdict
+            ax.contour(self.x, self.y, crossing, [0.0], colors="black", linewidths=1.2)
+        return ax
 
 
-def _warn_of_basis(result: Stability, model: LinearModel, accuracy: float) -> None:
-    """Warn where the basis leaves out too much for the growth of a least stable motion."""
-    row, shown = int(np.argmax(np.nan_to_num(result.basis_errors))), Units.of("rpm")
-    at = row, result.least_stable[row]
-    heard, speed = shown.frequencies(result.frequencies_inertial[at]), result.speeds[row]
-    motion = f"the least stable motion ({result.whirl[at]}, {heard:.4g} Hz)"
-    what = f"{motion} at {shown.speeds(speed):.5g} rpm"
-    basis_error.warn(result.basis_errors, what, model, accuracy)
+def _in_words(growth: float, place: str, heard: str, whirl: str, decrement: float) -> str:
+    """Return a motion in words: growth [1/s] and place, frequency, whirl, log decrement."""
+    told = f"{growth:.4g} 1/s at {place}, {heard}, {whirl}"
+    return f"{told}, log decrement {decrement:.3g}" if np.isfinite(decrement) else told
+
+
+def _is_geometric(values: np.ndarray) -> bool:
+    """Return whether values have one ratio, and not one difference."""
+    if len(values) < 3 or values[0] <= 0.0:
+        return False
+    return bool(np.ptp(np.diff(np.log(values))) <= _EVEN)
+
+
+@one_thread()
+def stability_map(
+    build: Callable[[float, float], tuple[Target, float]],
+    x: ArrayLike,
+    y: ArrayLike,
+    *,
+    labels: tuple[str, str] = ("x", "y"),
+    tolerance: float = 1e-6,
+    accuracy: float | None = 1e-2,
+    progress: bool = False,
+) -> StabilityMap:
+    """Compute the growth over a grid of two parameters.
+
+    Parameters
+    ----------
+    build : callable
+        ``build(x, y)`` returns a target of :func:`stability` and the speed [rad/s], e.g.
+        ``(linear_model(rotor, supports=[Support('left', x)]), y)``. Points whose models differ in
+        numbers of their supports alone are solved together.
+    x, y : array_like, shapes (a,), (b,)
+        Ascending.
+    labels : tuple of str
+        Names of x and y with units, for the plot.
+    tolerance, progress
+        See :func:`stability`.
+    accuracy : float, optional
+        Relative error of the growth by the basis of a reduced rotor above which a warning is given,
+        estimated at the corners and in the middle. None for no estimate.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, and where no point has values. A single point at which `build` or the
+        supports raise a ValueError is NaN, with a warning.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, linear_model, stability_map
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1]).reduce(1)
+    >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
+    >>> def build(damping: float, speed: float) -> tuple:
+    ...     inner = [Support(name, damping=damping, frame="rotor") for name in ("left", "right")]
+    ...     return linear_model(rotor, supports=supports + inner), speed
+    >>> stability_map(build, [2.0, 5.0], [200.0, 400.0]).stable
+    array([[ True,  True],
+           [ True, False]])
+    """
+    checks.function(build, "build")
+    check_options(tolerance, accuracy)
+    checks.flag(progress, "progress")
+    names = checks.labels(labels, "labels")
+    if len(names) != 2:
+        raise ValueError(f"labels: needs two names, of x and of y, got {checks.shown(labels)}")
+    grid = [checks.ascending(values, name) for values, name in ((x, "x"), (y, "y"))]
+    shape = len(grid[0]), len(grid[1])
+    refused, alike = [], {}
+    for at in tqdm(list(np.ndindex(*shape)), desc="stability map", disable=not progress):
+        point = float(grid[0][at[0]]), float(grid[1][at[1]])
+        try:
+            model, speed = _built(build, point)
+            one = at, model, speed, model.coefficients(speed)
+        except ValueError as error:
+            refused.append((f"({point[0]:.5g}, {point[1]:.5g})", error))
+        else:
+            alike.setdefault((*model.pattern, speed == 0.0), []).append(one)
+    warn_of_refused(refused, shape[0] * shape[1])
+    models = [points[0][1] for points in alike.values()]
+    warn_of_omissions(max(models, key=lambda one: one.has_structural_damping), what=WHAT)
+    growth, inertial, decrement, errors = np.full((4, *shape), np.nan)
+    stable, codes = np.zeros(shape, dtype=bool), np.full(shape, UNKNOWN, dtype=np.int64)
+    diameters = np.full(shape, -1, dtype=np.int64)
+    corners = itertools.product(*((0, size - 1) for size in shape))
+    judged = {*corners, (shape[0] // 2, shape[1] // 2)}
+    for points in alike.values():
+        places, models, speeds, coefficients = zip(*points, strict=True)
+        model, content = models[0], Content.of(models[0])
+        stack = model.at_points(np.array(speeds), coefficients)
+        motions = motions_in(model, stack, "auto", tolerance, held=True, least_stable=True)
+        found = of_motions(model, content, motions, None)
+        rows, at = (np.arange(len(points)), found.least_stable), tuple(np.array(places).T)
+        growth[at], stable[at] = found.growth, found.stable
+        inertial[at], decrement[at] = found.frequencies_inertial[rows], found.log_decrement[rows]
+        codes[at], diameters[at] = found.whirl_codes[rows], found.nodal_diameters[rows]
+        for row, place in enumerate(places):
+            if place in judged and basis_error.is_known(models[row], accuracy):
+                alone = of_motions(models[row], content, motions[[row]], accuracy)
+                errors[place] = alone.basis_errors[0]
+    known = not np.all(np.isnan(errors))
+    basis_error.warn(
+        errors,
+        lambda a, b: f"the least stable motion at ({grid[0][a]:.5g}, {grid[1][b]:.5g})",
+        models[0],
+        accuracy,
+    )
+    return StabilityMap(
+        *grid,
+        growth,
+        stable,
+        inertial,
+        codes,
+        diameters,
+        decrement,
+        names,
+        basis_errors=errors if known else None,
+    )
+
+
+def _built(build: Callable, point: tuple[float, float]) -> tuple[LinearModel, float]:
+    """Return the model and the speed of a point."""
+    built = build(*point)
+    if not isinstance(built, tuple) or len(built) != 2:
+        raise TypeError(
+            "build: needs to return a target of stability and the speed, got " + checks.shown(built)
+        )
+    speed = checks.number(built[1], "build: the speed it returns", "rad/s", least=0.0)
+    return linear_model(built[0]), speed

@@ -9,7 +9,7 @@ whether it crosses.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -19,29 +19,14 @@ from scipy.optimize import brentq, minimize_scalar
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given
-from exudyn_rotor.bearings.support import NoCoefficientsError
-from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.modal import basis_error
-from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, families
-from exudyn_rotor.linear.model.build import (
-    Target,
-    linear_model,
-    warn_of_left_out_stiffening,
-    warn_of_structural_damping,
-)
+from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, OfMotions
+from exudyn_rotor.linear.model.assembly import NO_EQUATIONS
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel, warn_of_refused
-from exudyn_rotor.linear.over import (
-    NOT_KNOWN,
-    basis_column,
-    motions_in,
-    table_lines,
-)
+from exudyn_rotor.linear.over import NOT_KNOWN, basis_column, motions_in, table_lines
 from exudyn_rotor.linear.solve.motions import Motions
-from exudyn_rotor.linear.stability.stability import (
-    WHAT,
-    check_options,
-    least_stable_of,
-)
+from exudyn_rotor.linear.stability.stability import WHAT, check_options, of_motions
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.solvers.factor import one_thread
@@ -57,12 +42,11 @@ _ROOT = 1e-7  # of the largest parameter: error of a limit
 _INNER, _TURNING = 3, 2  # parts of the interval between two samples; in axes of the rotor
 _PEAKS, _STEPS = 6, 6  # peaks that are looked at, each with so many values
 _ASIDE = 1e-4  # of the range, or half of an unstable one: where the growing motion is named
-_NONE = NoCoefficientsError, UnconvergedError
 
 
 @storable
 @dataclass(frozen=True, eq=False)
-class StabilityThresholds(Result):
+class StabilityThresholds(OfMotions, Result):
     """Where a rotor turns unstable, or stable again, over one parameter.
 
     Attributes
@@ -124,8 +108,8 @@ class StabilityThresholds(Result):
             "above": np.where(self.onset, "unstable", "stable"),
             f"inertial [{shown.frequency}]": frequencies,
             "nodal diameters": self.nodal_diameters,
-            "whirl": np.array(WHIRLS)[self.whirl_codes],
-            "kind": families(self.whirl_codes, self.nodal_diameters),
+            "whirl": self.whirl,
+            "kind": self.families,
             **basis_column(self.basis_errors, len(self.values)),
         }
 
@@ -169,64 +153,58 @@ class StabilityThresholds(Result):
         return ax
 
 
+@dataclass(eq=False)
 class _Margin:
     """By how much the least stable motion grows beyond rounding [1/s], over a parameter.
 
     As many motions as rest at every sample, like a free spin, do not count. Values are computed
-    once, NaN where there are no coefficients.
+    once, NaN where there are no coefficients. Where the parameter is the speed, one `model` has
+    all of them.
     """
 
-    def __init__(
-        self,
-        model_at: Callable[[float], tuple[LinearModel, float]],
-        tolerance: float,
-        is_speed: bool,
-    ) -> None:
-        self.model_at, self.tolerance, self.is_speed = model_at, tolerance, is_speed
-        self.known: dict[float, float] = {}
-        self.resting: int | None = None
+    model_at: Callable[[float], tuple[LinearModel, float]]
+    tolerance: float
+    model: LinearModel | None = None
+    known: dict[float, float] = field(default_factory=dict)
+    resting: int | None = None
 
     def at(self, points: Sequence[float]) -> None:
         """Compute the margin at points, with one warning where there are no coefficients."""
-        found: dict[float, tuple[np.ndarray, float]] = {}
-        refused = []
-        if self.is_speed:
-            motions = self.motions(self.model_at(points[0])[0], *points)
-            rows = zip(motions.values.real, motions.bounds, strict=True)
-            found.update(zip(points, rows, strict=True))
-        for point in () if self.is_speed else points:
+        found, refused = [], []
+        together = [points] if self.model else [[point] for point in points]
+        for group in together:
             try:
-                motions = self.motions(*self.model_at(point))
-                found[point] = motions.values.real[0], motions.bounds[0]
-            except _NONE as error:
-                found[point] = np.zeros(0), np.nan
-                refused.append((f"{point:.5g}", error))
-        warn_of_refused(refused, len(points))
+                motions = self.motions(group)
+                found += zip(group, motions.values.real, motions.bounds, strict=True)
+            except NO_EQUATIONS as error:
+                refused.append((f"{group[0]:.5g}", error))
+        warn_of_refused(refused, len(together))
         if self.resting is None:
-            rest = [np.sum(np.abs(growth) <= b) for growth, b in found.values() if np.isfinite(b)]
+            rest = [np.sum(np.abs(growth) <= b) for _, growth, b in found if np.isfinite(b)]
             self.resting = int(min(rest))
-        for point, (growth, bound) in found.items():
-            self.known[point] = self.of(growth, bound)
+        self.known |= dict.fromkeys(points, np.nan)
+        self.known |= {point: self.of(growth, bound) for point, growth, bound in found}
+
+    def motions(self, points: Sequence[float], richer: bool = False) -> Motions:
+        """Return the motions at points of one model, or of a richer one; the least stable right."""
+        built = [self.model_at(point) for point in points]
+        model, speeds = built[0][0], [speed for _, speed in built]
+        model = model.richer if richer else model
+        how = {"held": True, "least_stable": True, "warns": False}
+        return motions_in(model, model.at_all(speeds), "auto", self.tolerance, **how)
 
     def of(self, growth: np.ndarray, bound: float) -> float:
         """Return the margin of the growth of all motions, (k,)."""
-        if np.isnan(bound):
-            return np.nan
         counted = growth[np.argsort(np.abs(growth))[self.resting :]]
-        counted = np.where(np.abs(counted) <= bound, 0.0, counted)[~np.isnan(counted)]
-        return float(counted.max() if counted.size else 0.0) - bound
-
-    def motions(self, model: LinearModel, *speeds: float) -> Motions:
-        """Return the motions of a model at speeds, of which the least stable one is right."""
-        how = {"held": True, "least_stable": True, "warns": False}
-        return motions_in(model, model.at_all(speeds), "auto", self.tolerance, **how)
+        counted = counted[np.isfinite(counted)]
+        return float(max(np.where(np.abs(counted) <= bound, 0.0, counted), default=0.0)) - bound
 
     def __call__(self, point: float) -> float:
         """Return the margin at a point between two that have one; negative where it has none."""
         if point not in self.known:
             try:
                 self.at([point])
-            except _NONE:
+            except NO_EQUATIONS:
                 self.known[point] = np.nan
         margin = self.known[point]
         return -1.0 if np.isnan(margin) else margin
@@ -336,18 +314,11 @@ def stability_threshold(
     high = checks.number(high, "high", above=low)
     samples = checks.count(samples, "samples", least=2)
     check_options(tolerance, accuracy)
-    is_speed = not callable(supports)
     if label is None:
-        label = "speed [rad/s]" if is_speed else "parameter"
+        label = "parameter" if callable(supports) else _SPEED
     checks.label(label, "label")
     made = {"body": body, "stiffening": stiffening, "axes": axes}
-    if is_speed:
-        checks.number(low, "low", "rad/s", least=0.0)
-        if speed is not None:
-            raise ValueError("speed: is the parameter, from low to high; leave it out")
-        model = _checked_model(target, high, supports=supports, **made)
-        margin, kinks = _Margin(lambda point: (model, point), tolerance, True), model.table_speeds
-    else:
+    if callable(supports):
         if speed is None:
             raise ValueError(
                 "speed: needs the spin speed [rad/s], since supports, a function, says that it is "
@@ -358,12 +329,25 @@ def stability_threshold(
         def model_at(point: float) -> tuple[LinearModel, float]:
             return linear_model(target, supports=supports(point), **made), speed
 
-        margin, kinks = _Margin(model_at, tolerance, False), np.zeros(0)
+        margin, kinks = _Margin(model_at, tolerance), np.zeros(0)
         model = model_at(0.5 * (low + high))[0]
+    else:
+        checks.number(low, "low", "rad/s", least=0.0)
+        if speed is not None:
+            raise ValueError("speed: is the parameter, from low to high; leave it out")
+        margin = _over_speed(target, high, tolerance, supports=supports, **made)
+        model, kinks = margin.model, margin.model.table_speeds
     parts = _INNER if model.axes == "inertial" else _TURNING
     points = np.linspace(low, high, parts * samples + 1)
     points = np.union1d(points, kinks[(kinks > low) & (kinks < high)])
     return _found(margin, points.tolist(), label, accuracy)
+
+
+def _over_speed(target: Target, fastest: float, tolerance: float, **made) -> _Margin:
+    """Return the margin over the speed; warn of what its model leaves out."""
+    model = linear_model(target, **made)
+    warn_of_omissions(model, fastest, WHAT)
+    return _Margin(lambda speed: (model, speed), tolerance, model)
 
 
 @one_thread()
@@ -376,18 +360,33 @@ def _found(
     points, margins = margin.course
     low, high = points[0], points[-1]
     found = margin.changes(_ROOT * max(abs(low), abs(high)))
-    limits = [_limit(margin, found, place, high - low, accuracy) for place in range(len(found))]
-    heard, codes, diameters, shifts = zip(*limits, strict=True) if limits else ((),) * 4
-    values, errors = np.array([value for value, _ in found]), None
-    if accuracy is not None and None not in shifts:
-        errors = np.array(shifts) / np.maximum(np.abs(values), _SMALL * (high - low))
-    if found and errors is not None:
-        worst = float(values[np.argmax(errors)])
-        what = f"the limit of stability at {worst:.5g}, {label},"
-        basis_error.warn(errors, what, margin.model_at(worst)[0], accuracy)
+    values, onset = np.array([v for v, _ in found]), np.array([up for _, up in found], dtype=bool)
+    ends = [-np.inf, *values, np.inf]
+    heard, codes, diameters, shifts = [], [], [], []
+    for place, value in enumerate(values):
+        # what grows within the unstable range beside the limit
+        width = ends[place + 2 if onset[place] else place] - value
+        aside = np.sign(width) * min(_ASIDE * (high - low), 0.5 * abs(width))
+        model = margin.model_at(value + aside)[0]
+        state = of_motions(model, Content.of(model), margin.motions([value + aside]), None)
+        which = 0, state.least_stable[0]
+        heard.append(state.frequencies_inertial[which])
+        codes.append(state.whirl_codes[which])
+        diameters.append(state.nodal_diameters[which])
+        if basis_error.is_known(model, accuracy):
+            better = None if model.is_full else margin.motions([value], richer=True)
+            grown = margin.of(better.values.real[0], better.bounds[0]) if better else 0.0
+            shifts.append(grown * aside / state.exponents[which].real)
+    errors = None
+    if accuracy is not None and len(shifts) == len(values):
+        errors = np.abs(shifts) / np.maximum(np.abs(values), _SMALL * (high - low))
+    basis_error.warn(
+        errors, lambda i: f"the limit of stability at {values[i]:.5g}, {label},",
+        margin.model_at(points[0])[0], accuracy,
+    )  # fmt: skip
     return StabilityThresholds(
         values=values,
-        onset=np.array([onset for _, onset in found], dtype=bool),
+        onset=onset,
         frequencies_inertial=np.array(heard),
         whirl_codes=np.array(codes, dtype=np.int64),
         nodal_diameters=np.array(diameters, dtype=np.int64),
@@ -397,32 +396,6 @@ def _found(
         label=label,
         basis_errors=errors,
     )
-
-
-def _limit(
-    margin: _Margin,
-    found: list[tuple[float, bool]],
-    place: int,
-    span: float,
-    accuracy: float | None,
-) -> tuple[float, int, int, float | None]:
-    """Return frequency, whirl and n of what grows within the unstable range beside a limit.
-
-    And by how much the limit moves by what the basis lacks; None where that is not known.
-    """
-    ends, (value, onset) = [-np.inf, *(value for value, _ in found), np.inf], found[place]
-    width = ends[place + 2 if onset else place] - value
-    aside = np.sign(width) * min(_ASIDE * span, 0.5 * abs(width))
-    model, speed = margin.model_at(value + aside)
-    named = Content.of(model).named(margin.motions(model, speed))
-    which = 0, int(least_stable_of(named.motions)[0])
-    shift = 0.0 if basis_error.is_known(model, accuracy) else None
-    if shift is not None and not model.is_full:
-        there, speed = margin.model_at(value)
-        richer = margin.motions(there.richer, speed)
-        slope = named.motions.values[which].real / aside
-        shift = abs(margin.of(richer.values.real[0], richer.bounds[0]) / slope)
-    return named.inertial[which], named.codes[which], named.diameters[which], shift
 
 
 def unstable_ranges(
@@ -458,16 +431,6 @@ def unstable_ranges(
     """
     values = checks.ascending_from_zero(speeds, "speeds")
     check_options(tolerance, accuracy)
-    model = _checked_model(
-        target, values[-1], supports=supports, body=body, stiffening=stiffening, axes=axes
-    )
-    margin = _Margin(lambda speed: (model, speed), tolerance, True)
-    return _found(margin, values.tolist(), "speed [rad/s]", accuracy).ranges
-
-
-def _checked_model(target: Target, fastest: float, **made) -> LinearModel:
-    """Return the model of a search over the speed; warn of what it leaves out."""
-    model = linear_model(target, **made)
-    warn_of_structural_damping(model, WHAT)
-    warn_of_left_out_stiffening(model, fastest)
-    return model
+    made = {"supports": supports, "body": body, "stiffening": stiffening, "axes": axes}
+    margin = _over_speed(target, values[-1], tolerance, **made)
+    return _found(margin, values.tolist(), _SPEED, accuracy).ranges

@@ -1,10 +1,8 @@
 """A rotor on its supports under loads that stand still: its equations, and what is seen of it.
 
 A constant force leaves a rotor that turns in the equilibrium ``K(Ω) y = f`` of the equations in
-axes in which the force stands still (:mod:`exudyn_rotor.linear.model.body`): the axes of the ground
-for weight, process forces and bearings, those of the rotor for what turns with it. With the speed
-comes the centrifugal load that stands still in these axes: in those of the ground the part that is
-alike around the axis, which pulls on supports along it by Poisson's contraction.
+axes in which the force stands still. With the speed comes the centrifugal load that stands still in
+these axes: in axes of the ground the part that is alike around the axis.
 """
 
 from __future__ import annotations
@@ -16,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from exudyn_rotor.bearings.given import Given, check_interfaces
-from exudyn_rotor.bearings.resting import Nonlinear
+from exudyn_rotor.bearings.resting import Nonlinear, RigidBearing
 from exudyn_rotor.bearings.series import FloatingRingBearing, SeriesSupport
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.equations import Terms, turned
@@ -25,28 +23,12 @@ from exudyn_rotor.linear.model.body import RotorBody
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
-from exudyn_rotor.linear.response.loads import At, place, places
-from exudyn_rotor.linear.static.equilibrium import Journal, equilibrium
+from exudyn_rotor.linear.response.loads import At, BaseAcceleration, HarmonicForce, places, total
+from exudyn_rotor.linear.static.equilibrium import Journals, equilibrium
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_skew
 
 _ROUNDING = 1e-9  # share of a load that is none
-
-
-def with_supports(
-    target: LinearModel | ReducedRotor | RotorTrain, given: tuple[Given, ...], stiffening: str
-) -> LinearModel:
-    """Return a model with the supports that are given, bearings among them as they are."""
-    if isinstance(target, ReducedRotor):
-        check_interfaces(given, target.interfaces)
-        return replace(linear_model(target, stiffening=stiffening), supports={"": given})
-    model = linear_model(target, supports=given, stiffening=stiffening)
-    if type(model) is not LinearModel:
-        raise TypeError(
-            "target: needs a rotor, a train or a linear model of these; of a scene, "
-            "steady_state(body) finds the equilibrium"
-        )
-    return model
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,18 +46,30 @@ class Problem:
     frame: str
 
     @classmethod
-    def of(cls, model: LinearModel, speed: float, frame: str) -> Problem:
-        """Return the problem of a model whose supports are as they were given.
-
-        Raises
-        ------
-        ValueError
-            For bearings of a law of their own in axes that turn.
-        """
+    def of(
+        cls,
+        target: LinearModel | ReducedRotor | RotorTrain,
+        supports: tuple[Given | RigidBearing, ...],
+        stiffening: str,
+        speed: float,
+        frame: str,
+    ) -> Problem:
+        """Return the problem of a rotor on supports, or of a train or model with its own."""
+        if isinstance(target, ReducedRotor):
+            check_interfaces(supports, target.interfaces)
+            model = linear_model(target, stiffening=stiffening)
+            model = replace(model, supports={"": supports})
+        else:
+            model = linear_model(target, supports=supports, stiffening=stiffening)
+        if type(model) is not LinearModel:
+            raise TypeError(
+                "target: needs a rotor, a train or a linear model of these; of a scene, "
+                "steady_state(body) finds the equilibrium"
+            )
         acting, plain = [], {}
-        for name, supports in model.supports.items():
+        for name, given in model.supports.items():
             plain[name] = []
-            for one in supports:
+            for one in given:
                 if isinstance(one, SeriesSupport | FloatingRingBearing):
                     one = Support(one.interface, one.linearised().static_stiffness)
                 linear = isinstance(one, Support)
@@ -101,13 +95,7 @@ class Problem:
 
     @cached_property
     def stiffness(self) -> np.ndarray:
-        """K (k, k) in the axes of the loads.
-
-        Raises
-        ------
-        ValueError
-            Where it changes as the rotor turns.
-        """
+        """K (k, k) in the axes of the loads."""
         system = self.model.at(self.speed, 0.0)
         if not system.is_constant:
             raise ValueError(
@@ -129,34 +117,23 @@ class Problem:
         return turned(seen, -self._turns)[0].real
 
     def load(self, loads: Mapping[At, np.ndarray], gravity: np.ndarray) -> np.ndarray:
-        """Return the load (k,) of forces and moments (6,), of gravity (3,) and of the rotation.
-
-        Raises
-        ------
-        ValueError
-            For a moment at a node, and gravity across a rotor in axes that turn with it.
-        """
-        model, axes = self.model, self.axes
-        total = np.zeros(model.size)
+        """Return the load (k,) of forces and moments (6,), of gravity (3,) and of the rotation."""
+        load = np.zeros(self.model.size)
         for body, place_of in zip(self._assembly.bodies, self._assembly.slices, strict=True):
             if isinstance(body, RotorBody) and 0 in body.unbalance:
-                total[place_of] = (body.ratio * self.speed) ** 2 * body.unbalance[0].real
-        for key, wrench in loads.items():
-            point = place(model, key, self.speed)
-            if point.is_node and np.any(wrench[3:]):
-                raise ValueError(
-                    f"loads[{key!r}]: a mesh node has no rotation for a moment; use an interface"
-                )
-            total += self._still(point.seen).T @ np.r_[axes.T @ wrench[:3], axes.T @ wrench[3:]]
+                load[place_of] = (body.ratio * self.speed) ** 2 * body.unbalance[0].real
+        acting = [
+            HarmonicForce(at, wrench[:3] @ self.axes, wrench[3:] @ self.axes, self.frame)
+            for at, wrench in loads.items()
+        ]
         if np.any(gravity):
-            across = np.abs(axes[:, :2].T @ gravity).max() > _ROUNDING * np.linalg.norm(gravity)
-            if self._turns and across:
+            along = gravity @ self.axes
+            if self._turns and np.abs(along[:2]).max() > _ROUNDING * np.linalg.norm(gravity):
                 raise ValueError("gravity: stands still in space; leave frame='rotor' out")
-            base = model.base_loads(self.speed)
-            if base is None:
-                raise ValueError("gravity: needs a foundation with its participation")
-            total -= base[0].real.T @ (axes.T @ gravity)
-        return total
+            acting.append(BaseAcceleration(-along))
+        if acting:
+            load += total(acting, self.model, self.speed)[0].real
+        return load
 
     @property
     def axes(self) -> np.ndarray:
@@ -169,54 +146,47 @@ class Problem:
         return [self._still(U) for U in self._assembly.motions]
 
     @cached_property
-    def journals(self) -> dict[int, Journal]:
-        """Bearings with a law of their own by the numbers of their elements."""
+    def _bearings(self) -> list[int]:
+        """Numbers of the elements of bearings with a law of their own."""
+        return [i for i, one in enumerate(self.acting) if isinstance(one, Nonlinear)]
+
+    @cached_property
+    def _journals(self) -> Journals:
         sensors = {one: i for i, one in enumerate(self.acting) if isinstance(one, int)}
-        found = {}
-        for i, one in enumerate(self.acting):
-            if isinstance(one, Nonlinear):
-                owner, _ = self._assembly.elements[i].ends[0]
-                moved = self._motions[i][:2], self._motions[sensors.get(i, i)][:2]
-                found[i] = Journal(one, self.model.ratios[owner] * self.speed, *moved)
-        return found
+        owners = [self._assembly.elements[i].ends[0][0] for i in self._bearings]
+        U, U_s = (
+            np.reshape([self._motions[i][:2] for i in numbers], (-1, 2, self.model.size))
+            for numbers in (self._bearings, [sensors.get(i, i) for i in self._bearings])
+        )
+        speeds = [self.model.ratios[owner] * self.speed for owner in owners]
+        return Journals([self.acting[i] for i in self._bearings], speeds, U, U_s)
 
     def solved(self, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the coordinates (k,) and the force on the rotor of each bearing (b, 2) [N].
-
-        Raises
-        ------
-        ValueError, ArithmeticError
-            Where something acts on a motion that nothing holds, a film does not carry, or the
-            rotor buckles.
-        """
-        journals = list(self.journals.values())
-        self._check_buckling(journals)
-        y, forces = equilibrium(self.stiffness, load, journals, self.model.free_spins)
-        if y is None:
-            free = " or ".join(self.model.free_motions) or "a combination of rigid motions"
-            raise ValueError(
-                f"loads: one acts on {free}, a motion that no support holds; give one that does (a "
-                "3 × 3 stiffness acts along the axis, too)"
-            )
-        return y, forces
-
-    def _check_buckling(self, journals: Sequence[Journal]) -> None:
-        """Refuse a rotor at rest whose supports do not hold it under the loads of its prestress."""
-        loaded = any(one.invariants.K0 is not None for one in self.model.rotors.values())
-        if loaded and not self.speed and not journals:
+        """Return the coordinates (k,) and the force on the rotor of each bearing (b, 2) [N]."""
+        model = self.model
+        loaded = any(one.invariants.K0 is not None for one in model.rotors.values())
+        if loaded and not self.speed and not self._bearings:
             values = np.linalg.eigvalsh(0.5 * (self.stiffness + self.stiffness.T))
             if values[0] < -_ROUNDING * values[-1]:
                 raise ValueError(
                     "supports: the rotor buckles on them under the loads of its prestress; "
                     "rotor.prestress(loads=…, supports=…) with them finds the buckling load"
                 )
+        y, forces = equilibrium(self.stiffness, load, self._journals, model.free_spins)
+        if y is None:
+            free = " or ".join(model.free_motions) or "a combination of rigid motions"
+            raise ValueError(
+                f"loads: one acts on {free}, a motion that no support holds; give one that does (a "
+                "3 × 3 stiffness acts along the axis, too)"
+            )
+        return y, forces
 
     def seen(self, y: np.ndarray, forces: np.ndarray, at: Sequence[At] | None) -> dict[str, object]:
         """Return the fields of a result that are known of coordinates and forces of bearings."""
         observed, elements = places(self.model, at, self.speed), self._assembly.elements
         motion = np.array([self._still(one.seen) @ y for one in observed])
         motion[[one.is_node for one in observed], 3:] = np.nan
-        own = dict(zip(self.journals, forces, strict=True))
+        own = dict(zip(self._bearings, forces, strict=True))
         shown = [i for i, one in enumerate(self.acting) if not isinstance(one, int)]
         reactions, moved = np.zeros((2, len(shown), 6))
         for row, i in enumerate(shown):
@@ -256,13 +226,7 @@ class Problem:
         return float(point @ rotor.axis.direction)
 
     def mesh(self, y: np.ndarray, stress: bool) -> dict[str, np.ndarray]:
-        """Return the fields of a result at the nodes of the only rotor, as far as they are known.
-
-        Raises
-        ------
-        ValueError
-            For the stress of several rotors, or of a rotor without stress modes.
-        """
+        """Return the known fields of a result at the nodes of the only rotor."""
         body = self._assembly.bodies[0]
         rotor, several = body.alone.rotor, len(self.model.rotors) > 1
         if stress and several:
@@ -271,10 +235,11 @@ class Problem:
             return {}
         columns = body.spin.about_axis(body.alone.Q) if body.is_apart else body.alone.Q
         x = columns @ y[: body.size]
+        rest = self.speed**2 * rotor.unshown_stress if stress else 0.0
         return {
             "nodes": rotor.shapes.nodes,
             "displacement": (rotor.shapes.matrix @ x).reshape(-1, 3),
-            "stress": rotor.stress_of(x, self.speed) if stress else None,
+            "stress": rotor.shapes.stress @ x + rest if stress else None,
         }
 
 

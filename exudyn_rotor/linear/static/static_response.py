@@ -12,11 +12,11 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
 from exudyn_rotor.bearings.resting import RigidBearing
 from exudyn_rotor.linear.modal.basis_error import is_known, motion_error, warn
-from exudyn_rotor.linear.model.build import warn_of_left_out_stiffening
+from exudyn_rotor.linear.model.build import warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
-from exudyn_rotor.linear.response.loads import At, checked_places
-from exudyn_rotor.linear.static.problem import Problem, with_supports
+from exudyn_rotor.linear.response.loads import At, checked_places, node_number
+from exudyn_rotor.linear.static.problem import Problem
 from exudyn_rotor.linear.static.static_result import StaticResponse
 from exudyn_rotor.reduction.reduce import reduce, reduced_for_loads
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -118,11 +118,11 @@ def static_response(
     at = checked_places(at)
     if isinstance(target, SolidRotor):
         check_interfaces(given, target.interfaces)
-        nodes = _loaded_nodes(target, named)
-        target = reduced_for_loads(target, nodes, spins=speed != 0.0, stress=stress)
+        nodes = {node_number(target.nodes, at) for at in named if not isinstance(at, str)}
+        target = reduced_for_loads(target, sorted(nodes), spins=speed != 0.0, stress=stress)
         accuracy = None  # nothing is left out at rest
-    problem = Problem.of(with_supports(target, given, stiffening), speed, frame)
-    warn_of_left_out_stiffening(problem.model, speed)
+    problem = Problem.of(target, given, stiffening, speed, frame)
+    warn_of_omissions(problem.model, speed)
     load = problem.load(named, g)
     y, forces = problem.solved(load)
     fields = problem.seen(y, forces, at)
@@ -133,7 +133,7 @@ def static_response(
         away = np.abs(fields["reactions"] - better["reactions"]).max(initial=0.0)
         most = np.abs(better["reactions"]).max(initial=1e-300)
         errors = np.append(fields["basis_errors"], away / most)
-        warn(errors, "a static deflection or reaction", problem.model, accuracy)
+        warn(errors, lambda _: "a static deflection or reaction", problem.model, accuracy)
     return StaticResponse(**fields, **problem.mesh(y, stress), speed=speed, frame=frame)
 
 
@@ -154,16 +154,6 @@ def _checked_loads(loads: Loads | None) -> dict[At, np.ndarray]:
             raise ValueError(f"{name}: needs 3 or 6 numbers [N], [N m], got {checks.shown(value)}")
         found[checks.place(key, "loads")] = np.r_[vector, np.zeros(6 - len(vector))]
     return found
-
-
-def _loaded_nodes(rotor: SolidRotor, loads: Mapping[At, np.ndarray]) -> list[int]:
-    """Return the numbers of the nodes that are loaded."""
-    named = {rotor.nearest_node(at) if isinstance(at, tuple) else at for at in loads}
-    nodes = sorted(at for at in named if isinstance(at, int))
-    if nodes and nodes[-1] >= rotor.node_count:
-        most = rotor.node_count - 1
-        raise ValueError(f"loads: {nodes[-1]}: no such node; the mesh has 0 to {most}")
-    return nodes
 
 
 def bearing_loads(
@@ -219,18 +209,18 @@ def bearing_loads(
     speed = checks.number(speed, "speed", "rad/s")
     what = "interfaces, supports or bearings"
     listed = [bearings] if isinstance(bearings, str) else checks.items(bearings, "bearings", what)
-    names = checks.labels([one for one in listed if isinstance(one, str)], "bearings")
+    names = [one for one in listed if isinstance(one, str)]
     checks.different(checks.labels(names, "bearings", rotor.interfaces), "bearings")
-    given = [
-        RigidBearing(one) if isinstance(one, str) else given_supports([one])[0] for one in listed
-    ]
+    given = tuple(
+        RigidBearing(one) if isinstance(one, str) else given_supports(one)[0] for one in listed
+    )
     if isinstance(rotor, SolidRotor):
         if len(given) <= 2 and len(names) == len(given):
             rotor = reduce(rotor, 0, prestress=False)
         else:
             rotor = reduced_for_loads(rotor, (), spins=speed != 0.0, stress=False)
     e = rotor.axis.direction
-    problem = Problem.of(with_supports(rotor, tuple(given), "auto"), speed, "inertial")
+    problem = Problem.of(rotor, given, "auto", speed, "inertial")
     elastic = rotor.size > len(rotor.rigid_kinds)
     if len(given) > 2 and elastic and problem.model.richer is not None:
         problem = replace(problem, model=problem.model.richer)

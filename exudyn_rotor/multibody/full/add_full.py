@@ -3,9 +3,6 @@
 The matrices are sparse, with user functions for what varies. Of a mass matrix that varies, one row
 and column do, that of the spin; they stand in an object of their own, so that the rotor's matrices
 are handed over once.
-
-Exudyn factorises the Jacobian of an implicit step by Eigen's ``SparseLU``, ordered by columns
-(COLAMD), which fills it several times as much as nested dissection and takes no notice of symmetry.
 """
 
 from __future__ import annotations
@@ -23,16 +20,15 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
-from exudyn_rotor.multibody.full.ties import Ties, add_ties, container, no_jacobian
+from exudyn_rotor.multibody.full.ties import add_ties, container, no_jacobian
 from exudyn_rotor.multibody.rotor.plan import Layout, LockedForce, Plan, Setup, add_nodes, laid_out
 from exudyn_rotor.multibody.rotor.rotor_items import finished, flexible_body
 from exudyn_rotor.prestress.static_solution import relief_rotation
-from exudyn_rotor.reduction.selection import NEGLIGIBLE
+from exudyn_rotor.reduction.selection import NEGLIGIBLE, check_possible
 from exudyn_rotor.solid.model import clamped_coordinates
 from exudyn_rotor.solid.surface import flat_triangles
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.solvers.factor import TooLittleMemoryError, available_memory, factor_entries
-from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.full_motion import (
     Conditions,
     FullMotion,
@@ -81,7 +77,14 @@ def make_full_plan(rotor: SolidRotor, setup: Setup) -> Plan:
     """
     if setup.mass_damping or setup.stiffness_damping:
         rotor = rotor.with_damping(mass=setup.mass_damping, stiffness=setup.stiffness_damping)
-    _check_possible(rotor, setup.formulation)
+    if rotor.mass_damping:  # not sparse for a rotor that moves freely
+        raise ValueError(
+            "mass_damping: a full body that rigid motions are free in does not take damping in "
+            "proportion to its mass; reduce the rotor, rotor.reduce(…), or give stiffness damping"
+        )
+    across = rotor.axis.radial(rotor.nodes)
+    turns = bool(np.any(rotor.mass[::3, ::3] @ across))
+    check_possible(setup.formulation, rotor.grounded, turns)
     origin = rotor.center_of_mass
     if not setup.formulation.translation_count:
         origin = rotor.axis.project(origin)
@@ -100,7 +103,7 @@ def make_full_plan(rotor: SolidRotor, setup: Setup) -> Plan:
     inv = replace(held.invariants, K2=None, K4=None)
     fields = NodalFields(checks.read_only(origin), inv, rotor, held)
     start = partial(_start, held=held)
-    return laid_out(setup, fields, partial(FullMotion, inv), second, start)
+    return laid_out(setup, fields, partial(FullMotion, inv, setup.formulation, second), start)
 
 
 def _invariants(rotor: SolidRotor, origin: np.ndarray) -> Invariants:
@@ -118,25 +121,6 @@ def _invariants(rotor: SolidRotor, origin: np.ndarray) -> Invariants:
         for one, whole in ((moving.M, rotor.mass), (moving.K, rotor.stiffness))
     )
     return replace(moving, M=M, K=K)
-
-
-def _check_possible(rotor: SolidRotor, formulation: Formulation) -> None:
-    if rotor.mass_damping:  # not sparse for a rotor that moves freely
-        raise ValueError(
-            "mass_damping: a full body that rigid motions are free in does not take damping in "
-            "proportion to its mass; reduce the rotor, rotor.reduce(…), or give stiffness damping"
-        )
-    if rotor.grounded and (formulation.translation_count or formulation.has_spin):
-        raise ValueError(
-            "the stiffness matrix holds this rotor in its own frame (grounded), and a frame "
-            "without mass cannot move freely: use translation='none' and a prescribed spin"
-        )
-    across = rotor.nodes - rotor.axis.project(rotor.nodes)
-    if formulation.has_spin and not np.any(rotor.mass[::3, ::3] @ across):
-        raise ValueError(
-            "the rotor has no moment of inertia about its axis, so its spin cannot be free: "
-            "prescribe the spin, or give the rotor mass off the axis"
-        )
 
 
 def _start(values: ArrayLike | None, name: str, held: Conditions) -> np.ndarray:
@@ -162,8 +146,11 @@ def add_full(mbs: exudyn.MainSystem, plan: Plan) -> FullRotorBody:
     """Add the frame's node, that of the displacements, the equations, ties and markers."""
     rigid, fields = add_nodes(mbs, plan)
     motion = plan.motion
-    ties, weight = _frame_ties(plan)
-    tied, ties_object = add_ties(mbs, fields, ties, plan)
+    rows, stiffness, weight = _frame_rows(plan)
+    # the flexible body needs a coordinate
+    local = sp.csr_array((0 if len(rows) else 1, motion.invariants.size))
+    held = plan.selection.conditions.rows
+    tied, ties = add_ties(mbs, fields, plan, local, rows, held, stiffness if len(rows) else None)
     marker_body = mbs.AddObject(flexible_body(plan, [rigid, tied], weight, name=plan.name or ""))
     objects = {
         "physics": mbs.AddObject(_equations(plan, [rigid, fields])),
@@ -173,30 +160,27 @@ def add_full(mbs: exudyn.MainSystem, plan: Plan) -> FullRotorBody:
         coupling = spin_coupling_object(motion, plan.layout, [rigid, fields])
         objects["spin coupling"] = mbs.AddObject(coupling)
     nodes = {"rigid": rigid, "fields": fields}
-    return finished(FullRotorBody, mbs, plan, nodes=nodes, objects=objects, ties=ties_object)
+    return finished(FullRotorBody, mbs, plan, nodes=nodes, objects=objects, ties=ties)
 
 
-def _frame_ties(plan: Plan) -> tuple[Ties, np.ndarray]:
-    """Return the ties of the frame, and ``ΦᵀMΨ`` (3, z) of their coordinates.
+def _frame_rows(plan: Plan) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return rows (z, 3n) of mean motions, their stiffness (z,) and ``ΦᵀMΨ`` (3, z).
 
     These are the free mean translations, for gravity, and the low-rank stiffening.
     """
-    motion, held = plan.motion, plan.selection.conditions
+    motion, held = plan.motion, plan.selection.conditions.held
     inv = motion.invariants
     free = np.zeros((3, 0))
     if np.any(plan.gravity - motion.gravity):
-        count = 3 - held.held.shape[1]
-        free = np.linalg.svd(np.eye(3) - held.held @ held.held.T)[0][:, :count]
+        free = np.linalg.svd(np.eye(3) - held @ held.T)[0][:, : 3 - held.shape[1]]
     rows, stiffness = free.T @ inv.S / inv.mass, np.zeros(free.shape[1])
     if motion.formulation.is_constant_speed and motion.formulation.spin.speed:
         stiffening, values = principal(*motion.second_order.tilt)
         rows = np.vstack([rows, stiffening])
         stiffness = np.append(stiffness, motion.formulation.spin.speed**2 * values)
-    local = sp.csr_array((0 if len(rows) else 1, inv.size))  # the flexible body needs a coordinate
-    ties = Ties(local, rows, held.rows, np.diag(stiffness) if len(rows) else None)
-    weight = np.zeros((3, ties.rows.shape[0]))
+    weight = np.zeros((3, max(len(rows), 1)))
     weight[:, : free.shape[1]] = inv.mass * free
-    return ties, weight
+    return rows, stiffness, weight
 
 
 _KINDS = exudyn.OutputVariableType

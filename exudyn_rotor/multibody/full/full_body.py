@@ -11,8 +11,14 @@ import scipy.sparse as sp
 from exudyn.itemInterface import SensorSuperElement
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.full.ties import Ties, add_ties
-from exudyn_rotor.multibody.rotor.rotor_body import Record, RotorBody, SceneBody, native_settings
+from exudyn_rotor.multibody.full.ties import add_ties
+from exudyn_rotor.multibody.rotor.rotor_body import (
+    Record,
+    RotorBody,
+    SceneBody,
+    add_sensor,
+    sensor_options,
+)
 from exudyn_rotor.multibody.rotor.rotor_items import (
     Carrier,
     append_nodes,
@@ -128,17 +134,14 @@ class FullRotorBody(SceneBody):
 
     def _tied(self, interface: Interface) -> Carrier:
         """Add a flexible body whose six coordinates are tied to the nodes of an interface."""
-        size = self.motion.invariants.size
-        rows, none = sp.csr_array(interface.mean_motion(size // 3)), np.zeros((0, size))
-        ties = Ties(rows, none, none)
-        tied, _ = add_ties(self.mbs, self.nodes["fields"], ties, self)
+        rows = sp.csr_array(interface.mean_motion(self.node_count))
+        tied, _ = add_ties(self.mbs, self.nodes["fields"], self, rows)
         nodes = self.nodes["rigid"], tied
         return Carrier(
             self.mbs.AddObject(flexible_body(self, nodes, np.zeros((3, 6)))),
             self.frame.points(interface.reference),
             np.kron(np.eye(2), self.frame.B),
             interface.radius,
-            nodes,
         )
 
     def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
@@ -148,21 +151,16 @@ class FullRotorBody(SceneBody):
         """
         self.check_present()
         checks.count(node, "node", most=self.node_count - 1)
-        settings = native_settings(self, output, options)
+        checks.instance(output, "output", exudyn.OutputVariableType)
+        options = sensor_options(self, options)
         point = self._nodes_carrier([node], "position")
         (number,) = append_nodes(self.mbs, point.body, *point.virtual_nodes("position"))
-        item = SensorSuperElement(bodyNumber=point.body, meshNodeNumber=number, **settings)
-        return self.mbs.AddSensor(item)
+        at = {"bodyNumber": point.body, "meshNodeNumber": number}
+        return add_sensor(self, SensorSuperElement, options, outputVariableType=output, **at)
 
 
 def reduced_body(body: object, how: str = "add_rotor returned it") -> RotorBody:
-    """Return a rotor body in component modes, which analyses of a scene need.
-
-    Raises
-    ------
-    TypeError
-        For a full body, or anything else.
-    """
+    """Return a rotor body in component modes, which analyses of a scene need."""
     if isinstance(body, FullRotorBody):
         raise TypeError(
             f"body: rotor {body.name!r} is a full body, whose displacements of all nodes this "

@@ -23,79 +23,66 @@ more than 130 s without the one, and of more than 60 s without the other).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
-
 import exudyn
 import numpy as np
 import scipy.sparse as sp
 from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 
 from exudyn_rotor.multibody.rotor.plan import Plan, generic_node
-from exudyn_rotor.theory.invariants import Invariants
 
 _SCALE = 1e-3  # of rows over mass matrix
 RATE = 100.0  # γ [rad/s]: how fast z comes back to R c after rounding
 
 
-@dataclass(frozen=True, eq=False)
-class Ties:
-    """Rows of mean motions over the nodal displacements of a rotor."""
-
-    local: sp.csr_array  # (a, 3n) Over few nodes; the first coordinates z
-    whole: np.ndarray  # (b, 3n) Over all nodes; the other coordinates z
-    held: np.ndarray  # (c, 3n) Over all nodes, of motions that are zero
-    stiffness: np.ndarray | None = None  # (a + b, a + b) Acts on z
-
-    @cached_property
-    def rows(self) -> sp.csr_array:
-        """Rows R (z, 3n) of the coordinates z."""
-        return sp.vstack([self.local, sp.csr_array(self.whole)], format="csr")
-
-    def matrix(self, invariants: Invariants) -> sp.csr_array:
-        """Return T on (c, z, μ), symmetric, in the size of the mass matrix."""
-        held, z = sp.csr_array(self.held), self.rows.shape[0]
-        rows = sp.vstack([self.rows, held], format="csr")
-        select = sp.eye_array(rows.shape[0], z)
-        sums = np.ravel(abs(rows).sum(axis=1))
-        small = _SCALE * invariants.mass / np.where(sums > 0.0, sums, 1.0)
-        block = self._mix() @ sp.diags_array(small) @ sp.hstack([-rows, select])
-        return sp.csr_array(sp.block_array([[None, block.T], [block, None]]))
-
-    def _mix(self) -> sp.csr_array:
-        """Return the orthogonal matrix that mixes the rows over all nodes."""
-        local, count = self.local.shape[0], len(self.whole) + len(self.held)
-        v = np.arange(1.0, count + 1.0)
-        mixing = np.eye(count) - np.outer(v, v) * (2.0 / max(v @ v, 1.0))
-        return sp.csr_array(sp.block_diag([sp.eye_array(local), sp.csr_array(mixing)]))
-
-
 def add_ties(
     mbs: exudyn.MainSystem,
     fields: exudyn.NodeIndex,
-    ties: Ties,
     plan: Plan,
+    local: sp.csr_array,
+    whole: np.ndarray | None = None,
+    held: np.ndarray | None = None,
+    stiffness: np.ndarray | None = None,
 ) -> tuple[exudyn.NodeIndex, exudyn.ObjectIndex]:
-    """Add the coordinates z and the ties to the node of the displacements; return their node."""
-    start = (ties.rows @ plan.modal_coordinates, ties.rows @ plan.modal_velocities)
+    """Add the coordinates z and the ties to the node of the displacements; return their node.
+
+    Rows over the displacements are `local` (a, 3n) over few nodes, `whole` (b, 3n) over all, and
+    `held` (c, 3n) those of motions that are zero; the diagonal `stiffness` (a + b,) acts on z.
+    """
+    width = plan.motion.invariants.size
+    whole, held = (np.zeros((0, width)) if rows is None else rows for rows in (whole, held))
+    tied_rows = sp.vstack([local, sp.csr_array(whole)], format="csr")
+    z = tied_rows.shape[0]
+    start = (tied_rows @ plan.modal_coordinates, tied_rows @ plan.modal_velocities)
     tied = mbs.AddNode(generic_node(*start))
-    T = ties.matrix(plan.motion.invariants)
-    width, size = plan.motion.invariants.size, T.shape[0]
-    multipliers = generic_node(*np.zeros((2, size - width - ties.rows.shape[0])))
-    stiffness = RATE**2 * T
-    if ties.stiffness is not None:
-        entries = sp.coo_array(ties.stiffness)
-        place = tuple(width + part for part in entries.coords)
-        stiffness = stiffness + sp.csr_array((entries.data, place), shape=T.shape)
+    rows = sp.vstack([tied_rows, sp.csr_array(held)], format="csr")
+    T = _tie_matrix(rows, z, local.shape[0], plan.motion.invariants.mass)
+    on_z = np.zeros(T.shape[0])
+    on_z[width : width + z] = 0.0 if stiffness is None else stiffness
+    multipliers = generic_node(*np.zeros((2, rows.shape[0])))
     item = ObjectGenericODE2(
         nodeNumbers=[fields, tied, mbs.AddNode(multipliers)],
         massMatrix=container(T),
         dampingMatrix=container(2.0 * RATE * T),
-        stiffnessMatrix=container(stiffness),
-        jacobianUserFunction=no_jacobian(size),
+        stiffnessMatrix=container(RATE**2 * T + sp.diags_array(on_z)),
+        jacobianUserFunction=no_jacobian(T.shape[0]),
         visualization=VObjectGenericODE2(show=False),
     )
     return tied, mbs.AddObject(item)
+
+
+def _tie_matrix(rows: sp.csr_array, tied: int, local: int, mass: float) -> sp.csr_array:
+    """Return T on (c, z, μ), symmetric, in the size of the mass matrix.
+
+    The first of the rows are `tied` to z, and the first of these are `local`; the others are mixed.
+    """
+    count = rows.shape[0]
+    sums = np.ravel(abs(rows).sum(axis=1))
+    small = sp.diags_array(_SCALE * mass / np.where(sums > 0.0, sums, 1.0))
+    v = np.arange(1.0, count - local + 1.0)
+    mixing = sp.csr_array(np.eye(len(v)) - np.outer(v, v) * (2.0 / max(v @ v, 1.0)))
+    mix = sp.csr_array(sp.block_diag([sp.eye_array(local), mixing]))
+    block = mix @ small @ sp.hstack([-rows, sp.eye_array(count, tied)])
+    return sp.csr_array(sp.block_array([[None, block.T], [block, None]]))
 
 
 def container(matrix: sp.sparray) -> exudyn.MatrixContainer:

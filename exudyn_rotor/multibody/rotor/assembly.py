@@ -1,23 +1,12 @@
 """What ``mbs.Assemble()`` does for rotors with a script's own markers, and what it warns of.
 
-Before a scene is assembled:
-
-- A script's markers on many mesh nodes are moved to one or three nodes with the same mean motion.
-  Exudyn evaluates a super-element marker at every one of its nodes, and connectors at such markers
-  are differentiated numerically. What a marker needs of its nodes is linear in the modal
-  coordinates,
-
-      position  Σ w (x + Ψζ),    rotation  W⁻¹ Σ w p̃ (Ψζ − Σ w Ψζ),    W = −Σ w p̃p̃,  p = x − Σ w x,
-
-  so that nodes that move rigidly with this displacement and rotation give the same marker to
-  round-off. A marker's own offset turns with the frame alone in Exudyn; that holds the tilts of
-  Exudyn's body, which are modes here, so the three nodes take the offset.
-- Where the axes of the flexible body are not those of the mesh, rigid markers get the latter.
-- What a script attaches to rigid and position markers at the node of the frame is pointed at
-  markers that move as the node of Exudyn's body; see :func:`mean_motion`. Seats that a call has put
-  where the node stands go to the mesh origin, where the node of Exudyn's body is.
-
-Afterwards one warning names what a rotor cannot carry.
+Exudyn evaluates a marker on many mesh nodes at each of them, so it is moved to one or three nodes
+with the same mean motion, which is linear in the modal coordinates. A marker's own offset turns
+with the frame alone in Exudyn; that holds the tilts of Exudyn's body, which are modes here, so the
+three nodes take the offset. Rigid markers get the axes of the mesh where those of the flexible body
+are others. What a script attaches to markers at the node of the frame is pointed at markers that
+move as the node of Exudyn's body, and seats that a call has put where the node stands go to the
+mesh origin, where the node of Exudyn's body is.
 """
 
 from __future__ import annotations
@@ -74,8 +63,8 @@ def _watch_solvers(body: RotorItems) -> None:
 
     By a sensor, the last of them: solvers evaluate sensors before anything else.
     """
-    name, locks, size, told = body.name, body.locks, body.layout.size, body.script.told
-    held = bool(body.constraints) and not locks.stand_still
+    name, size, told = body.name, body.layout.size, body.script.told
+    held = bool(body.constraints and body.locks.prescribed)
     is_large = body.motion.invariants.is_sparse and size > _DENSE_MOST
     if body.script.is_watched or not (held or is_large):
         return
@@ -85,7 +74,6 @@ def _watch_solvers(body: RotorItems) -> None:
         "coordinates of a full body; use recommended_settings(…, body=body), which takes "
         "LinearSolverType.EigenSparse"
     )
-    instead = "translation='free'" if locks.normal is not None else "locking='mass'"
 
     def watch(mbs, t, sensors, factors, configuration):
         solver, settings = (mbs.sys.get(key) for key in ("dynamicSolver", "simulationSettings"))
@@ -93,7 +81,7 @@ def _watch_solvers(body: RotorItems) -> None:
             del mbs.sys["dynamicSolver"]  # or the next static solution would be refused
             raise ValueError(
                 f"locking: rotor {name!r} is held by constraints, which explicit solvers do not "
-                f"take; use add_rotor(…, {instead}) or an implicit solver"
+                "take; use add_rotor(…, locking='mass') or an implicit solver"
             )
         dense = settings is not None and settings.linearSolver.solverType in _DENSE
         if is_large and dense and slow not in told:
@@ -186,11 +174,11 @@ def _carry(body: RotorItems) -> None:
             carriers[number] = int(_add_node_marker(body, own[number]))
         return carriers.get(number, number)
 
-    for is_load, number, _, markers in list(attached(mbs)) if own else ():
+    for number, item, markers in list(attached(mbs)) if own else ():
         if not own.keys().isdisjoint(markers):
             _place_at_origin(body, markers)
             carried = list(map(carrier, markers))
-            if is_load:
+            if "loadType" in item:
                 mbs.SetLoadParameter(number, "markerNumber", carried[0])
             else:
                 mbs.SetObjectParameter(number, "markerNumbers", carried)
@@ -241,14 +229,10 @@ def _add_node_marker(body: RotorItems, given: dict) -> exudyn.MarkerIndex:
 def mean_motion(body: RotorItems) -> np.ndarray:
     """Return the mean displacement and rotation at the node (6, m), axes of the flexible body.
 
-    The frame of Exudyn's flexible body tilts, and moves, with the rotor. The frame of a fixed axis
-    turns only; tilts are modes, and so are translations that the formulation does not have. What
-    moves as the node of Exudyn's body is the mean rigid motion of the rotor at the mesh origin x,
-
-        u = A (Sζ/m + φ × (x − χ)),    φ = I⁻¹ Σ M y × ψ ζ,
-
-    in which rigid modes have a share alone, and Craig–Bampton modes, which hold Exudyn's frame at a
-    boundary (:mod:`exudyn_rotor.reduction.mean_axis`).
+    The node of Exudyn's body moves with the mean rigid motion of the rotor at the mesh origin x,
+    ``u = A (Sζ/m + φ × (x − χ))`` and ``φ = I⁻¹ Σ M y × ψ ζ``, in which rigid modes have a share
+    alone, and Craig–Bampton modes, which hold Exudyn's frame at a boundary
+    (:mod:`exudyn_rotor.reduction.mean_axis`).
     """
     selection, B = body.selection, body.frame.B
     reduced = selection.source

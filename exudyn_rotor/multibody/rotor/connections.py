@@ -1,9 +1,7 @@
 """What a scene attaches to a rotor, by a walk through the ``mbs``: what is lost, where loads act.
 
-Rigid and position markers at the node of the frame are pointed at others that move with the rotor
-(:mod:`exudyn_rotor.multibody.rotor.assembly`). Markers of its coordinates see the frame alone:
-it turns about the spin axis and translates as the formulation says, and its translation is that of
-the centre of mass. Tilts are modal coordinates.
+Markers of coordinates of the frame's node see the frame alone: it turns about the spin axis, and
+its translation, if the formulation has it, is that of the centre of mass. Tilts are modes.
 """
 
 from __future__ import annotations
@@ -47,40 +45,35 @@ class ConnectionWarning(UserWarning):
 
 def lost_connections(body: RotorItems) -> tuple[str, ...]:
     """Return what the rotor cannot carry, one sentence each, for an assembled system."""
-    mbs, found = body.mbs, []
-    for is_load, number, reason in _lost(body):
-        item = mbs.GetLoad(number) if is_load else mbs.GetObject(number)
-        kind = "load" if is_load else item["objectType"]
-        found.append(f"{kind} {item['name']!r}: {reason}")
-    return (*found, *_sensors(body))
+    items = [
+        f"{item.get('objectType', 'load')} {item['name']!r}: {reason}"
+        for _, item, reason in lost_items(body)
+    ]
+    return (*items, *_sensors(body))
 
 
-def lost_items(body: RotorItems) -> list[tuple[bool, int]]:
-    """Return which items a rotor cannot carry: whether each is a load, and its number.
-
-    Sensors change no motion and do not count.
-    """
-    return [(is_load, number) for is_load, number, _ in _lost(body)]
-
-
-def attached(mbs: exudyn.MainSystem) -> Iterator[tuple[bool, int, dict[str, Any], list[int]]]:
-    """Yield loads, connectors and joints: whether a load, number, the item and its markers."""
+def attached(mbs: exudyn.MainSystem) -> Iterator[tuple[int, dict[str, Any], list[int]]]:
+    """Yield loads, connectors and joints: the number, the item and its markers."""
     data = mbs.systemData
     for number in range(data.NumberOfLoads()):
         load = mbs.GetLoad(number)
-        yield True, number, load, [int(load["markerNumber"])]
+        yield number, load, [int(load["markerNumber"])]
     for number in range(data.NumberOfObjects()):
         item = mbs.GetObject(number)
         if "markerNumbers" in item:
-            yield False, number, item, list(map(int, item["markerNumbers"]))
+            yield number, item, list(map(int, item["markerNumbers"]))
 
 
-def _lost(body: RotorItems) -> Iterator[tuple[bool, int, str]]:
-    """Yield whether an item is a load, its number, and why the rotor cannot carry it."""
+def lost_items(body: RotorItems) -> Iterator[tuple[int, dict[str, Any], str]]:
+    """Yield the number of a load, connector or joint, the item, and why the rotor cannot carry it.
+
+    Sensors change no motion and do not count.
+    """
     own = set(map(int, body.constraints.values()))
     own |= {int(number) for drive in body.drives for number in drive.objects}
-    for is_load, number, item, markers in attached(body.mbs):
-        if not is_load and (number in own or not item.get("activeConnector", True)):
+    for number, item, markers in attached(body.mbs):
+        is_own = number in own and "loadType" not in item
+        if is_own or not item.get("activeConnector", True):
             continue
         for place, marker in enumerate(markers):
             if marker in body.script.carriers.values():
@@ -88,7 +81,7 @@ def _lost(body: RotorItems) -> Iterator[tuple[bool, int, str]]:
             else:
                 reason = _why_lost(body, body.mbs.GetMarker(marker), item, place)
             if reason:
-                yield is_load, number, reason
+                yield number, item, reason
 
 
 def _why_lost(
@@ -188,7 +181,7 @@ class LoadPlace:
     """A place of a rotor where forces act, and perhaps moments."""
 
     point: np.ndarray  # (3,) Mesh coordinates [m]
-    # (3, m) or (6, m) Displacement, and rotation where moments act, by modal coordinates, mesh axes
+    # (6, m) Displacement, and rotation where moments act, by modal coordinates, mesh axes
     motion: np.ndarray
     interface: str | None  # whose mean motion this is
 
@@ -196,8 +189,8 @@ class LoadPlace:
 def load_places(body: RotorItems) -> tuple[LoadPlace, ...]:
     """Return where loads and connectors act on a reduced rotor."""
     moments: dict[int, bool] = {}  # of markers, whether moments may act there
-    for is_load, _, item, markers in attached(body.mbs):
-        kind = item["loadType" if is_load else "objectType"]
+    for _, item, markers in attached(body.mbs):
+        kind = item.get("loadType") or item["objectType"]
         for marker in markers if item.get("activeConnector", True) else ():
             moments[marker] = moments.get(marker, False) or kind not in _FORCES
     found = []
@@ -205,23 +198,25 @@ def load_places(body: RotorItems) -> tuple[LoadPlace, ...]:
         marker = body.mbs.GetMarker(number)
         own = int(marker.get("bodyNumber", -1)) == int(body.objects["marker_body"])
         if own and marker["markerType"] in _MARKERS:
-            rigid = with_moments and marker["markerType"] == "SuperElementRigid"
-            found.append(_at_marker(body, marker, 6 if rigid else 3))
-    interfaces = body.selection.source.interfaces
-    # drives and connections of rotors act by coordinates
-    driven = {one.at if one.body.token is body.token else one.other_at for one in body.drives}
-    for name in sorted(driven - {None}):
-        motion = interfaces[name].motion @ body.selection.T
-        found.append(LoadPlace(interfaces[name].reference, motion, name))
+            carrier, turn = marker_carrier(body.mbs, marker), body.frame.B
+            motion = np.kron(np.eye(2), turn.T) @ carrier.motion
+            if not with_moments or marker["markerType"] != "SuperElementRigid":
+                motion[3:] = 0.0
+            on_mesh = carrier.point @ turn + body.frame.origin
+            found.append(LoadPlace(on_mesh, motion, _interface_at(body, on_mesh, motion)))
+    # drives, connections of rotors and laws of supports act by coordinates
+    acting = {
+        one.at if one.body.script is body.script else one.other_at: True for one in body.drives
+    }
+    for one in body.supports:
+        if one.uses_python:
+            acting.setdefault(one.support.interface, getattr(one.support, "tilts", False))
+    for name, interface in body.selection.source.interfaces.items():
+        if name in acting:
+            motion = interface.motion @ body.selection.T
+            motion[3:] *= acting[name]
+            found.append(LoadPlace(interface.reference, motion, name))
     return tuple(found)
-
-
-def _at_marker(body: RotorItems, marker: dict, count: int) -> LoadPlace:
-    carrier, turn = marker_carrier(body.mbs, marker), body.frame.B
-    parts = np.split(carrier.motion[:count], count // 3)
-    motion = np.vstack([turn.T @ part for part in parts])
-    on_mesh = carrier.point @ turn + body.frame.origin
-    return LoadPlace(on_mesh, motion, _interface_at(body, on_mesh, motion))
 
 
 def _interface_at(body: RotorItems, point: np.ndarray, motion: np.ndarray) -> str | None:

@@ -3,14 +3,9 @@
 Which angle of the flexible body's node is the spin angle follows from the placement.
 ``NodeRigidBodyRxyz`` has the orientation ``Rx(a) Ry(b) Rz(c)``, and any one of the three angles may
 turn without bound while the other two stand still. With n the spin axis in inertial axes and e in
-mesh axes, the body can have the axes of the mesh where
-
-- e is mesh z: c turns, however the rotor is mounted;
-- n is inertial x: a turns, whatever e is;
-- n is across inertial x and e across mesh z: b turns.
-
-Elsewhere the axes of the marker body are the mesh axes turned by B, with ``B e = e_z``, and c
-turns.
+mesh axes, the body can have the axes of the mesh where e is mesh z (c turns), n is inertial x (a
+turns), or n is across inertial x and e across mesh z (b turns). Elsewhere the axes of the marker
+body are the mesh axes turned by B, with ``B e = e_z``, and c turns.
 """
 
 from __future__ import annotations
@@ -47,7 +42,6 @@ from exudyn_rotor.theory.formulation import (
     start_values,
 )
 from exudyn_rotor.theory.motion import Motion
-from exudyn_rotor.theory.stiffening import Stiffening
 from exudyn_rotor.theory.stiffening import stiffening as second_order
 
 FIRST, SECOND, THIRD = 3, 4, 5  # the angles among the coordinates of the node
@@ -59,8 +53,8 @@ class BodyFrame:
     """Mesh and scene as the marker body sees them."""
 
     origin: np.ndarray  # (3,) Of the frame, mesh coordinates [m]
-    B: np.ndarray  # (3, 3) Mesh axes → axes of the marker body, the identity where that can be
     position: np.ndarray  # (3,) Of the frame origin at rest, inertial coordinates [m]
+    B: np.ndarray  # (3, 3) Mesh axes → axes of the marker body, the identity where that can be
     angles: np.ndarray  # (3,) Reference Tait–Bryan angles (a, b, c) of the node [rad]
     spin: int  # 3, 4 or 5: the node's coordinate that is the spin angle
 
@@ -74,12 +68,7 @@ class BodyFrame:
         not tilt, so that its motion there is that of the `center`, the formulation's origin.
         """
         origin = center - direction * (direction @ center)
-        B = np.eye(3)
-        angles_and_spin = _with_mesh_axes(direction, rotation)
-        if angles_and_spin is None:
-            B = _turn_to_z(direction)
-            angles_and_spin = _tait_bryan(rotation @ B.T), THIRD
-        return cls(origin, B, position + rotation @ origin, *angles_and_spin)
+        return cls(origin, position + rotation @ origin, *_body_axes(direction, rotation))
 
     def axes_of_angles(self) -> np.ndarray:
         """Return the inertial axes (3, 3), in rows, that the node's angles turn about at rest."""
@@ -97,21 +86,23 @@ class BodyFrame:
         return np.einsum("ab,nbk->nak", self.B, nodal).reshape(displacements.shape)
 
 
-def _with_mesh_axes(
-    direction: np.ndarray, orientation: np.ndarray
-) -> tuple[np.ndarray, int] | None:
-    """Return angles and spin coordinate of a body with mesh axes; None if there is none."""
-    e, n = direction, orientation @ direction
+def _body_axes(e: np.ndarray, orientation: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
+    """Return mesh axes → axes of the body, its angles at rest, and the spin coordinate."""
+    n, B = orientation @ e, np.eye(3)
     if np.hypot(e[0], e[1]) < _ALONG and e[2] > 0.0:
-        return _tait_bryan(orientation), THIRD
+        return B, _tait_bryan(orientation), THIRD
     if np.hypot(n[1], n[2]) < _ALONG and n[0] > 0.0:
-        return _tait_bryan(orientation), FIRST
+        return B, _tait_bryan(orientation), FIRST
     if abs(n[0]) < _ALONG and abs(e[2]) < _ALONG:  # Rx(a) e_y = n and Rz(−c) e_y = e
         a, c = np.arctan2(n[2], n[1]), np.arctan2(e[0], e[1])
         Ry = Rotation.from_euler("x", -a).as_matrix() @ orientation
         Ry = Ry @ Rotation.from_euler("z", -c).as_matrix()
-        return np.array([a, np.arctan2(Ry[0, 2], Ry[0, 0]), c]), SECOND
-    return None
+        return B, np.array([a, np.arctan2(Ry[0, 2], Ry[0, 0]), c]), SECOND
+    across = np.cross(e, [0.0, 0.0, 1.0])
+    sine = np.linalg.norm(across)
+    across = across / sine if sine else np.array([1.0, 0.0, 0.0])  # any serves for −e_z
+    B = Rotation.from_rotvec(np.arctan2(sine, e[2]) * across).as_matrix()
+    return B, _tait_bryan(orientation @ B.T), THIRD
 
 
 def _tait_bryan(orientation: np.ndarray) -> np.ndarray:
@@ -122,61 +113,39 @@ def _tait_bryan(orientation: np.ndarray) -> np.ndarray:
         return Rotation.from_matrix(np.array(orientation)).as_euler("XYZ")
 
 
-def _turn_to_z(direction: np.ndarray) -> np.ndarray:
-    """Return the smallest rotation that takes `direction` to e_z."""
-    across = np.cross(direction, [0.0, 0.0, 1.0])
-    size = np.linalg.norm(across)
-    across = across / size if size else np.array([1.0, 0.0, 0.0])  # any serves for −e_z
-    return Rotation.from_rotvec(np.arctan2(size, direction[2]) * across).as_matrix()
-
-
 LOCKINGS = ("auto", "mass", "constraints")
+MARKER_KINDS = ("rigid", "position")
 MODES = 6  # the first coordinate after those of the rigid-body node
-LOCKS = "locks"  # name of the constraint of all that stand still or turn at constant speed
+LOCKS = "locks"  # name of the constraint of all that stands still or turns at constant speed
 
 LockedForce = Callable[[float], np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
 class Locks:
-    """What happens to the six rigid coordinates of the marker body.
-
-    Where the plane of translation is skew in space, all three translations are unknowns, and one
-    row along the `normal` holds them in the plane.
-    """
+    """What happens to the six rigid coordinates of the marker body."""
 
     unknown: tuple[int, ...]  # coordinates that are unknowns of the formulation
     fixed: tuple[int, ...]  # the tilts at last
     prescribed: dict[int, PrescribedMotion | ConstantSpeed]  # by the coordinate, scalar
     spin: int  # the spin angle
-    plane: np.ndarray | None  # (3, 2) Inertial directions of in-plane unknowns
-    normal: np.ndarray | None  # (3,)
 
     @classmethod
     def of(cls, formulation: Formulation, spin_direction: np.ndarray, spin: int) -> Locks:
         """Sort the coordinates for a spin axis along `spin_direction` in inertial axes."""
-        translations, plane, normal = list(range(3)), None, None
-        if formulation.translation_count == 0:
-            translations = []
-        elif formulation.translation_count == 2:
-            along = np.flatnonzero(np.abs(spin_direction) > 1.0 - 1e-14)
-            if along.size:
-                translations.remove(along[0])
-                plane = np.eye(3)[:, translations]
-            else:
-                normal = spin_direction
-        rest = [i for i in range(3) if i not in translations]
+        along = int(np.argmax(np.abs(spin_direction)))
+        rest = {0: [0, 1, 2], 2: [along], 3: []}[formulation.translation_count]
+        unknown = [i for i in range(3) if i not in rest]
         prescribed: dict[int, PrescribedMotion | ConstantSpeed] = {}
         if formulation.moves_origin:
             prescribed = {i: _component(formulation.translation, i) for i in rest}
             rest = []
-        unknown = tuple(translations)
         if formulation.has_spin:
-            unknown = (*unknown, spin)
+            unknown.append(spin)
         else:
             prescribed[spin] = formulation.spin
         tilts = [i for i in range(3, MODES) if i != spin]
-        return cls(unknown, (*rest, *tilts), prescribed, spin, plane, normal)
+        return cls(tuple(unknown), (*rest, *tilts), prescribed, spin)
 
     @property
     def tilts(self) -> tuple[int, int]:
@@ -200,25 +169,6 @@ class Locks:
         """Names of the coordinates that are no unknowns."""
         return tuple(self.names[i] for i in (*self.fixed, *self.prescribed))
 
-    @property
-    def stand_still(self) -> bool:
-        """True where explicit solvers run: locked coordinates stand still, and are eliminated."""
-        return not self.prescribed and self.normal is None
-
-    @property
-    def rows(self) -> tuple[np.ndarray, np.ndarray]:
-        """Rows (c, 6) over the coordinates, and the rates (c,) at which one constraint holds them.
-
-        What varies with time is not among them.
-        """
-        steady = [i for i, motion in self.prescribed.items() if i not in self.varying]
-        rows = np.eye(MODES)[[*self.fixed, *steady]]
-        rates = np.array([0.0] * len(self.fixed) + [self.prescribed[i].speed for i in steady])
-        if self.normal is not None:
-            rows = np.vstack([rows, np.append(self.normal, np.zeros(3))])
-            rates = np.append(rates, 0.0)
-        return rows, rates
-
 
 def _component(motion: PrescribedMotion, index: int) -> PrescribedMotion:
     """Return one coordinate of a prescribed translation."""
@@ -227,6 +177,16 @@ def _component(motion: PrescribedMotion, index: int) -> PrescribedMotion:
         lambda t: float(motion.rate(t)[index]),
         lambda t: float(motion.acceleration(t)[index]),
     )
+
+
+def in_space(formulation: Formulation, spin_direction: np.ndarray) -> Formulation:
+    """Return a formulation whose translations are along inertial axes, with the same motion.
+
+    Beside a plane that is skew to them that is the one with all three translations.
+    """
+    if formulation.translation_count == 2 and np.abs(spin_direction).max() <= 1.0 - 1e-14:
+        return replace(formulation, translation="free")
+    return formulation
 
 
 @dataclass(frozen=True, eq=False)
@@ -265,16 +225,17 @@ def add_constraints(
 ) -> dict[str, exudyn.ObjectIndex]:
     """Hold the locked coordinates of the frame's node by constraints; return them by name."""
     ground = mbs.AddNode(NodePointGround())
-    if locks.stand_still:
+    if not locks.prescribed:
         return {locks.names[index]: held(mbs, ground, node, index) for index in locks.fixed}
     ends = [mbs.AddMarker(MarkerNodeCoordinates(nodeNumber=number)) for number in (ground, node)]
-    rows, rates = locks.rows
+    rates = dict.fromkeys(locks.fixed, 0.0)
+    rates |= {i: m.speed for i, m in locks.prescribed.items() if isinstance(m, ConstantSpeed)}
     # at velocity level: drift is round-off, and a constant speed needs no function of time
     item = ObjectConnectorCoordinateVector(
         markerNumbers=ends,
         scalingMarker0=np.zeros((len(rates), 0)),
-        scalingMarker1=rows,
-        offset=rates,
+        scalingMarker1=np.eye(MODES)[list(rates)],
+        offset=list(rates.values()),
         velocityLevel=True,
         visualization={"show": False},
     )
@@ -290,9 +251,6 @@ def add_constraints(
             offsetUserFunction_t=lambda mbs, t, item, offset, motion=motion: motion.rate(t),
         )
     return constraints
-
-
-MARKER_KINDS = ("rigid", "position")
 
 
 @dataclass(frozen=True, eq=False)
@@ -332,62 +290,42 @@ class Setup:
 
 def placement(
     formulation: Formulation,
-    direction: np.ndarray,
+    axis: np.ndarray,
     position: ArrayLike,
-    rotation: ArrayLike | None,
+    rotation: np.ndarray,
     initial_velocity: ArrayLike,
     initial_angle: float | None,
     initial_speed: float | None,
 ) -> Placement:
     """Check and complete the placement; a prescribed motion brings its own initial values.
 
-    `direction` is the spin axis in mesh axes.
+    `axis` is the spin axis in inertial axes.
     """
     place = checks.vector(position, "position", "m")
-    turn = np.eye(3) if rotation is None else checks.rotation(rotation)
-    velocity = checks.vector(initial_velocity, "initial_velocity", "m/s")
-    start = np.zeros(3)
+    velocity, start = checks.vector(initial_velocity, "initial_velocity", "m/s"), np.zeros(3)
+    lost = {3: 0.0 * velocity, 2: axis * (axis @ velocity), 0: velocity}
+    missing = np.linalg.norm(lost[formulation.translation_count])
+    if missing > 1e-9 * np.linalg.norm(velocity):
+        raise ValueError(
+            f"initial_velocity: the formulation has no such motion, {missing:.3g} m/s of "
+            f"{velocity.tolist()} m/s; use translation='free', velocities of translation modes in "
+            "modal_velocities, or the velocity of a prescribed translation"
+        )
     if formulation.moves_origin:
-        if np.any(velocity):
-            raise ValueError(
-                "velocity given twice: by initial_velocity and by the translation τ(t)"
-            )
         start, velocity, _ = start_values(formulation.translation, "translation")
-    else:
-        _check_direction(formulation, velocity, turn @ direction)
     if formulation.has_spin:
         angle = 0.0 if initial_angle is None else initial_angle
         speed = 0.0 if initial_speed is None else initial_speed
         angle = checks.number(angle, "initial_angle", "rad")
         speed = checks.number(speed, "initial_speed", "rad/s")
-        return Placement(place, turn, start, velocity, angle, speed)
-    if initial_angle is not None or initial_speed is not None:
+    elif initial_angle is not None or initial_speed is not None:
         raise ValueError(
             "spin given twice: by a prescribed spin, and by initial_angle or initial_speed; leave "
             "these out"
         )
-    angle, speed, _ = start_values(formulation.spin, "spin")
-    return Placement(place, turn, start, velocity, angle, speed)
-
-
-def _check_direction(formulation: Formulation, velocity: np.ndarray, axis: np.ndarray) -> None:
-    """Refuse a velocity that the formulation cannot have; `axis` in inertial axes."""
-    lost = {3: 0.0 * velocity, 2: axis * (axis @ velocity), 0: velocity}
-    missing = np.linalg.norm(lost[formulation.translation_count])
-    if missing > 1e-9 * np.linalg.norm(velocity):
-        raise ValueError(
-            f"initial_velocity: translation={formulation.translation!r} has no such motion, "
-            f"{missing:.3g} m/s of {velocity.tolist()} m/s; use translation='free', or velocities "
-            "of translation modes in modal_velocities"
-        )
-
-
-def _modal_values(values: ArrayLike | None, name: str, labels: tuple[str, ...]) -> np.ndarray:
-    """Return one value per mode, zeros for None."""
-    if values is None:
-        return np.zeros(len(labels))
-    described = f"{name} (one per mode: {', '.join(labels)})"
-    return checks.vector(values, described, "√kg m", size=len(labels))
+    else:
+        angle, speed, _ = start_values(formulation.spin, "spin")
+    return Placement(place, rotation, start, velocity, angle, speed)
 
 
 def color_of(values: Sequence[float]) -> tuple[float, ...]:
@@ -418,11 +356,6 @@ def main_system(mbs: exudyn.MainSystem) -> exudyn.MainSystem:
     return checks.instance(
         mbs, "mbs", exudyn.MainSystem, "exudyn.SystemContainer().AddSystem() makes one"
     )
-
-
-def item_name(prefix: str, name: str | None) -> str:
-    """Return the name of an item, empty for a rotor without a name."""
-    return "" if name is None else f"{prefix}{name}"
 
 
 def marker_name(name: str | None, interface: str) -> str:
@@ -478,15 +411,16 @@ def add_nodes(mbs: exudyn.MainSystem, plan: Plan) -> tuple[exudyn.NodeIndex, exu
     start, spin = plan.placement, plan.locks.spin
     values[:3], rates[:3] = start.translation, start.velocity
     values[spin], rates[spin] = start.angle, start.speed
+    kinds = "NodeRigidBody:", "NodeGeneric:"
+    names = ["" if plan.name is None else kind + plan.name for kind in kinds]
     rigid = NodeRigidBodyRxyz(
-        name=item_name("NodeRigidBody:", plan.name),
+        name=names[0],
         referenceCoordinates=[*plan.frame.position, *plan.frame.angles],
         initialCoordinates=values,
         initialVelocities=rates,
         visualization=VNodeRigidBodyRxyz(show=False),
     )
-    name = item_name("NodeGeneric:", plan.name)
-    modes = generic_node(plan.modal_coordinates, plan.modal_velocities, name)
+    modes = generic_node(plan.modal_coordinates, plan.modal_velocities, names[1])
     return mbs.AddNode(rigid), mbs.AddNode(modes)
 
 
@@ -498,20 +432,26 @@ def make_plan(reduced: ReducedRotor, setup: Setup) -> Plan:
     if setup.stiffening != "none":
         invariants = invariants.loaded
     second = second_order(invariants, setup.stiffening)
-    start = partial(_modal_values, labels=selection.labels)
-    return laid_out(setup, selection, partial(Motion, invariants), second, start)
+    described = f"(one per mode: {', '.join(selection.labels)})"
+
+    def start(values: ArrayLike | None, name: str) -> np.ndarray:
+        size = len(selection.labels)
+        values = np.zeros(size) if values is None else values
+        return checks.vector(values, f"{name} {described}", "√kg m", size=size)
+
+    return laid_out(setup, selection, partial(Motion, invariants, setup.formulation, second), start)
 
 
 def laid_out(
     setup: Setup,
     selection: Selection,
     motions: Callable[..., Motion],
-    second: Stiffening,
     start: Callable[[ArrayLike | None, str], np.ndarray],
 ) -> Plan:
     """Return a plan with frame, locks, layout and motion.
 
-    `motions` knows the invariants, and `start` makes initial coordinates of what was given.
+    `motions` lacks orientation, plane and gravity, and `start` makes initial coordinates of what
+    was given.
     """
     formulation, place = setup.formulation, setup.placement
     turned = turned_origin(selection, place.rotation, place.angle)
@@ -524,18 +464,12 @@ def laid_out(
     direction = selection.invariants.direction
     frame = BodyFrame.of(direction, selection.origin, place.position, place.rotation)
     locks = Locks.of(formulation, place.rotation @ direction, frame.spin)
-    if locks.normal is not None:
-        if setup.locking == "mass":
-            raise ValueError(
-                "locking='mass' cannot hold the rotor in a plane that is skew to the inertial "
-                "axes; use locking='constraints' or translation='free'"
-            )
-        # a skew plane of rotation keeps all three translations and adds a linear constraint
-        formulation = replace(formulation, translation="free")
+    plane = None
+    if formulation.translation_count == 2:
+        plane = np.eye(3)[:, locks.unknown[:2]]
     # gravity as a load exerts no moment about e by the deflection Sζ; a free spin needs it
     in_equations = formulation.has_spin and formulation.translation_count == 0
-    gravity = setup.gravity if in_equations else None
-    motion = motions(formulation, second, place.rotation, locks.plane, gravity)
+    motion = motions(place.rotation, plane, setup.gravity if in_equations else None)
     layout = _layout(setup, locks, motion)
     return Plan(
         **vars(setup), selection=selection, frame=frame, locks=locks, layout=layout, motion=motion
@@ -557,7 +491,7 @@ def _layout(setup: Setup, locks: Locks, motion: Motion) -> Layout:
     inertia, size = np.repeat([inv.mass, about_axis], 3), MODES + inv.size
     masses = np.zeros(size)
     for index in (*locks.fixed, *locks.prescribed):
-        ratio = _ELIMINATED_RATIO if locks.stand_still else 1.0
+        ratio = 1.0 if locks.prescribed else _ELIMINATED_RATIO
         if setup.locking == "mass":
             ratio = _DRIVEN_RATIO if index in locks.varying else _LOCK_RATIO
         masses[index] = inertia[index] * ratio

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,8 +25,7 @@ from exudyn_rotor.multibody.rotor.rotor_items import (
     interface_of_nodes,
     nodes_of,
 )
-from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.formulation import ConstantSpeed, start_values
+from exudyn_rotor.theory.formulation import ConstantSpeed
 
 _KINDS = exudyn.OutputVariableType
 
@@ -43,8 +42,6 @@ class Record:
         Coordinates of the body's nodes, those that are locked included.
     speed : ndarray, shape (s,)
         Spin speed [rad/s].
-    complete : bool
-        False if only the end state is known, because nothing was recorded.
     """
 
     time: np.ndarray
@@ -52,25 +49,13 @@ class Record:
     q_t: np.ndarray
     q_tt: np.ndarray
     speed: np.ndarray
-    complete: bool
 
 
-def implicit_step(body: RotorItems) -> float | None:
-    """Return the step [s] of the last dynamic solution; None before one, or of an explicit one."""
-    settings = body.mbs.sys.get("simulationSettings")
-    solver = body.mbs.sys.get("dynamicSolver")
-    if settings is None or solver is None or "Explicit" in type(solver).__name__:
-        return None
-    integration = settings.timeIntegration
-    return (integration.endTime - integration.startTime) / integration.numberOfSteps
-
-
-_VELOCITIES = ("initialVelocities", "initialCoordinates_t")  # by the kind of the node
-SAME = 1e-9  # share of the speed, and rad, by which start and prescribed spin may differ
+_SAME = 1e-9  # share of the speed, and rad, by which start and prescribed spin may differ
 
 
 @dataclass(frozen=True, eq=False)
-class StartState:
+class StartState(checks.Checked):
     """Coordinates and velocities of a scene at one angle of a rotor.
 
     Attributes
@@ -92,41 +77,21 @@ class StartState:
     array([0. , 0.1])
     """
 
-    q: np.ndarray
-    q_t: np.ndarray
+    q: np.ndarray = checks.numbers("coordinates")
+    q_t: np.ndarray = checks.numbers("coordinates")
     angle: float
     speed: float
-
-    def __post_init__(self) -> None:
-        q = checks.array(self.q, "q", "m, rad")
-        q_t = checks.array(self.q_t, "q_t", "m/s, rad/s")
-        if q.ndim != 1 or q.shape != q_t.shape:
-            raise ValueError(
-                f"q, q_t: need one velocity for each coordinate, got the shapes {q.shape} and "
-                f"{q_t.shape}"
-            )
-        checks.keep(self, q=q, q_t=q_t)
-        checks.keep_numbers(self, {"angle": "rad", "speed": "rad/s"})
-
-
-def spin_at_start(body: RotorItems) -> tuple[float, float]:
-    """Return angle [rad] and speed [rad/s] with which the rotor starts."""
-    if body.formulation.has_spin:
-        return body.placement.angle, body.placement.speed
-    angle, speed, _ = start_values(body.formulation.spin, "spin")
-    return angle, speed
 
 
 def keep_in_node(mbs: exudyn.MainSystem, number: int, state: StartState) -> None:
     """Write the state into a node, so that it outlives ``mbs.Assemble()``."""
     node = mbs.GetNode(number)
-    velocities = next((name for name in _VELOCITIES if name in node), None)
-    if velocities is None:  # a node of the ground, or of data
-        return
-    first = mbs.GetNodeODE2Index(number)
-    place = slice(first, first + len(node[velocities]))
-    mbs.SetNodeParameter(number, "initialCoordinates", state.q[place].tolist())
-    mbs.SetNodeParameter(number, velocities, state.q_t[place].tolist())
+    # one of them, by the kind of the node; nodes of the ground, or of data, have neither
+    for velocities in {"initialVelocities", "initialCoordinates_t"} & node.keys():
+        first = mbs.GetNodeODE2Index(number)
+        place = slice(first, first + len(node[velocities]))
+        mbs.SetNodeParameter(number, "initialCoordinates", state.q[place].tolist())
+        mbs.SetNodeParameter(number, velocities, state.q_t[place].tolist())
 
 
 def _warn_of_static_stress(body: RotorItems, output: exudyn.OutputVariableType) -> None:
@@ -145,65 +110,44 @@ def _warn_of_static_stress(body: RotorItems, output: exudyn.OutputVariableType) 
     )
 
 
-def _friction(body: RotorItems, configuration: exudyn.ConfigurationType) -> float:
-    """Return the torque of bearings and stops on a rotor that does not feel it [N m]."""
-    total = 0.0
-    for made in (one.connector for one in body.supports):
-        made.read(*made.state(body.mbs, configuration))
-        total += made.friction()
-    return total
+def _external_moment(
+    body: RotorItems,
+    t: float,
+    q: np.ndarray,
+    q_t: np.ndarray,
+    configuration: exudyn.ConfigurationType,
+) -> float:
+    """Return the external moment about e [N m].
 
-
-def _deflected_weight(body: RotorItems, t: float, zeta: np.ndarray) -> float:
-    """Return the moment about e of gravity by the deflection Sζ, which Exudyn's load leaves out."""
-    if body.gravity_load is None:
-        return 0.0
-    motion = body.motion
-    axis = SpinAxis(motion.invariants.direction)
-    gravity = np.asarray(body.mbs.GetLoadParameter(body.gravity_load, "loadVector"))
-    turn = motion.orientation @ axis.rotation(motion.formulation.spin.value(t))
-    return float(turn @ axis.skew @ (motion.invariants.S @ zeta) @ gravity)
-
-
-def _external_moment(body: RotorItems, t: float, configuration: exudyn.ConfigurationType) -> float:
-    """Return the external moment about e, which the locked spin collects [N m]."""
-    node, mbs, spin = body.nodes["rigid"], body.mbs, body.locks.spin
-    acceleration = mbs.GetNodeOutput(node, _KINDS.Coordinates_tt, configuration)[spin]
-    moment = body.layout.lock_mass[spin] * float(acceleration)
+    The locked spin collects it, but for those of gravity by the deflection Sζ, which Exudyn's load
+    leaves out, and of the friction of bearings and stops, which a prescribed spin does not feel.
+    """
+    mbs, motion, spin = body.mbs, body.motion, body.locks.spin
+    accelerations = mbs.GetNodeOutput(body.nodes["rigid"], _KINDS.Coordinates_tt, configuration)
+    moment = body.layout.lock_mass[spin] * float(accelerations[spin])
     if body.guide is not None:
         moment -= body.guide(t)[spin]
-    if "spin" in body.constraints:
-        moment += float(np.ravel(mbs.GetObjectOutput(body.constraints["spin"], _KINDS.Force))[0])
-    elif body.constraints:
-        share = body.locks.rows[0][:, spin]
-        moment += float(share @ mbs.GetObjectOutput(body.constraints[LOCKS], _KINDS.Force))
+    if body.constraints:
+        number = body.constraints.get("spin", body.constraints[LOCKS])
+        # the spin is the last that a constraint of several holds
+        moment += float(np.ravel(mbs.GetObjectOutput(number, _KINDS.Force))[-1])
+    if body.gravity_load is not None:
+        at, gravity = motion.at(t, q, q_t), mbs.GetLoadParameter(body.gravity_load, "loadVector")
+        moment += float(at.A @ (motion.S1 @ at.zeta) @ gravity)
+    for made in (one.connector for one in body.supports):
+        made.read(*made.state(mbs, configuration))
+        moment += made.friction()
     return moment
 
 
-def add_function_sensor(
-    body: RotorItems, function: Callable, options: Mapping[str, Any]
-) -> exudyn.SensorIndex:
-    """Add a sensor of what a user function returns."""
-    settings = _settings_of(body, options)
-    return body.mbs.AddSensor(SensorUserFunction(sensorUserFunction=function, **settings))
-
-
-def native_settings(
-    body: RotorItems, output: exudyn.OutputVariableType, options: Mapping[str, Any]
-) -> dict[str, Any]:
-    """Return the settings of a native sensor; Exudyn refuses unsuited outputs in Assemble."""
-    checks.instance(output, "output", _KINDS)
-    return {"outputVariableType": output} | _settings_of(body, options)
-
-
-def _settings_of(body: RotorItems, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the settings of a sensor, stored internally by default."""
+def sensor_options(body: RotorItems, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the options of a sensor, checked; it is stored internally by default."""
     body.check_present()
     known = ("name", "storeInternal", "writeToFile", "fileName")
     for option in options:
         if option not in known:
             raise TypeError(f"{option}: is no option of this sensor; it takes {', '.join(known)}")
-    settings = {"storeInternal": True, "writeToFile": False} | dict(options)
+    settings = {"storeInternal": True, "writeToFile": False} | options
     for option in ("storeInternal", "writeToFile"):
         checks.flag(settings[option], option)
     if "fileName" in settings:
@@ -213,6 +157,15 @@ def _settings_of(body: RotorItems, options: Mapping[str, Any]) -> dict[str, Any]
         if int(body.mbs.GetSensorNumber(name)) != -1:
             raise ValueError(f"name: this system already has a sensor {name!r}; choose another")
     return settings
+
+
+def add_sensor(
+    body: RotorItems, kind: type, options: Mapping[str, Any], **item: Any
+) -> exudyn.SensorIndex:
+    """Add a sensor of a kind, of what `item` says; Exudyn refuses unsuited outputs in Assemble."""
+    if "outputVariableType" in item:
+        checks.instance(item["outputVariableType"], "output", _KINDS)
+    return body.mbs.AddSensor(kind(**item, **sensor_options(body, options)))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -338,8 +291,9 @@ class SceneBody(RotorItems, ABC):
     def add_interface_sensor(self, interface: str, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at an interface's marker; `options` go to ``SensorMarker``."""
         marker = self.marker(interface)
-        settings = native_settings(self, output, options)
-        return self.mbs.AddSensor(SensorMarker(markerNumber=marker, **settings))
+        return add_sensor(
+            self, SensorMarker, options, markerNumber=marker, outputVariableType=output
+        )
 
     def add_spin_sensor(self, **options):
         """Add a sensor of spin angle [rad] and spin speed [rad/s]."""
@@ -350,7 +304,7 @@ class SceneBody(RotorItems, ABC):
             speed = mbs.GetNodeOutput(node, _KINDS.Coordinates_t, configuration)[index]
             return [float(angle), float(speed)]
 
-        return add_function_sensor(self, spin, options)
+        return add_sensor(self, SensorUserFunction, options, sensorUserFunction=spin)
 
     def add_drive_torque_sensor(self, **options):
         """Add a sensor of the torque about e that a prescribed spin needs [N m].
@@ -369,13 +323,10 @@ class SceneBody(RotorItems, ABC):
 
         def torque(mbs, t, given, factors, configuration):
             q, q_t, q_tt = self.coordinates(configuration)
-            zeta, zeta_tt = q[self.motion.modes], q_tt[self.motion.modes]
-            needed = self.motion.drive_torque(t, q, q_t, zeta_tt)
-            needed -= _external_moment(self, t, configuration)
-            needed -= _deflected_weight(self, t, zeta)
-            return [needed - _friction(self, configuration)]
+            needed = self.motion.drive_torque(t, q, q_t, q_tt[self.motion.modes])
+            return [needed - _external_moment(self, t, q, q_t, configuration)]
 
-        return add_function_sensor(self, torque, options)
+        return add_sensor(self, SensorUserFunction, options, sensorUserFunction=torque)
 
     def add_energy_sensor(self, **options):
         """Add a sensor of kinetic energy, elastic energy and the potential of the weight [J].
@@ -394,7 +345,7 @@ class SceneBody(RotorItems, ABC):
             energy = self.motion.energy(t, q, q_t, gravity)
             return list(energy)
 
-        return add_function_sensor(self, energy, options)
+        return add_sensor(self, SensorUserFunction, options, sensorUserFunction=energy)
 
     def start_recording(self) -> None:
         """Record all coordinates of the coming run, for :func:`exudyn_rotor.check_run`.
@@ -421,24 +372,23 @@ class SceneBody(RotorItems, ABC):
     def recorded(self) -> Record:
         """Return what :meth:`start_recording` recorded; without it the current state alone."""
         self.check_assembled()
-        mbs, sensors = self.mbs, self.record_sensors
-        stored = {key: np.atleast_2d(mbs.GetSensorStoredData(one)) for key, one in sensors.items()}
-        complete = bool(stored) and len(next(iter(stored.values()))) > 1
+        mbs, nodes = self.mbs, self.nodes.values()
 
-        def values(node: exudyn.NodeIndex, kind: exudyn.OutputVariableType) -> np.ndarray:
-            if complete:
-                return stored[int(node), kind][:, 1:]
-            return np.atleast_2d(mbs.GetNodeOutput(node, kind))
+        def rows(node: exudyn.NodeIndex, kind: exudyn.OutputVariableType) -> np.ndarray:
+            """Return the time and what a node has, (s, 1 + n)."""
+            if self.record_sensors:
+                stored = mbs.GetSensorStoredData(self.record_sensors[int(node), kind])
+                if np.ndim(stored) == 2 and len(stored) > 1:
+                    return stored
+            return np.append(mbs.systemData.GetTime(), mbs.GetNodeOutput(node, kind))[None]
 
-        time = np.array([mbs.systemData.GetTime()])
-        if complete:
-            time = next(iter(stored.values()))[:, 0]
-        parts = [np.hstack([values(node, kind) for node in self.nodes.values()]) for kind in RATES]
+        time = rows(self.nodes["rigid"], RATES[0])[:, 0]
+        parts = [np.hstack([rows(node, kind)[:, 1:] for node in nodes]) for kind in RATES]
         if self.formulation.has_spin:
             speed = parts[1][:, self.locks.spin]
         else:
             speed = np.array([float(self.formulation.spin.rate(t)) for t in time])
-        return Record(time, *parts, speed, complete)
+        return Record(time, *parts, speed)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -458,8 +408,7 @@ class RotorBody(SceneBody):
     selection : Selection
         The component modes in use; ``selection.labels`` names the modal coordinates.
     motion : Motion
-        Equations of motion, inertial and mesh axes. In a plane of rotation that is skew to the
-        inertial axes they have three translations, and a constraint holds the plane.
+        Equations of motion, inertial and mesh axes.
     frame, locks, layout
         Where mesh, flexible body and scene stand to each other; what happens to the six rigid
         coordinates of the flexible body; where the unknowns stand among the nodes' coordinates.
@@ -513,7 +462,7 @@ class RotorBody(SceneBody):
                 f"so no mesh nodes; name an interface, got {checks.shown(where)}"
             )
         interface = interface_of_nodes(nodes_of(self.mbs, body)[:count], where, kind)
-        return carrier_of(self.mbs, body, interface, tuple(self.nodes.values()))
+        return carrier_of(self.mbs, body, interface)
 
     def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``.
@@ -529,10 +478,10 @@ class RotorBody(SceneBody):
                 f"node: rotor {self.name!r} has mesh nodes 0 … {count - 1}, not {node}"
                 + ("" if count else "; it has no shapes (without_shapes)")
             )
-        settings = native_settings(self, output, options)
+        at = {"bodyNumber": marker_body, "meshNodeNumber": int(node)}
+        made = add_sensor(self, SensorSuperElement, options, outputVariableType=output, **at)
         _warn_of_static_stress(self, output)
-        item = SensorSuperElement(bodyNumber=marker_body, meshNodeNumber=int(node), **settings)
-        return self.mbs.AddSensor(item)
+        return made
 
     def start_from(self, state: StartState) -> None:
         """Make a state of the whole scene the initial state of the coming runs.
@@ -562,8 +511,8 @@ class RotorBody(SceneBody):
                 "another system, or items were added since"
             )
         if not self.formulation.has_spin:
-            angle, speed = spin_at_start(self)
-            if abs(state.angle - angle) > SAME or abs(state.speed - speed) > SAME * abs(speed):
+            angle, speed = self.placement.angle, self.placement.speed
+            if abs(state.angle - angle) > _SAME or abs(state.speed - speed) > _SAME * abs(speed):
                 raise ValueError(
                     f"state: is one at {state.angle:g} rad and {state.speed:g} rad/s, the "
                     f"prescribed spin starts at {angle:g} rad and {speed:g} rad/s"

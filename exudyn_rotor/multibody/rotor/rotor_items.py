@@ -1,11 +1,8 @@
 """What stands for a rotor in an ``mbs``: plan, items, markers, and how it is known again.
 
-A scene knows its rotors by an entry of ``mbs.sys``, which must not hold the ``mbs`` as bodies do:
-it holds bodies without one, which share everything else with those of the script.
-
-A marker on many mesh nodes costs Exudyn an evaluation of each. So every marker of the package is on
-virtual nodes, which are added to a flexible body: one node for a position, three around it for a
-rotation. They move as the mean rigid motion of an interface, of mesh nodes or of the whole rotor.
+Every marker of the package is on virtual nodes, which are added to a flexible body, since a marker
+on many mesh nodes costs Exudyn an evaluation of each: one node for a position, three around it for
+a rotation. They move as the mean rigid motion of an interface, of mesh nodes or of the whole rotor.
 Offsets shift the nodes: in Exudyn, a force at a marker's own offset exerts no moment on modes.
 """
 
@@ -14,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
-from typing import Any, TypeVar
+from typing import Any
 
 import exudyn
 import numpy as np
@@ -104,18 +101,25 @@ class Carrier:
     point: np.ndarray  # (3,) Axes of the body [m]
     motion: np.ndarray  # (6, m) Displacement and rotation by coordinates, axes of the body
     radius: float  # of the nodes that a rotation is read from [m]
-    nodes: tuple[exudyn.NodeIndex, ...] = ()  # of the frame, and of the body's coordinates
 
     def shifted(self, arm: np.ndarray) -> Carrier:
         """Return the point at an arm (3,), axes of the body, that turns with the rotation."""
-        motion = np.vstack([_at_arm(self.motion, arm), self.motion[3:]])
+        motion = self.motion.copy()
+        motion[:3] += np.cross(motion[3:], arm, axisa=0, axisc=0)
         return replace(self, point=self.point + arm, motion=motion)
 
     def virtual_nodes(self, kind: str) -> tuple[np.ndarray, np.ndarray]:
-        """Return the nodes (k, 3) of a marker, and their columns (3k, m)."""
+        """Return the nodes (k, 3) of a marker, and their columns (3k, m).
+
+        Three nodes of a rigid one are around the place and move rigidly with it.
+        """
         if kind == "position":
             return self.point[None, :], self.motion[:3]
-        return virtual_nodes(self.point, self.radius, self.motion)
+        angles = 2.0 * np.pi / 3.0 * np.arange(3)
+        # any plane serves, and any radius of a single node, which has no rotation
+        arms = (self.radius or 1.0) * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(3)])
+        nodes = [self.shifted(arm) for arm in arms]
+        return np.array([one.point for one in nodes]), np.vstack([one.motion[:3] for one in nodes])
 
     def add_marker(
         self,
@@ -140,21 +144,6 @@ class Carrier:
         frame = np.eye(4)
         frame[:3, :3] = axes
         return mbs.AddMarker(MarkerSuperElementRigid(localHT=frame, **common))
-
-
-def virtual_nodes(
-    place: np.ndarray, radius: float, motion: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return three nodes (3, 3) around a place that move rigidly with it, and columns (9, m)."""
-    angles = 2.0 * np.pi / 3.0 * np.arange(3)
-    # any plane serves, and any radius of a single node, which has no rotation
-    arms = (radius or 1.0) * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(3)])
-    return place + arms, np.vstack([_at_arm(motion, arm) for arm in arms])
-
-
-def _at_arm(motion: np.ndarray, arm: np.ndarray) -> np.ndarray:
-    """Return the displacements (3, m) at an arm (3,) from a point with the motion (6, m)."""
-    return motion[:3] + np.cross(motion[3:], arm, axisa=0, axisc=0)
 
 
 def append_nodes(
@@ -203,12 +192,11 @@ def carrier_of(
     mbs: exudyn.MainSystem,
     body: exudyn.ObjectIndex,
     interface: Interface,
-    nodes: tuple[exudyn.NodeIndex, ...] = (),
 ) -> Carrier:
     """Return what moves with the mean motion of nodes of a flexible body."""
     columns = np.asarray(mbs.GetObjectParameter(body, "modeBasis"))
     motion = interface.mean_motion(len(columns) // 3) @ columns
-    return Carrier(body, interface.reference, motion, interface.radius, nodes)
+    return Carrier(body, interface.reference, motion, interface.radius)
 
 
 def marker_interface(mbs: exudyn.MainSystem, marker: dict) -> Interface:
@@ -259,7 +247,6 @@ class RotorItems(Plan):
     supports: list = field(default_factory=list, init=False)
     drives: list = field(default_factory=list, init=False)
     record_sensors: dict = field(default_factory=dict, init=False)
-    token: object = field(default_factory=object, init=False)  # of this rotor alone
     script: ScriptMarkers = field(default_factory=ScriptMarkers, init=False)
 
     def __post_init__(self) -> None:
@@ -326,7 +313,6 @@ class RotorItems(Plan):
             self.frame.points(found.reference),
             self.frame.columns(found.motion @ self.selection.T),
             found.radius,
-            tuple(self.nodes.values()),
         )
 
     def marker(self, interface: str) -> exudyn.MarkerIndex:
@@ -346,10 +332,7 @@ class RotorItems(Plan):
         return self.markers[interface]
 
 
-Body = TypeVar("Body", bound=RotorItems)
-
-
-def finished(kind: type[Body], mbs: exudyn.MainSystem, plan: Plan, **items: Any) -> Body:
+def finished(kind: type, mbs: exudyn.MainSystem, plan: Plan, **items: Any) -> Any:
     """Return a body of a `kind` with its `items`, its frame held, its weight and markers added."""
     rigid, marker_body = items["nodes"]["rigid"], items["objects"]["marker_body"]
     held = {} if plan.locking == "mass" else add_constraints(mbs, plan.locks, rigid)
@@ -364,7 +347,10 @@ def finished(kind: type[Body], mbs: exudyn.MainSystem, plan: Plan, **items: Any)
 
 
 def known_rotors(mbs: exudyn.MainSystem) -> Iterator[RotorItems]:
-    """Yield the rotors that still stand in a scene: it can be reset."""
+    """Yield the rotors that still stand in a scene: it can be reset.
+
+    The entry of ``mbs.sys`` must not hold the ``mbs`` as bodies do: it holds copies without one.
+    """
     for rotor in entry(mbs).get(_ROTORS, {}).values():
         if _stands(mbs, rotor):
             body = copy(rotor)

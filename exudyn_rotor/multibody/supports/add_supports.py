@@ -20,8 +20,6 @@ from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.series import FloatingRingBearing, SeriesSupport
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
-from exudyn_rotor.multibody.rotor.plan import generic_node
-from exudyn_rotor.multibody.rotor.rotor_items import carrying_rotor
 from exudyn_rotor.multibody.supports.connector import (
     CURRENT,
     PYTHON,
@@ -34,7 +32,7 @@ from exudyn_rotor.multibody.supports.connector import (
     has_torque,
     watch_clearance,
 )
-from exudyn_rotor.multibody.supports.ends import Base, FoundationEnd, RotorEnd, Seat
+from exudyn_rotor.multibody.supports.ends import Base, RotorEnd, Seat
 from exudyn_rotor.multibody.supports.native import native_parts
 
 _PARALLEL = 1e-9  # of the cosine between axes of two rotors
@@ -61,10 +59,9 @@ class SceneSupport(SceneLaw):
 
     def own_coordinates(self, mbs: exudyn.MainSystem) -> np.ndarray:
         """Return where coordinates of its own are in an assembled system, shape (p,); else none."""
-        if not self.connector.own:
-            return np.zeros(0, dtype=int)
-        places = mbs.systemData.GetObjectLTGODE2(self.objects[-1])
-        return np.asarray(places, dtype=int)[-self.connector.own :]
+        made = self.connector
+        places = mbs.systemData.GetNodeLTGODE2(made.nodes[-1]) if made.own else ()
+        return np.asarray(places, dtype=int)
 
     def values(
         self, configuration: exudyn.ConfigurationType = CURRENT
@@ -76,11 +73,8 @@ class SceneSupport(SceneLaw):
         self.body.check_assembled()
         made, mbs = self.connector, self.body.mbs
         made.read(*made.state(mbs, configuration))
-        place, rate = np.subtract(
-            [made.end.place, made.end.rate], [made.base.place, made.base.rate]
-        )
-        fx, fy, *rest = made.wrench(mbs.systemData.GetTime(configuration))
-        return place, rate, np.array([fx, fy, rest[0] if rest else 0.0])
+        place, rate = (each[:3] for each in made.motion)
+        return place, rate, np.array(made.wrench(mbs.systemData.GetTime(configuration))[:3])
 
     def __str__(self) -> str:
         """Return interface and who evaluates it."""
@@ -159,123 +153,103 @@ def add_supports(
     check_body(body, "body")
     supports = given_supports(supports)
     check_interfaces(supports, body.selection.source.interfaces)
-    places = []
+    seats = []
     for support in supports:
-        _check_support(body, support)
-        seat = Seat.of(body, support.interface, base)
-        _check_on_rotor(body, support, seat)
+        where = f"support at {support.interface!r}"
+        if fault := _fault(body, support):
+            raise ValueError(f"{where}: {fault}")
         # the bearing's base carries the sensors of a magnetic bearing
         sensor = getattr(support, "sensor_interface", support.interface)
-        places.append((seat, Seat.of(body, sensor, seat.base)))
-    pairs = zip(supports, places, strict=True)
-    added = tuple(_added(body, support, *seats) for support, seats in pairs)
+        seats.append([Seat.of(body, name, base) for name in (support.interface, sensor)])
+        seat = seats[-1][0]
+        if seat.rotor is not None and (fault := _fault_on_rotor(body, support, seat)):
+            raise ValueError(f"base: the {where} stands on another rotor, which {fault}")
+    pairs = zip(supports, seats, strict=True)
+    added = tuple(_added(body, support, *places) for support, places in pairs)
     body.supports.extend(added)
     return added
 
 
-def _check_support(body: Body, support: Given) -> None:
-    """Refuse what has no force by the coordinates of a scene."""
-    name, free = support.interface, body.formulation.has_spin
+def _fault(body: Body, support: Given) -> str:
+    """Return why a support has no force by the coordinates of a scene; nothing where it has."""
+    free = body.formulation.has_spin
     if isinstance(support, SeriesSupport | FloatingRingBearing):
-        raise ValueError(
-            f"supports: what is in series at {name!r} has a ring, which is a body of a scene: add "
-            "the ring as a rotor with the outer bearing, and give the inner one "
-            "base=ring.marker(…)"
+        return (
+            "has a ring, which is a body of a scene: add the ring as a rotor with the outer "
+            "bearing, and give the inner one base=ring.marker(…)"
         )
     if isinstance(support, TiltingPadBearing) and support.pad_inertia is None:
         support.law(*6 * (0.0,))  # which says what there is instead
-    turns = body.selection.source.interfaces[name].radius > 0.0
+    turns = body.selection.source.interfaces[support.interface].radius > 0.0
     if isinstance(support, Bearing) and has_torque(support) and free and not turns:
-        raise ValueError(
-            f"support at {name!r}: its torque would not brake the free spin, since the interface "
-            "is a single node, which has no rotation; make the interface of three nodes or more, "
-            "or prescribe the spin"
+        return (
+            "its torque would not brake the free spin, since the interface is a single node, which "
+            "has no rotation; make the interface of three nodes or more, or prescribe the spin"
         )
     if not isinstance(support, Support):
-        return
+        return ""
     if support.over_frequency:
-        raise ValueError(
-            f"support at {name!r}: a scene has no single frequency, which its coefficients need; "
-            "give support.at_frequency(…), e.g. of the motion of interest, or what has states of "
-            "its own: a MagneticBearing, pads with pad_inertia, a SeriesSupport"
+        return (
+            "a scene has no single frequency, which its coefficients need; give "
+            "support.at_frequency(…), e.g. of the motion of interest, or what has states of its "
+            "own: a MagneticBearing, pads with pad_inertia, a SeriesSupport"
         )
     M = support.mass_matrix(0.0)
     if np.any(M - M[0, 0] * np.diag([1.0, 1.0, 0.0, 0.0, 0.0, 0.0])):
-        raise ValueError(
-            f"support at {name!r}: mass: a scene takes one number, alike across the axis [kg], "
-            "got a matrix"
+        return "mass: a scene takes one number, alike across the axis [kg], got a matrix"
+    acting = zip(("stiffness", "damping"), support.matrices(body.placement.speed), strict=True)
+    about = [kind for kind, X in acting if np.any(X[5]) or np.any(X[:, 5])]
+    # what stands still may brake the spin
+    if free and ("stiffness" in about or (about and support.frame == "rotor")):
+        return (
+            f"{about[0]} about the spin axis needs a prescribed spin, and that of rotor "
+            f"{body.name!r} is free; use a matrix with zeros there, or a torsional spring on the "
+            "frame's node"
         )
-    stiffness, damping = support.matrices(body.placement.speed)
-    acting = {"stiffness": stiffness} | ({"damping": damping} if support.frame == "rotor" else {})
-    for kind in [kind for kind, X in acting.items() if free and _about_the_axis(X)]:
-        raise ValueError(
-            f"support at {name!r}: {kind} about the spin axis needs a prescribed spin, and that of "
-            f"rotor {body.name!r} is free; use a matrix with zeros there, or a torsional spring on "
-            "the frame's node"
-        )
+    return ""
 
 
-def _about_the_axis(matrix: np.ndarray) -> bool:
-    return bool(np.any(matrix[5]) or np.any(matrix[:, 5]))
-
-
-def _check_on_rotor(body: Body, support: Given, seat: Seat) -> None:
-    """Refuse what another rotor cannot carry."""
-    rotor = carrying_rotor(body.mbs, seat.base)
-    if rotor is None:
-        return
+def _fault_on_rotor(body: Body, support: Given, seat: Seat) -> str:
+    """Return why another rotor cannot carry a support, or nothing."""
     linear = isinstance(support, Support)
-    bearing, reason = bearing_of(support), None
-    skew = abs(rotor.standing_axes[:, 2] @ seat.axes[:, 2]) < 1.0 - _PARALLEL
-    if skew and not (linear and not support.tilts):
-        reason = f"has an axis that is not parallel to that of rotor {body.name!r}; turn it"
-    elif isinstance(support, TiltingPadBearing | MagneticBearing):
-        reason = "would turn with its pads or magnets; give another bearing there"
-    elif bearing is not None and not isinstance(bearing, RollingBearing):
-        reason = (
+    tilts, bearing = linear and support.tilts, bearing_of(support)
+    skew = abs(seat.rotor.standing_axes[:, 2] @ seat.axes[:, 2]) < 1.0 - _PARALLEL
+    if skew and (tilts or not linear):
+        return f"has an axis that is not parallel to that of rotor {body.name!r}; turn it"
+    if isinstance(support, TiltingPadBearing | MagneticBearing):
+        return "would turn with its pads or magnets; give another bearing there"
+    if bearing is not None and not isinstance(bearing, RollingBearing):
+        return (
             f"turns, unlike the bore whose coefficients are those of a {type(bearing).__name__}; "
             "give the bearing itself"
         )
-    elif linear and support.tilts and any(map(_about_the_axis, support.matrices(0.0))):
-        reason = (
+    if tilts and any(np.any(X[5]) or np.any(X[:, 5]) for X in support.matrices(0.0)):
+        return (
             "would be held about the axis; between rotors of one speed connect_rotors with a "
             "FlexibleCoupling has torsion"
         )
-    if reason is not None:
-        raise ValueError(
-            f"base: the support at {support.interface!r} stands on another rotor, which {reason}"
-        )
+    return ""
 
 
 def _added(body: Body, support: Given, seat: Seat, sensed: Seat) -> SceneSupport:
-    mbs = body.mbs
-    end, base = RotorEnd(body, support.interface), seat.end(mbs)
+    mbs, end, base = body.mbs, RotorEnd(body, support.interface), seat.end
     if isinstance(support, Support):
         parts, left = native_parts(body, support, seat)
-        rotor = carrying_rotor(mbs, seat.base) is not None
-        made = SupportConnector(support, end, base, rotor)
+        made = SupportConnector(support, end, base, seat.rotor is not None)
         if left is not None:
-            rest = made if left is support else SupportConnector(left, end, base, rotor)
+            rest = made
+            if left is not support:
+                rest = SupportConnector(left, end, base, seat.rotor is not None)
             parts.append((mbs.AddObject(rest.item(made)), PYTHON))
         objects, evaluation = zip(*parts, strict=True) if parts else ((), ())
         return SceneSupport(body, objects, evaluation, made, support, seat.base)
     if isinstance(support, MagneticBearing):
         sensors = end, base
         if support.sensor_interface != support.interface:
-            sensors = RotorEnd(body, support.sensor_interface), sensed.end(mbs)
-        own = _own_node(mbs, 2 * len(support.controller.realisation().inertia))
-        made = MagneticConnector(support, (end, base), sensors, own)
+            sensors = RotorEnd(body, support.sensor_interface), sensed.end
+        made = MagneticConnector(support, (end, base), sensors, mbs)
     else:
-        pads = isinstance(support, TiltingPadBearing)
-        own = _own_node(mbs, len(support.tangents)) if pads else None
-        spins = body.formulation.has_spin
-        # a foundation hardly turns, which a prescribed spin leaves out as linear analyses do
-        feels = spins or not isinstance(base, FoundationEnd)
-        made = BearingConnector(support, end, base, spins, feels and base.size > 0, own)
+        made = BearingConnector(support, end, base, mbs, body.formulation.has_spin)
     watch_clearance(body, made)
     number = mbs.AddObject(made.item())
     return SceneSupport(body, (number,), (PYTHON,), made, support, seat.base)
-
-
-def _own_node(mbs: exudyn.MainSystem, count: int) -> exudyn.NodeIndex:
-    return mbs.AddNode(generic_node(*np.zeros((2, count))))

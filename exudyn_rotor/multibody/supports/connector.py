@@ -15,12 +15,13 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import cos, hypot, inf, sin
-from typing import Any, NamedTuple
+from math import cos, hypot, sin
+from typing import Any
 
 import exudyn
 import numpy as np
-from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
+from exudyn.itemInterface import ObjectGenericODE2, SensorUserFunction, VObjectGenericODE2
+from scipy.linalg import block_diag
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.annular_seal import AnnularSeal
@@ -30,33 +31,20 @@ from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support, acts
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, add_function_sensor
+from exudyn_rotor.multibody.rotor.plan import generic_node
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, add_sensor
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, entry
-from exudyn_rotor.multibody.supports.ends import BaseEnd, RotorEnd
+from exudyn_rotor.multibody.supports.ends import QUARTER, BaseEnd, FoundationEnd, RotorEnd
 from exudyn_rotor.theory.rotating_axes import axial_rotation, axial_skew
 
 _KINDS = exudyn.OutputVariableType
 CURRENT, START = exudyn.ConfigurationType.Current, exudyn.ConfigurationType.StartOfStep
 NATIVE, SYMBOLIC, PYTHON = "Exudyn", "symbolic function", "Python function"
+_MATRICES = "massMatrix", "dampingMatrix", "stiffnessMatrix"
 Body = RotorBody | FullRotorBody
-
-
-class Force(NamedTuple):
-    """Forces [N], [N m] of a law on its ports, and less their derivatives by motion and rate.
-
-    The ports have the rows `J`, and `L` the derivative of their rate by the coordinates.
-    """
-
-    values: np.ndarray
-    J: np.ndarray
-    L: np.ndarray
-    K: np.ndarray
-    D: np.ndarray
-
-    def slopes(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return less the derivatives of the forces on coordinates, by these and their rates."""
-        damping = self.J.T @ self.D
-        return self.J.T @ (self.K @ self.J) + damping @ self.L, damping @ self.J
+# rows J and L of ports, L the derivative of their rate by the coordinates, and less the derivatives
+# K and D of the forces on them by motion and rate
+Tangent = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
 class Between:
@@ -72,6 +60,7 @@ class Between:
         first, second = self._first, self._second
         self.end.read(q[:first], q_t[:first])
         self.base.read(q[first:second], q_t[first:second])
+        self._read = q, q_t
 
     @property
     def relative(self) -> tuple[float, float, float, float, float, float]:
@@ -81,6 +70,15 @@ class Between:
         (a, b, _), (a_t, b_t, _) = base.place, base.rate
         return x - a, y - b, vx - a_t, vy - b_t, end.angle, end.speed
 
+    @property
+    def motion(self) -> tuple[np.ndarray, np.ndarray]:
+        """Motion (6,) and rate (6,) against the base, the spin in the last rate alone."""
+        end, base = self.end, self.base
+        x = np.array([*end.place, *end.tilt]) - [*base.place, *base.tilt]
+        x_t = np.array([*end.rate, *end.tilt_rate]) - [*base.rate, *base.tilt_rate]
+        x_t[5] += end.speed
+        return x, x_t
+
     def rows(self) -> np.ndarray:
         """Return the rows J (6, size) of the rotor's motion against the base."""
         J = np.zeros((6, self.size))
@@ -88,54 +86,37 @@ class Between:
         J[:, self._first : self._second] = -self.base.rows()
         return J
 
-
-class Connector(Between, ABC):
-    """A law between the end of a rotor and that of its base.
-
-    Its coordinates are those of the `nodes` of both, and `own` more of the law. `muted` its object
-    has no force, as where linear equations take the law itself.
-    """
-
-    has_mass = False  # whether a mass goes with the rotor across the axis
-    outside = False  # whether it was evaluated beyond a clearance
-    guard: Callable[[exudyn.MainSystem], None] | None = None  # looks at the accepted state then
-
-    def __init__(
-        self,
-        end: RotorEnd,
-        base: BaseEnd,
-        own: exudyn.NodeIndex | None = None,
-        count: int = 0,
-    ) -> None:
-        super().__init__(end, base)
-        self.nodes = (*end.nodes, *base.nodes, *(() if own is None else (own,)))
-        self.own, self.muted = count, False
-        self.size += count
-
-    # ------------------------------------------------------------------ motion
-
     def rate_rows(self) -> np.ndarray:
         """Return the derivative (6, size) of the rotor's rate by the coordinates."""
         L = np.zeros((6, self.size))
         L[:, : self._first] = self.end.rate_rows()
         return L
 
-    def pull(
+
+class Connector(Between, ABC):
+    """A law between the end of a rotor and that of its base.
+
+    Its coordinates are those of the `nodes` of both, and `own` more of the law, on a node in `mbs`.
+    """
+
+    has_mass = False  # whether a mass goes with the rotor across the axis
+    constant: Sequence[np.ndarray] = ()  # mass, damping and stiffness of own coordinates
+    outside = False  # whether it was evaluated beyond a clearance
+    guard: Callable[[exudyn.MainSystem], None] | None = None  # looks at the accepted state then
+    # spin angle of cages where linear equations take the law itself: its object has no force then
+    probed: float | None = None
+
+    def __init__(
         self,
-        fx: float,
-        fy: float,
-        fz: float = 0.0,
-        moment: Sequence[float] = (0.0, 0.0, 0.0),
-        own: np.ndarray | None = None,
-    ) -> list[float]:
-        """Return the forces on all coordinates by a force and a moment on the rotor."""
-        if fx == fy == fz == 0.0 and own is None and not any(moment):  # as of an open stop
-            return [0.0] * self.size
-        found = self.end.pull(fx, fy, fz, moment).tolist()
-        if self.base.size:
-            load = [-fx, -fy, -fz, *(-m for m in moment)]
-            found += (load @ self.base.rows()).tolist()
-        return found if own is None else found + own.tolist()
+        end: RotorEnd,
+        base: BaseEnd,
+        mbs: exudyn.MainSystem | None = None,
+        own: int = 0,
+    ) -> None:
+        super().__init__(end, base)
+        nodes = [mbs.AddNode(generic_node(*np.zeros((2, own))))] if own else []
+        self.nodes, self.own = (*end.nodes, *base.nodes, *nodes), own
+        self.size += own
 
     def state(
         self, mbs: exudyn.MainSystem, configuration: exudyn.ConfigurationType = CURRENT
@@ -155,69 +136,89 @@ class Connector(Between, ABC):
         """Return force and moment on the rotor, and forces on own coordinates, as :meth:`pull`."""
 
     @abstractmethod
-    def tangent(self, t: float) -> Force:
-        """Return the law's forces on its ports where the ends have been read, and its tangent."""
+    def tangent(self, t: float) -> Tangent:
+        """Return the law's tangent where the ends have been read."""
 
     def added_mass(self) -> float:
         """Return the mass that goes with the rotor at its speed [kg]."""
         return 0.0
 
-    def inertia(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Return the mass matrix of what goes with the rotor, the forces beside it, and slopes.
-
-        The forces (size,) are those of the turning frame, and the slopes less their derivatives
-        by coordinates and by rates, (size, size).
-        """
-        m, J, H = self.added_mass(), self.rows()[:2], np.zeros((2, 2, self.size))
-        bent, H[0][:, : self._first], H[1][:, : self._first] = self.end.turning()
-        K, D = m * np.einsum("ia,nib->nab", J, H)
-        return m * J.T @ J, -m * bent @ J, K, D
-
     def friction(self) -> float:
         """Return the torque on the rotor that a prescribed spin does not feel [N m]."""
         return 0.0
 
-    def matrices(self) -> dict[str, np.ndarray]:
-        """Return the constant matrices of own coordinates, by the names of Exudyn."""
-        return {}
+    # ------------------------------------------------------------------ by the coordinates
 
-    # ------------------------------------------------------------------ object
+    def pull(
+        self,
+        fx: float,
+        fy: float,
+        fz: float = 0.0,
+        moment: Sequence[float] = (0.0, 0.0, 0.0),
+        own: np.ndarray | None = None,
+    ) -> list[float]:
+        """Return the forces on all coordinates by a force and a moment on the rotor."""
+        if fx == fy == fz == 0.0 and own is None and not any(moment):  # as of an open stop
+            return [0.0] * self.size
+        found = self.end.pull(fx, fy, fz, moment).tolist()
+        if self.base.size:
+            load = [-fx, -fy, -fz, *(-m for m in moment)]
+            found += (load @ self.base.rows()).tolist()
+        return found if own is None else found + own.tolist()
+
+    def forces(self, t: float) -> list[float]:
+        """Return the forces on all coordinates where the ends have been read."""
+        found = self.pull(*self.wrench(t))
+        if self.has_mass:  # and of the mass, what its acceleration has by the rates alone
+            turning = self.rate_rows()[:2] @ self._read[1]
+            found = (found - self.added_mass() * turning @ self.rows()[:2]).tolist()
+        return found
+
+    def slopes(self, t: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return less the derivatives of the forces, by the coordinates and by their rates."""
+        J, L, K, D = self.tangent(t)
+        damping = J.T @ D
+        K, D = J.T @ (K @ J) + damping @ L, damping @ J
+        if self.has_mass:
+            L, momentum = self.rate_rows()[:2], self.added_mass() * self.rows()[:2].T
+            K, D = K + momentum @ (self.end.speed * QUARTER[:2, :2] @ L), D + 2.0 * momentum @ L
+        return K, D
+
+    def mass_matrix(self) -> np.ndarray:
+        """Return the mass matrix (size, size) of what goes with the rotor."""
+        J = self.rows()[:2]
+        return self.added_mass() * J.T @ J
 
     def item(self, whole: Connector | None = None) -> ObjectGenericODE2:
-        """Return the object; mute where `whole` is."""
-        whole, matrices = whole or self, self.matrices()
-        none, massive = [0.0] * self.size, self.has_mass
-        resists_nothing = np.zeros((self.size, self.size))
+        """Return the object; without force while `whole` is probed."""
+        whole, outer = whole or self, np.zeros((self._second, self._second))
+        given = {"massMatrix": np.zeros((self.size, self.size))}
+        for name, own in zip(_MATRICES, self.constant, strict=False):
+            given[name] = block_diag(outer, own)
+        none, resists_nothing = [0.0] * self.size, np.zeros((self.size, self.size))
 
         def force(mbs, t, item, q, q_t):
-            if whole.muted:
+            if whole.probed is not None:
                 return none
             self.read(q, q_t)
-            found = self.pull(*self.wrench(t))
-            found = (found + self.inertia()[1]).tolist() if massive else found
-            if self.outside:
-                self.outside = False
-                if self.guard is not None:
-                    self.guard(mbs)
+            found = self.forces(t)
+            if self.outside and self.guard is not None:
+                self.guard(mbs)
             return found
 
         def jacobian(mbs, t, item, q, q_t, factor_q, factor_v):
-            if whole.muted:
+            if whole.probed is not None:
                 return resists_nothing
             self.read(q, q_t)
-            found = self.tangent(t)
-            K, D = found.slopes()
-            if massive:
-                K, D = (X + Y for X, Y in zip((K, D), self.inertia()[2:], strict=True))
+            K, D = self.slopes(t)
             return factor_q * K + factor_v * D
 
         def mass(mbs, t, item, q, q_t):
             self.read(q, q_t)
-            return self.inertia()[0]
+            return self.mass_matrix()
 
-        if massive:
-            matrices["massMatrixUserFunction"] = mass
-        given = {"massMatrix": np.zeros((self.size, self.size))} | matrices
+        if self.has_mass:
+            given["massMatrixUserFunction"] = mass
         return ObjectGenericODE2(
             nodeNumbers=list(self.nodes),
             forceUserFunction=force,
@@ -242,34 +243,27 @@ class SupportConnector(Connector):
         self._known = None, None  # the last speed, and matrices
 
     @property
-    def _motion(self) -> tuple[np.ndarray, np.ndarray]:
-        """Motion (6,) and rate (6,) against the base, the spin in the last rate alone."""
-        end, base = self.end, self.base
-        x = np.array([*end.place, *end.tilt]) - [*base.place, *base.tilt]
-        x_t = np.array([*end.rate, *end.tilt_rate]) - [*base.rate, *base.tilt_rate]
-        x_t[5] += end.speed
-        return x, x_t
+    def _speed(self) -> float:
+        return self.end.speed - (self.base.speed if self._between else 0.0)
 
     def _matrices(self) -> tuple[np.ndarray, np.ndarray]:
-        end, base = self.end, self.base
-        speed = end.speed - base.speed if self._between else end.speed
+        speed = self._speed
         if speed != self._known[0]:
             self.support.check_range(speed)
             self._known = speed, self.support.matrices(speed)
         K, D = self._known[1]
         if self._turns:
-            R = np.kron(np.eye(2), axial_rotation(end.angle))
+            R = np.kron(np.eye(2), axial_rotation(self.end.angle))
             K, D = R @ K @ R.T, R @ D @ R.T
         return K, D
 
     def added_mass(self) -> float:
         """Return the mass that goes with the rotor at its speed [kg]."""
-        between = self.base.speed if self._between else 0.0
-        return float(self.support.mass_matrix(self.end.speed - between)[0, 0])
+        return float(self.support.mass_matrix(self._speed)[0, 0])
 
     def wrench(self, t: float) -> tuple:
         """Return force and moment on the rotor."""
-        (K, D), (x, x_t), speed = self._matrices(), self._motion, self.end.speed
+        (K, D), (x, x_t), speed = self._matrices(), self.motion, self.end.speed
         if self._turns:
             x_t = x_t - speed * (axial_skew(6) @ x)
             x_t[5] -= speed
@@ -279,13 +273,12 @@ class SupportConnector(Connector):
             moment[2] += b * moment[0] - a * moment[1]
         return fx, fy, fz, moment
 
-    def tangent(self, t: float) -> Force:
-        """Return the force, its tangent, and rows (6, size)."""
+    def tangent(self, t: float) -> Tangent:
+        """Return the tangent of force and moment, with rows (6, size)."""
         K, D = self._matrices()
         if self._turns:
             K = K - self.end.speed * D @ axial_skew(6)
-        *force, moment = self.wrench(t)
-        return Force(np.array([*force, *moment]), self.rows(), self.rate_rows(), K, D)
+        return self.rows(), self.rate_rows(), K, D
 
 
 class MagneticConnector(Connector):
@@ -300,26 +293,17 @@ class MagneticConnector(Connector):
         bearing: MagneticBearing,
         ends: tuple[RotorEnd, BaseEnd],
         sensors: tuple[RotorEnd, BaseEnd],
-        own: exudyn.NodeIndex,
+        mbs: exudyn.MainSystem,
     ) -> None:
-        self._realised = realised = bearing.controller.realisation()
-        super().__init__(*ends, own, 2 * len(realised.inertia))
+        self._law = law = bearing.realisation
+        super().__init__(*ends, mbs, len(law.inertia))
         self.bearing, self.parts = bearing, [bearing]
-        self.seen, self.sensor_base = Between(*sensors), sensors[1]
+        self.seen = Between(*sensors)
         self._turn = bearing.control_axes
-        parts = realised.by_place, realised.by_rate
+        parts = law.by_place, law.by_rate
         self._by_place, self._by_rate = (np.kron(part, self._turn) for part in parts)
-        self._shares = bearing.scale * realised.place
+        self.constant = np.diag(law.inertia), law.damping, law.stiffness
         self._least = bearing.clearance_along() ** 2
-
-    def matrices(self) -> dict[str, np.ndarray]:
-        """Return the controller's equations."""
-        one, found = self._realised, {}
-        parts = {"mass": np.diag(one.inertia), "damping": one.damping, "stiffness": one.stiffness}
-        for name, part in parts.items():
-            found[f"{name}Matrix"] = whole = np.zeros((self.size, self.size))
-            whole[self._second :, self._second :] = self.bearing.scale * np.kron(part, np.eye(2))
-        return found
 
     def read(self, q: list[float], q_t: list[float]) -> None:
         """Take the motion of magnets, sensors and controller."""
@@ -327,39 +311,33 @@ class MagneticConnector(Connector):
         second = self._second
         if self.seen.end is not self.end:
             self.seen.read(q, q_t)
-        self._currents = -self._by_place.dot(q[second:]) - self._by_rate.dot(q_t[second:])
+        currents = -self._by_place.dot(q[second:]) - self._by_rate.dot(q_t[second:])
+        places = self._turn.dot(self.relative[:2])
+        self._axes = list(zip(currents.tolist(), places.tolist(), strict=True))
 
     def motions(self) -> list[tuple[float, ...]]:
         """Return x, y, ẋ, ẏ, θ and Ω of the journal, as one of a list."""
         return [self.relative]
 
-    @property
-    def axes_states(self) -> list[tuple[float, float]]:
-        """Current [A] and place [m] of each control axis."""
-        return list(zip(self._currents.tolist(), (self._turn @ self.relative[:2]), strict=True))
-
     def wrench(self, t: float) -> tuple:
         """Return the force on the rotor, and what drives the controller's coordinates."""
         x, y = self.relative[:2]
-        if x * x + y * y >= self._least:
-            self.outside = True
+        self.outside = x * x + y * y >= self._least
         law = self.bearing.actuator.law
-        force = self._turn.T @ [law(*state) for state in self.axes_states]
-        own = np.outer(self._shares, self.seen.relative[:2]).ravel()
+        force = self._turn.T @ [law(*state) for state in self._axes]
+        own = self._law.place.dot(self.seen.relative[:2])
         return float(force[0]), float(force[1]), 0.0, (0.0, 0.0, 0.0), own
 
-    def tangent(self, t: float) -> Force:
-        """Return the force, its tangent, and rows: of magnets, sensors and own coordinates."""
-        slopes = [self.bearing.actuator.slopes(*state) for state in self.axes_states]
+    def tangent(self, t: float) -> Tangent:
+        """Return the tangent, with rows of magnets, sensors and own coordinates."""
+        slopes = [self.bearing.actuator.slopes(*state) for state in self._axes]
         D, K = self.bearing.coupling(np.array(slopes))
-        fx, fy, _, _, own = self.wrench(t)
-        J = np.zeros((4 + self.own, self.size))
-        J[:2] = self.rows()[:2]
+        D[4:, 4:] = K[4:, 4:] = 0.0  # what own coordinates have among themselves is constant
+        J, L = np.zeros((2, 4 + self.own, self.size))
+        J[:2], L[:2] = self.rows()[:2], self.rate_rows()[:2]
         J[2:4, : self._second] = self.seen.rows()[:2]
         J[4:, self._second :] = np.eye(self.own)
-        L = np.zeros_like(J)
-        L[:2, : self._first] = self.end.rate_rows()[:2]
-        return Force(np.array([fx, fy, 0.0, 0.0, *own]), J, L, K, D)
+        return J, L, K, D
 
 
 SPEED_STEP = 1e-6  # of the speed, or of 1 rad/s: differences of torques by it
@@ -374,6 +352,7 @@ class BearingConnector(Connector):
     ring whose elements an inner ring takes along. Forces act along the axes at rest, also where the
     base tilts, and pull at the middles of journal and bore: about the axis the base lacks the
     moment ``u × F`` of their distance u. Its `parts` are the bearing, or the films of its pads.
+    Torques brake a spin that is free.
     """
 
     def __init__(
@@ -381,32 +360,22 @@ class BearingConnector(Connector):
         bearing: Bearing,
         end: RotorEnd,
         base: BaseEnd,
-        brakes: bool,
-        feels: bool,
-        own: exudyn.NodeIndex | None = None,
+        mbs: exudyn.MainSystem,
+        is_free: bool,
     ) -> None:
         pads = isinstance(bearing, TiltingPadBearing)
         self.parts = bearing.pad_bearings if pads else [bearing]
-        super().__init__(end, base, own, len(self.parts) if pads else 0)
-        self.bearing, self.feels = bearing, feels
+        super().__init__(end, base, mbs, len(self.parts) if pads else 0)
+        self.bearing = bearing
+        # a foundation hardly turns, which a prescribed spin leaves out as linear analyses do
+        self.feels = base.size > 0 and (is_free or not isinstance(base, FoundationEnd))
         self.has_mass = isinstance(bearing, AnnularSeal)  # that of the leakage
         self.levers = -bearing.film.radius * bearing.tangents if pads else None
-        self.brakes = brakes and has_torque(bearing)
+        if pads:
+            self.constant = (bearing.pad_inertia * np.eye(self.own),)
+        self.brakes = is_free and has_torque(bearing)
         self.laws = [one.law_with_torque if self.brakes else one.law for one in self.parts]
         self._least = self.parts[0].clearance_along() ** 2
-
-    def matrices(self) -> dict[str, np.ndarray]:
-        """Return the inertia of the pads."""
-        if not self.own:
-            return {}
-        inertia = np.r_[np.zeros(self._second), np.full(self.own, self.bearing.pad_inertia)]
-        return {"massMatrix": np.diag(inertia)}
-
-    def read(self, q: list[float], q_t: list[float]) -> None:
-        """Take the motion of the ends, and of the pads."""
-        super().read(q, q_t)
-        if self.own:
-            self._tilts = np.array([q[self._second :], q_t[self._second :]])
 
     def motions(self) -> list[tuple[float, ...]]:
         """Return x, y, ẋ, ẏ, θ and Ω of the journal as each film sees it."""
@@ -414,11 +383,13 @@ class BearingConnector(Connector):
         self._turn = None
         if self.feels:
             motion = self._from_bore(*motion)
+        if self.probed is not None:
+            motion = *motion[:4], self.probed, motion[5]
         if self.levers is None:
             return [motion]
         x, y, vx, vy, angle, speed = motion
-        moved = (self.levers.T * self._tilts[0]).T.tolist()
-        rates = (self.levers.T * self._tilts[1]).T.tolist()
+        own = (np.array(each[self._second :]) for each in self._read)
+        moved, rates = ((self.levers * each[:, None]).tolist() for each in own)
         return [
             (x - a, y - b, vx - c, vy - d, angle, speed)
             for (a, b), (c, d) in zip(moved, rates, strict=True)
@@ -437,56 +408,48 @@ class BearingConnector(Connector):
     def wrench(self, t: float) -> tuple:
         """Return force and torque on the rotor, and moments on pads."""
         motions = self.motions()
-        x, y = motions[0][:2]
-        if x * x + y * y >= self._least:
-            self.outside = True
+        self.outside = any(m[0] * m[0] + m[1] * m[1] >= self._least for m in motions)
         if self.levers is None:
             force = self.laws[0](*motions[0])
             fx, fy = force[:2]
             if self._turn is not None:
                 c, s = self._turn
                 fx, fy = c * fx - s * fy, s * fx + c * fy
-            return (fx, fy, 0.0, (0.0, 0.0, force[2])) if self.brakes else (fx, fy)
-        self.outside |= any(m[0] ** 2 + m[1] ** 2 >= self._least for m in motions)
+            return (fx, fy, 0.0, (0.0, 0.0, force[2])) if self.brakes else (fx, fy, 0.0)
         forces = np.array([law(*m) for law, m in zip(self.laws, motions, strict=True)])
         total, own = forces.sum(axis=0).tolist(), -(forces[:, :2] * self.levers).sum(axis=1)
         return *total[:2], 0.0, (0.0, 0.0, total[2] if self.brakes else 0.0), own
 
-    def tangent(self, t: float, cage: float | None = None) -> Force:
-        """Return the force, its tangent, and rows: across the axis, of the spin, and of pads.
+    def tangent(self, t: float) -> Tangent:
+        """Return the tangent, with rows across the axis, of the spin, and of pads.
 
-        Linear analyses give the spin angle `cage`, at which cages of rolling bearings stand, and
-        leave out how forces change with the spin speed. A step needs that where friction begins
-        to slide.
+        Linear equations leave out how forces change with the spin speed. A step needs that where
+        friction begins to slide.
         """
         count = 3 + self.own
-        force, (K, D) = np.zeros(count), np.zeros((2, count, count))
+        K, D = np.zeros((2, count, count))
         parts = zip(self.parts, self.laws, self.motions(), strict=True)
         for number, (part, law, motion) in enumerate(parts):
-            if cage is not None:
-                motion = *motion[:4], cage, motion[5]
-            values, (k, d) = np.array(law(*motion)), part.slopes(*motion)
-            by_speed = np.zeros(len(values))
-            if self.brakes and cage is None:
-                step = SPEED_STEP * max(abs(motion[5]), 1.0)
-                by_speed = (values - law(*motion[:5], motion[5] + step)) / step
+            k, d = part.slopes(*motion)
             if self.feels:
                 k = k + self.base.speed * d @ np.array([[0.0, 1.0], [-1.0, 0.0]])
                 if self._turn is not None:
                     c, s = self._turn
                     R = np.array([[c, -s], [s, c]])
-                    k, d, values[:2] = R @ k @ R.T, R @ d @ R.T, R @ values[:2]
-            S = np.eye(3, count)[: len(values)]  # of what this film sees, by the ports
+                    k, d = R @ k @ R.T, R @ d @ R.T
+            S = np.eye(3, count)  # of what this film sees, by the ports
             if self.levers is not None:
                 S[:2, 3 + number] = -self.levers[number]
-            force += values @ S
             K += S[:2].T @ k @ S[:2]
             D += S[:2].T @ d @ S[:2]
-            D[:, 2] += by_speed @ S
+            if self.brakes and self.probed is None:
+                step = SPEED_STEP * max(abs(motion[5]), 1.0)
+                faster = law(*motion[:5], motion[5] + step)
+                D[:, 2] += np.subtract(law(*motion), faster) / step @ S
         J, L = np.zeros((2, count, self.size))
         J[:3], L[:3] = self.rows()[[0, 1, 5]], self.rate_rows()[[0, 1, 5]]
         J[3:, self._second :] = np.eye(self.own)
-        return Force(force, J, L, K, D)
+        return J, L, K, D
 
     def added_mass(self) -> float:
         """Return the mass that goes with the rotor at its speed [kg]."""
@@ -511,12 +474,9 @@ def watch_clearance(body: RotorItems, connector: BearingConnector | MagneticConn
     """Let runs of the scene stop where the journal of a connector leaves its bearing."""
     bearing, name = connector.bearing, body.name
     stops = entry(body.mbs).setdefault("clearance stops", set())
-    place = body.token, bearing.interface
+    place = body.script, bearing.interface
     if isinstance(bearing, ClearanceStop):
         stops.add(place)
-        return
-    if connector.parts[0].clearance_along() == inf:
-        return
     advice = "take smaller steps, begin from steady_state(body), reduce the load, or add a"
     if isinstance(bearing, MagneticBearing):
         advice = (
@@ -588,7 +548,7 @@ class SceneLaw(ABC):
         def output(mbs, t, sensors, factors, configuration):
             return np.hstack(self.values(configuration)).tolist()
 
-        return add_function_sensor(self.body, output, options)
+        return add_sensor(self.body, SensorUserFunction, options, sensorUserFunction=output)
 
 
 def check_body(body: Body, argument: str) -> None:

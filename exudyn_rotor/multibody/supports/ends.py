@@ -20,12 +20,11 @@ from exudyn.utilities import (
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor.rotor_items import (
-    Carrier,
     RotorItems,
     carrying_rotor,
     marker_carrier,
 )
-from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation, foundation_marker
+from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation
 from exudyn_rotor.solid.places import SAME_PLACE, leeway, off_place
 from exudyn_rotor.theory.axis import skew
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_rotation, axial_skew
@@ -33,8 +32,6 @@ from exudyn_rotor.theory.rotating_axes import axes_of, axial_rotation, axial_ske
 _FRAME = exudyn.OutputVariableType.Position, exudyn.OutputVariableType.RotationMatrix
 _REFERENCE = exudyn.ConfigurationType.Reference
 _ROUNDING = 1e-12  # of the coordinates of a place
-# bodies for which Exudyn has a rotation matrix, but no rigid marker
-_POINTS = ("MassPoint", "MassPoint2D", "Mass1D")
 Base = exudyn.MarkerIndex | exudyn.ObjectIndex | SceneFoundation
 
 
@@ -43,7 +40,8 @@ class Seat:
     """Where a support is, checked, before anything is added; all in inertial axes.
 
     `leeway` is by how much the mesh may put the interface elsewhere along e [m]; `base` is what
-    carries it, with its reference position `origin` and orientation.
+    carries it, with its `end` there, its reference position `origin` and orientation, and the rotor
+    that it belongs to, if any.
     """
 
     name: str
@@ -51,58 +49,47 @@ class Seat:
     axes: np.ndarray
     leeway: np.ndarray
     base: Base | None
+    end: BaseEnd
     origin: np.ndarray = field(default_factory=lambda: np.zeros(3))
     orientation: np.ndarray = field(default_factory=lambda: np.eye(3))
+    rotor: RotorItems | None = None
 
     @classmethod
     def of(cls, body: RotorItems, name: str, base: Base | None) -> Seat:
         """Return the place of an interface on its base."""
-        setup = body.placement
+        setup, mbs = body.placement, body.mbs
         interface = body.selection.source.interfaces[name]
-        on_axis = body.axis.project(interface.reference)
-        place = setup.position + setup.rotation @ on_axis
+        place = setup.position + setup.rotation @ body.axis.project(interface.reference)
         axes = body.standing_axes
-        where = name, place, axes, leeway(interface.radius, axes[:, 2])
+        where = name, place, axes, leeway(interface.radius, axes[:, 2]), base
         if base is None:
-            return cls(*where, None)
+            return cls(*where, GroundEnd())
         if isinstance(base, SceneFoundation):
-            if base.mbs is not body.mbs:
+            if base.mbs is not mbs:
                 raise ValueError("base: this foundation is in another mbs")
-            base.foundation.motion(name, place, where[3])
-            return cls(*where, base)
+            motion = base.foundation.motion(name, place, where[3])
+            return cls(*where, FoundationEnd(base.node, motion, axes))
         checks.instance(base, "base", (exudyn.MarkerIndex, exudyn.ObjectIndex, SceneFoundation))
-        origin, orientation = _reference(body.mbs, base)
-        _refuse_own(body, name, base)
+        item, origin, orientation = _reference(mbs, base)
+        _refuse_own(body, name, base, item)
         apart = np.linalg.norm(off_place(origin - place, where[3]))
         if isinstance(base, exudyn.MarkerIndex) and apart > SAME_PLACE:
             raise ValueError(
                 f"base: the marker {int(base)} is {apart:.3g} m off the interface {name!r}, which "
                 f"is at {place.tolist()}; put it there, or give the rigid body itself"
             )
-        return cls(*where, base, origin, orientation)
-
-    def end(self, mbs: exudyn.MainSystem) -> BaseEnd:
-        """Return the end of the base at the place.
-
-        Raises
-        ------
-        ValueError
-            For a base without the coordinates of a frame.
-        """
-        if isinstance(self.base, SceneFoundation):
-            motion = self.base.foundation.points[self.name]
-            return FoundationEnd(self.base.node, motion, self.axes)
-        if self.base is None:
-            return GroundEnd()
-        item = _item(mbs, self.base)
-        if "bodyNumber" in item and mbs.GetObject(item["bodyNumber"])["objectType"] == "Ground":
-            return GroundEnd()
-        return MarkerEnd(mbs, item, self.place, self.axes, carrying_rotor(mbs, self.base))
+        rotor = carrying_rotor(mbs, base)
+        stands = (
+            "bodyNumber" in item and mbs.GetObject(item["bodyNumber"])["objectType"] == "Ground"
+        )
+        end = GroundEnd() if stands else MarkerEnd(mbs, item, place, axes, rotor)
+        return cls(*where, end, origin, orientation, rotor)
 
     def marker(self, mbs: exudyn.MainSystem) -> exudyn.MarkerIndex:
         """Add a marker of the base at the place, with the axes (n1, n2, e)."""
         if isinstance(self.base, SceneFoundation):
-            return foundation_marker(self.base, self.name, self.place, self.axes)
+            point = self.base._carrier(self.name, self.place)
+            return point.add_marker(mbs, "rigid", self.axes)
         turn = self.orientation.T @ self.axes
         shift = self.orientation.T @ (self.place - self.origin)
         shift[np.abs(shift) <= _ROUNDING * np.abs([self.place, self.origin]).max()] = 0.0
@@ -122,21 +109,14 @@ def _frame(turn: np.ndarray, shift: np.ndarray = (0.0, 0.0, 0.0)) -> np.ndarray:
     return frame
 
 
-def _item(mbs: exudyn.MainSystem, base: exudyn.MarkerIndex | exudyn.ObjectIndex) -> dict:
-    """Return a marker, or what one of a body says of it."""
-    is_marker = isinstance(base, exudyn.MarkerIndex)
-    return mbs.GetMarker(base) if is_marker else {"bodyNumber": base}
-
-
-def _reference(mbs: exudyn.MainSystem, base: Base) -> tuple[np.ndarray, np.ndarray]:
-    """Return the reference position and orientation of a marker or a rigid body."""
+def _reference(mbs: exudyn.MainSystem, base: Base) -> tuple[dict, np.ndarray, np.ndarray]:
+    """Return a marker, or what one of a body says of it, its reference place and orientation."""
     is_marker = isinstance(base, exudyn.MarkerIndex)
     count = mbs.systemData.NumberOfMarkers() if is_marker else mbs.systemData.NumberOfObjects()
     if not 0 <= int(base) < count:
         raise ValueError(f"base: this system has no {base}")
-    if not is_marker and mbs.GetObject(base)["objectType"] in _POINTS:
-        raise ValueError(f"base: {base} is a point without orientation; give a rigid body")
-    if is_marker and "localHT" not in mbs.GetMarker(base):
+    item = mbs.GetMarker(base) if is_marker else {"bodyNumber": base}
+    if is_marker and "localHT" not in item:
         raise ValueError(f"base: {base} is no rigid marker with a frame of its own (localHT)")
     read, at = (mbs.GetMarkerOutput, ()) if is_marker else (mbs.GetObjectOutputBody, (np.zeros(3),))
     try:
@@ -145,12 +125,11 @@ def _reference(mbs: exudyn.MainSystem, base: Base) -> tuple[np.ndarray, np.ndarr
         raise ValueError(
             f"base: {base} has no place and orientation; give a rigid marker or a rigid body"
         ) from error
-    return np.asarray(place), np.reshape(turn, (3, 3))
+    return item, np.asarray(place), np.reshape(turn, (3, 3))
 
 
-def _refuse_own(body: RotorItems, name: str, base: exudyn.MarkerIndex | exudyn.ObjectIndex) -> None:
+def _refuse_own(body: RotorItems, name: str, base: Base, item: dict) -> None:
     """Refuse what moves with the rotor itself: between the two nothing would ever act."""
-    item = _item(body.mbs, base)
     own = {"bodyNumber": body.objects, "nodeNumber": body.nodes}
     if any(int(item[kind]) in map(int, own[kind].values()) for kind in own.keys() & item.keys()):
         raise ValueError(
@@ -159,24 +138,16 @@ def _refuse_own(body: RotorItems, name: str, base: exudyn.MarkerIndex | exudyn.O
         )
 
 
-def point_marker(body: RotorItems, interface: str) -> exudyn.MarkerIndex:
-    """Add a marker with the interface's mean displacement, its place on the axis."""
-    return _on_axis(body, interface).add_marker(body.mbs, "position")
-
-
-def rigid_marker(body: RotorItems, interface: str) -> exudyn.MarkerIndex:
-    """Add a marker with the mean displacement and rotation, on the axis, axes (n1, n2, e)."""
-    axes = body.frame.B @ axes_of(body.axis)
-    return _on_axis(body, interface).add_marker(body.mbs, "rigid", axes)
-
-
-def _on_axis(body: RotorItems, interface: str) -> Carrier:
+def marker_on_axis(body: RotorItems, interface: str, kind: str) -> exudyn.MarkerIndex:
+    """Add a marker of an interface's mean motion, on the axis; a rigid one has axes (n1, n2, e)."""
     place = body.axis.project(body.selection.source.interfaces[interface].reference)
-    return replace(body.interface_carrier(interface), point=body.frame.points(place))
+    point = replace(body.interface_carrier(interface), point=body.frame.points(place))
+    return point.add_marker(body.mbs, kind, body.frame.B @ axes_of(body.axis))
 
 
 QUARTER = axial_skew(3)
 _RIGID = 6  # coordinates of the node of a rotor's frame
+_WRENCHES = np.eye(6).tolist()
 _TURNED = {
     "RigidBodyRxyz": (RotXYZ2RotationMatrix, RotXYZ2G, 6),
     "RigidBodyEP": (EulerParameters2RotationMatrix, EulerParameters2G, 7),
@@ -196,7 +167,8 @@ class RotorEnd:
         own = axes_of(body.axis)
         interface = body.selection.source.interfaces[name]
         carrier = body.interface_carrier(name)
-        self.nodes = carrier.nodes
+        nodes = body.mbs.GetObjectParameter(carrier.body, "nodeNumbers")
+        self.nodes = tuple(map(exudyn.NodeIndex, nodes))
         modes = np.kron(np.eye(2), own.T @ body.frame.B.T) @ carrier.motion
         self.axes = body.standing_axes
         point = own.T @ (body.axis.project(interface.reference) - body.frame.origin)
@@ -261,41 +233,17 @@ class RotorEnd:
         return self._pull.dot(loads)
 
     def rows(self) -> np.ndarray:
-        """Return the rows J (6, size) of displacement and rotation where it has been read."""
-        J, R = np.zeros((6, self.size)), axial_rotation(self.angle)
-        (x, y, z), (a, b, _) = self._arm, self.tilt
-        J[:3] = self._rows[:3] + R @ self._rows[3:6]
-        J[3:] = R @ self._rows[6:]
-        J[:, self._spin] = -y, x, 0.0, -b, a, 1.0
-        for place, axis, turns in self._held:
-            a, b, c = R @ axis if turns else axis
-            J[:, place] = b * z - c * y, c * x - a * z, a * y - b * x, a, b, c
-        return J
-
-    def turning(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the acceleration (2,) across the axis without those of coordinates, and slopes.
-
-        By the coordinates and by their rates, each (2, size): ``2 Ω e × w − Ω² a``, the velocity w
-        in the frame, and a the place of the point from its origin.
-        """
-        R, speed = axial_rotation(self.angle)[:2, :2], self.speed
-        by_place, by_rate = np.zeros((2, 2, self.size))
-        moved = R @ self._rows[3:5, _RIGID:]
-        by_place[:, _RIGID:] = -(speed**2) * moved
-        by_rate[:, _RIGID:] = 2.0 * speed * QUARTER[:2, :2] @ moved
-        x, y, _ = self._arm
-        within = self._within
-        return (
-            2.0 * speed * QUARTER[:2, :2] @ within - speed**2 * np.array([x, y]),
-            by_place,
-            by_rate,
-        )
+        """Return the rows J (6, size) of displacement and rotation: the forces of unit wrenches."""
+        return np.array([self.pull(*one[:3], one[3:]) for one in _WRENCHES])
 
     def rate_rows(self) -> np.ndarray:
         """Return the derivative (6, size) of the rate by the coordinates: J turns with the spin."""
         L, turning = np.zeros((6, self.size)), self.speed * QUARTER @ axial_rotation(self.angle)
         L[:3, _RIGID:] = turning @ self._rows[3:6, _RIGID:]
         L[3:, _RIGID:] = turning @ self._rows[6:, _RIGID:]
+        (x, y, _), (vx, vy) = self._arm, self._within
+        a, b, _ = self.tilt_rate
+        L[:, self._spin] = -vy - self.speed * x, vx - self.speed * y, 0.0, -b, a, 0.0
         return L
 
 

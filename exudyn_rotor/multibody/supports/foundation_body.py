@@ -43,7 +43,7 @@ class SceneFoundation:
     node : NodeIndex
         Of its coordinates.
     objects : mapping of str to ObjectIndex
-        ``'physics'`` (the equations) and ``'marker_body'`` (markers).
+        ``'physics'`` (the equations), ``'marker_body'`` (markers), and what holds its frame.
     gravity_load : LoadIndex or None
 
     Examples
@@ -83,9 +83,13 @@ class SceneFoundation:
         if name not in self.foundation.places:
             raise ValueError(f"name: the place of the point {name!r} is not known; give places=…")
         if name not in self._markers:
-            place = self.foundation.places[name]
-            self._markers[name] = foundation_marker(self, name, place, np.eye(3))
+            point = self._carrier(name, self.foundation.places[name])
+            self._markers[name] = point.add_marker(self.mbs, "rigid", np.eye(3))
         return self._markers[name]
+
+    def _carrier(self, name: str, place: np.ndarray) -> Carrier:
+        """Return what moves with a point, at its place [m]."""
+        return Carrier(self.objects["marker_body"], place, self.foundation.points[name], _ARM)
 
     def add_sensor(
         self, name: str, output: exudyn.OutputVariableType = exudyn.OutputVariableType.Displacement
@@ -97,15 +101,6 @@ class SceneFoundation:
                 markerNumber=self.marker(name), outputVariableType=output, storeInternal=True
             )
         )
-
-
-def foundation_marker(
-    base: SceneFoundation, name: str, place: np.ndarray, axes: np.ndarray
-) -> exudyn.MarkerIndex:
-    """Add a rigid marker of a point at its place [m], with these axes as columns."""
-    motion = base.foundation.points[name]
-    point = Carrier(base.objects["marker_body"], place, motion, _ARM)
-    return point.add_marker(base.mbs, "rigid", axes)
 
 
 def add_foundation(
@@ -156,18 +151,15 @@ def add_foundation(
     placed = foundation.turned(turn, place)
     start = np.zeros(placed.size)
     coordinates = mbs.AddNode(generic_node(start, start))
-    frame = mbs.AddNode(
-        NodeRigidBodyRxyz(
-            referenceCoordinates=np.zeros(6), visualization=VNodeRigidBodyRxyz(show=False)
-        )
-    )
+    unseen, hidden = VNodeRigidBodyRxyz(show=False), VObjectGenericODE2(show=False)
+    frame = mbs.AddNode(NodeRigidBodyRxyz(referenceCoordinates=np.zeros(6), visualization=unseen))
     physics = mbs.AddObject(
         ObjectGenericODE2(
             nodeNumbers=[coordinates],
             massMatrix=placed.mass,
             dampingMatrix=placed.damping,
             stiffnessMatrix=placed.stiffness,
-            visualization=VObjectGenericODE2(show=False),
+            visualization=hidden,
         )
     )
     empty = exudyn.MatrixContainer()
@@ -186,13 +178,11 @@ def add_foundation(
         )
     )
     # an inertia, which moves nothing: explicit solvers solve with the whole mass matrix
-    hidden = VObjectGenericODE2(show=False)
-    mbs.AddObject(
+    inertia = mbs.AddObject(
         ObjectGenericODE2(nodeNumbers=[frame], massMatrix=np.eye(6), visualization=hidden)
     )
     ground = mbs.AddNode(NodePointGround())
-    for index in range(6):
-        held(mbs, ground, frame, index)
+    objects = {"physics": physics, "marker_body": body, "frame": inertia}
+    objects |= {f"frame {index}": held(mbs, ground, frame, index) for index in range(6)}
     load = add_weight(mbs, body, g)
-    objects = checks.read_only_mapping({"physics": physics, "marker_body": body})
-    return SceneFoundation(mbs, placed, coordinates, objects, load)
+    return SceneFoundation(mbs, placed, coordinates, checks.read_only_mapping(objects), load)

@@ -19,7 +19,7 @@ from exudyn.itemInterface import CartesianSpringDamper, RigidBodySpringDamper
 from exudyn_rotor.bearings.support import Support, acts, varies
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, entry
 from exudyn_rotor.multibody.supports.connector import NATIVE, SYMBOLIC
-from exudyn_rotor.multibody.supports.ends import Seat, point_marker, rigid_marker
+from exudyn_rotor.multibody.supports.ends import Seat, marker_on_axis
 
 _ROUNDING = 1e-13  # of the largest entry of a turned matrix
 _FUNCTIONS = "symbolic functions of supports"
@@ -55,7 +55,7 @@ def _displacement_connector(
     body: RotorItems, support: Support, seat: Seat, K: np.ndarray, D: np.ndarray
 ) -> Part:
     mbs = body.mbs
-    markers = [seat.marker(mbs), point_marker(body, support.interface)]
+    markers = [seat.marker(mbs), marker_on_axis(body, support.interface, "position")]
     item = CartesianSpringDamper(markerNumbers=markers)
     K, D = _turned(seat.axes, K), _turned(seat.axes, D)
     if not np.any(K - np.diag(np.diag(K))) and not np.any(D - np.diag(np.diag(D))):
@@ -75,7 +75,7 @@ def _tilt_connector(
 ) -> Part | None:
     if np.any(D) or not np.array_equal(K, np.diag([K[0, 0], K[0, 0], 0.0])):
         return None
-    markers = [seat.marker(body.mbs), rigid_marker(body, support.interface)]
+    markers = [seat.marker(body.mbs), marker_on_axis(body, support.interface, "rigid")]
     stiffness, none = np.kron(np.diag([0.0, 1.0]), K), np.zeros((6, 6))
     item = RigidBodySpringDamper(markerNumbers=markers, stiffness=stiffness, damping=none)
     return body.mbs.AddObject(item), NATIVE

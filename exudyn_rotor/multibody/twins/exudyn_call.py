@@ -2,10 +2,7 @@
 
 Argument names, defaults and returned keys of ``mbs.CreateFixedAxisFFRFReducedOrderObject`` are
 those of ``mbs.CreateFFRFReducedOrderObject``; changing the name of the call swaps the formulation.
-
-Markers, loads and connectors are all known when a system is assembled. What ``mbs.Assemble()`` does
-for rotors stands in :mod:`exudyn_rotor.multibody.rotor.assembly`, which a scene without rotors does
-not load.
+What ``mbs.Assemble()`` does for rotors stands in :mod:`exudyn_rotor.multibody.rotor.assembly`.
 """
 
 from __future__ import annotations
@@ -134,23 +131,28 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
         RotorBody('rotor', Sect. 2.5, stiffening 'tilt', 6 modes, markers: top)
     """
     # not before: importing the package adds this method, and most scripts do not call it
-    from exudyn.FEM import FEMinterface
-
     from exudyn_rotor import checks
     from exudyn_rotor.multibody.rotor.plan import MARKER_KINDS, main_system, marker_name
     from exudyn_rotor.multibody.twins.exudyn_interface import (
-        add_swapped_body,
-        checked_options,
-        numbers,
+        ObjectFixedAxisFFRFreducedOrderInterface,
     )
 
-    given = locals()
     main_system(mbs)
-    checks.instance(femInterface, "femInterface", FEMinterface)
     checks.flag(showMarkers, "showMarkers")
     checks.flag(verbose, "verbose")
     checks.choice(markers, "markers", MARKER_KINDS)
-    options, offsets = checked_options(given), superElementRigidMarkersOffsets
+    made = ObjectFixedAxisFFRFreducedOrderInterface(
+        femInterface,
+        axis=axis,
+        translation=translation,
+        spin=spin,
+        spin_coupling=spin_coupling,
+        stiffening=stiffening,
+        locking=locking,
+        markers=markers,
+        prestress=prestress,
+    )
+    offsets = superElementRigidMarkersOffsets
     if offsets is not None:
         shape = (len(femInterface.nodeSets), 3)
         offsets = checks.array(offsets, "superElementRigidMarkersOffsets", "m", shape=shape)
@@ -158,16 +160,19 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
             raise ValueError(
                 f"superElementRigidMarkersOffsets: needs markers='rigid', got {markers!r}"
             )
-    body = add_swapped_body(
+    numbers = made.AddObjectFFRFreducedOrder(
         mbs,
-        name,
-        femInterface,
-        axis,
-        options,
-        given,
-        position="referencePosition",
-        rotation="referenceRotationMatrix",
+        checks.vector(referencePosition, "referencePosition", "m"),
+        initialVelocity,
+        checks.rotation(referenceRotationMatrix, "referenceRotationMatrix"),
+        initialAngularVelocity,
+        massProportionalDamping,
+        stiffnessProportionalDamping,
+        gravity,
+        color,
+        "" if name is None else checks.label(name, "name"),
     )
+    body = made.rotorBody
     for number, marker in enumerate(body.markers.values()):
         mbs.SetMarkerParameter(marker, "Vshow", showMarkers)
         if offsets is not None:
@@ -175,7 +180,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
             mbs.SetMarkerParameter(marker, "offset", body.frame.B @ offsets[number])
     if verbose:
         exudyn.Print(body.report())
-    return {"FFRFReducedOrderObjectDict": numbers(body)} | {
+    return {"FFRFReducedOrderObjectDict": numbers} | {
         marker_name(body.name, interface): marker for interface, marker in body.markers.items()
     }
 

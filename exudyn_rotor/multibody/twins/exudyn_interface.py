@@ -2,12 +2,10 @@
 
 Names of arguments, methods and returned keys are those of
 ``exudyn.FEM.ObjectFFRFreducedOrderInterface``; changing the name of the class swaps the
-formulation. The rest serves the twin of the call as well.
+formulation. The twin of the call is a use of it.
 """
 
 from __future__ import annotations
-
-from typing import Any
 
 import exudyn
 import numpy as np
@@ -16,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.add_rotor import add_rotor
-from exudyn_rotor.multibody.rotor.plan import LOCKINGS, MARKER_KINDS, color_of, main_system
+from exudyn_rotor.multibody.rotor.plan import LOCKINGS, MARKER_KINDS, main_system
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.carried_prestress import Prestress
@@ -30,10 +28,16 @@ from exudyn_rotor.theory.formulation import (
     start_values,
     suited_translation,
 )
-from exudyn_rotor.theory.stiffening import chosen_level
+from exudyn_rotor.theory.stiffening import CHOICES
 
 _NODE_TYPES = [f"NodeType.{kind}" for kind in exudyn.NodeType.__members__]
 _GREEN = (0.1, 0.9, 0.1, 1.0)  # Exudyn's default colour here
+_STRESS = (
+    "SolidRotor.from_ngsolve(…).prestress() with the same mesh or Prestress.from_matrix(…) makes "
+    "one; a FEMinterface has no elements to compute it on"
+)
+_SAME = 1e-9  # share of an angular velocity by which it may differ from another
+_SEEN = 1e-6  # share of a mode's mass that moves as a rigid body, above rounding of free modes
 
 
 class ObjectFixedAxisFFRFreducedOrderInterface:
@@ -131,14 +135,28 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
         markers: str | None = None,
         prestress: Prestress | None = None,
     ) -> None:
-        given = locals()
         if not isinstance(rigidBodyNodeType, exudyn.NodeType):
             checks.choice(rigidBodyNodeType, "rigidBodyNodeType", _NODE_TYPES)
         checks.number(roundMassMatrix, "roundMassMatrix", least=0.0)
         checks.number(roundStiffnessMatrix, "roundStiffnessMatrix", least=0.0)
         self._fem = checks.instance(femInterface, "femInterface", FEMinterface)
-        self._options = checked_options(given)
-        self._axis = None if axis is None else SpinAxis.of(axis)
+        checks.choice(stiffening, "stiffening", CHOICES)
+        if prestress is not None:
+            checks.instance(prestress, "prestress", Prestress, _STRESS)
+        elif stiffening == "full":
+            raise ValueError(
+                f"stiffening='full' needs the static stress: give prestress=; {_STRESS}"
+            )
+        Formulation(suited_translation(translation, False), spin, spin_coupling=spin_coupling)
+        self._axis, self._prestress = None if axis is None else SpinAxis.of(axis), prestress
+        self._options = {
+            "translation": translation,
+            "spin": spin,
+            "spin_coupling": spin_coupling,
+            "stiffening": stiffening,
+            "locking": checks.choice(locking, "locking", LOCKINGS),
+            "markers": {} if markers is None else checks.choice(markers, "markers", MARKER_KINDS),
+        }
         self.rotorBody: RotorBody | None = None
         if "matrix" not in femInterface.modeBasis:
             raise ValueError(
@@ -195,102 +213,43 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
         TypeError, ValueError
             For bad input; nothing has been added then.
         """
-        given = locals()
         main_system(mbs)
         label = None if isinstance(name, str) and name == "" else checks.label(name, "name")
-        if np.size(rotationMatrixRef) == 0:
-            given["rotationMatrixRef"] = np.eye(3)
-        body = add_swapped_body(
-            mbs,
-            label,
-            self._fem,
-            self._axis,
-            self._options,
-            given,
-            position="positionRef",
-            rotation="rotationMatrixRef",
+        place, turn = checks.vector(positionRef, "positionRef", "m"), np.eye(3)
+        if np.size(rotationMatrixRef):
+            turn = checks.rotation(rotationMatrixRef, "rotationMatrixRef")
+        velocity = checks.vector(initialVelocity, "initialVelocity", "m/s")
+        omega = checks.vector(initialAngularVelocity, "initialAngularVelocity", "rad/s")
+        mass_damping = checks.number(massProportionalDamping, "massProportionalDamping", least=0.0)
+        stiffness_damping = checks.number(
+            stiffnessProportionalDamping, "stiffnessProportionalDamping", least=0.0
         )
-        made = numbers(body)
-        vars(self).update(made)  # which Exudyn's class keeps, too
-        return made
-
-
-_SAME = 1e-9  # share of an angular velocity by which it may differ from another
-_SEEN = 1e-6  # share of a mode's mass that moves as a rigid body, above rounding of free modes
-# what the twins take beyond the arguments of Exudyn's calls
-OWN = ("translation", "spin", "spin_coupling", "stiffening", "locking", "markers", "prestress")
-
-
-def checked_options(given: dict[str, Any]) -> dict[str, Any]:
-    """Return the twin's own arguments among those `given`, or refuse them."""
-    options = {name: given[name] for name in OWN}
-    prestress, markers = options["prestress"], options["markers"]
-    level = chosen_level(options["stiffening"], prestress is not None)
-    where = (
-        "SolidRotor.from_ngsolve(…).prestress() with the same mesh or Prestress.from_matrix(…) "
-        "makes one; a FEMinterface has no elements to compute it on"
-    )
-    if prestress is not None:
-        checks.instance(prestress, "prestress", Prestress, where)
-    elif level == "full":
-        raise ValueError(f"stiffening='full' needs the static stress: give prestress=; {where}")
-    if markers is not None:
-        checks.choice(markers, "markers", MARKER_KINDS)
-    suited = suited_translation(options["translation"], grounded=False)
-    Formulation(suited, options["spin"], spin_coupling=options["spin_coupling"])  # or refuse it
-    checks.choice(options["locking"], "locking", LOCKINGS)
-    return options | {"markers": {} if markers is None else markers}
-
-
-def add_swapped_body(
-    mbs: exudyn.MainSystem,
-    name: str | None,
-    fem: FEMinterface,
-    axis: SpinAxis | str | ArrayLike | None,
-    options: dict[str, Any],
-    given: dict[str, Any],
-    *,
-    position: str,
-    rotation: str,
-) -> RotorBody:
-    """Add the rotor; nothing has been added where this raises ValueError or TypeError.
-
-    `options` are those of :func:`checked_options`, `given` the arguments of the twin's call by
-    their names. Two of these, `position` and `rotation`, are called otherwise in each of Exudyn's
-    calls. Without an `axis` that of the angular velocity is taken.
-    """
-    mass_damping, stiffness_damping = (
-        checks.number(given[argument], argument, least=0.0)
-        for argument in ("massProportionalDamping", "stiffnessProportionalDamping")
-    )
-    place = checks.vector(given[position], position, "m")
-    turn = checks.rotation(given[rotation], rotation)
-    gravity, color = checks.vector(given["gravity"], "gravity", "m/s²"), color_of(given["color"])
-    velocity = checks.vector(given["initialVelocity"], "initialVelocity", "m/s")
-    omega = checks.vector(given["initialAngularVelocity"], "initialAngularVelocity", "rad/s")
-    rotor = SolidRotor.from_fem_interface(fem, _axis_of(turn.T @ omega) if axis is None else axis)
-    reduced, modes = rotor.reduce(fem, prestress=options["prestress"]), fem.modeBasis["matrix"]
-    options = {key: value for key, value in options.items() if key != "prestress"}
-    options["translation"] = suited_translation(options["translation"], reduced.grounded)
-    formulation = Formulation(options["translation"], options["spin"])
-    if formulation.translation_count:  # Exudyn's is the velocity of the mesh origin
-        velocity = velocity + np.cross(omega, turn @ reduced.center_of_mass)
-    body = add_rotor(
-        mbs,
-        reduced,
-        name=name,
-        position=place,
-        rotation=turn,
-        initial_velocity=velocity,
-        initial_speed=_initial_speed(formulation, turn @ reduced.axis.direction, omega),
-        gravity=gravity,
-        mass_damping=mass_damping,
-        stiffness_damping=stiffness_damping,
-        color=color,
-        **options,
-    )
-    body.script.frame_shares = _frame_shares(rotor, reduced, np.asarray(modes))
-    return body
+        axis = _axis_of(turn.T @ omega) if self._axis is None else self._axis
+        rotor = SolidRotor.from_fem_interface(self._fem, axis)
+        reduced = rotor.reduce(self._fem, prestress=self._prestress)
+        translation = suited_translation(self._options["translation"], reduced.grounded)
+        formulation = Formulation(translation, self._options["spin"])
+        if formulation.translation_count:  # Exudyn's is the velocity of the mesh origin
+            velocity = velocity + np.cross(omega, turn @ reduced.center_of_mass)
+        self.rotorBody = body = add_rotor(
+            mbs,
+            reduced,
+            name=label,
+            position=place,
+            rotation=turn,
+            initial_velocity=velocity,
+            initial_speed=_initial_speed(formulation, turn @ reduced.axis.direction, omega),
+            gravity=gravity,
+            mass_damping=mass_damping,
+            stiffness_damping=stiffness_damping,
+            color=color,
+            **self._options | {"translation": translation},
+        )
+        body.script.frame_shares = _frame_shares(rotor, reduced, self.modeBasis)
+        self.nRigidBody, self.nGenericODE2 = body.nodes["rigid"], body.nodes["modes"]
+        self.oFFRFreducedOrder, self.loadGravity = body.objects["marker_body"], body.gravity_load
+        names = "nRigidBody", "nGenericODE2", "oFFRFreducedOrder", "loadGravity", "rotorBody"
+        return {name: getattr(self, name) for name in names}
 
 
 def _frame_shares(
@@ -308,17 +267,6 @@ def _frame_shares(
     if np.all(np.einsum("ik,ik->k", G[:rigid], G[:rigid]) <= _SEEN * energy):
         return None
     return -G[:rigid] @ np.linalg.pinv(G[rigid:])
-
-
-def numbers(body: RotorBody) -> dict[str, Any]:
-    """Return the entries that Exudyn's calls return for a flexible body, and the rotor."""
-    return {
-        "nRigidBody": body.nodes["rigid"],
-        "nGenericODE2": body.nodes["modes"],
-        "oFFRFreducedOrder": body.objects["marker_body"],
-        "loadGravity": body.gravity_load,
-        "rotorBody": body,
-    }
 
 
 def _axis_of(omega: np.ndarray) -> SpinAxis:

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
-
-from exudyn_rotor.solid.meshes.mesh_data import ElementGroup, MeshData, Refusals, reading
+from exudyn_rotor.solid.meshes.mesh_data import MeshData, face_nodes, reading
 from exudyn_rotor.solid.shapes import KINDS
 
 _TYPES = {
@@ -19,14 +17,11 @@ _TYPES = {
     "C3D20": "hexahedron20",
     "C3D20R": "hexahedron20 reduced",
 }
-_STIFFER = "taken as C3D8 with all integration points, which is stiffer in bending"
-_REPLACED = {
-    "C3D8R": ("hexahedron", _STIFFER),
-    "C3D8I": ("hexahedron", _STIFFER),
-    "C3D10M": ("tetra10", "taken as C3D10"),
-    "C3D10I": ("tetra10", "taken as C3D10"),
-    "C3D10T": ("tetra10", "taken as C3D10"),
+_TAKEN_AS = {
+    **dict.fromkeys(("C3D8R", "C3D8I"), "C3D8"),
+    **dict.fromkeys(("C3D10M", "C3D10I", "C3D10T"), "C3D10"),
 }
+_STIFFER = " with all integration points, which is stiffer in bending"
 _CONSTRAINTS = """EQUATION, MPC, TIE, CONTACT PAIR, EMBEDDED ELEMENT, RIGID BODY, COUPLING,
     KINEMATIC COUPLING, DISTRIBUTING COUPLING, CYCLIC SYMMETRY MODEL"""
 _OTHERS = """SHELL SECTION, BEAM SECTION, MEMBRANE SECTION, MASS, ROTARY INERTIA, SPRING, DASHPOT,
@@ -44,18 +39,19 @@ _REFUSED = {
 _DEEPEST = 10  # of files that include files
 
 
-def read(path: Path, refusals: Refusals) -> MeshData:
+def read(path: Path) -> MeshData:
     """Return what the deck holds before its first *STEP."""
-    return _Deck(refusals).read(path)
+    return _Deck().read(path)
 
 
 class _Deck:
     """State of one reading."""
 
-    def __init__(self, refusals: Refusals) -> None:
-        self.data, self.refusals = MeshData(), refusals
+    def __init__(self) -> None:
+        self.data = MeshData()
         self.sections: list[tuple[str, str]] = []
-        self.material = ""
+        self.surfaces: dict[str, list[tuple[int, int]]] = {}
+        self.material: dict[str, float] = {}
         self.instances = 0
 
     def read(self, path: Path) -> MeshData:
@@ -64,50 +60,42 @@ class _Deck:
                 break
             with reading(f"{place}: *{keyword}"):
                 if keyword in _REFUSED:
-                    self.refusals.leaves_out("*" + keyword, _REFUSED[keyword])
+                    self.data.refused["*" + keyword] = _REFUSED[keyword]
                 elif keyword in _READ:
                     action = getattr(self, "_" + keyword.lower().replace(" ", "_"))
                     action(options, [_fields(line) for line in lines])
         self._give_materials()
+        self._give_surfaces()
         return self.data
 
     def _node(self, options: dict[str, str], lines: list[list[str]]) -> None:
-        numbers = [int(fields[0]) for fields in lines]
         for fields in lines:
             values = [float(value or 0.0) for value in fields[1:4]]
-            self.data.nodes.append(values + [0.0] * (3 - len(values)))
-        self.data.numbers += numbers
+            self.data.nodes[int(fields[0])] = values + [0.0] * (3 - len(values))
         if "NSET" in options:
-            _of(self.data.node_sets, options["NSET"]).extend(numbers)
+            _of(self.data.node_sets, options["NSET"]).extend(int(fields[0]) for fields in lines)
 
     def _element(self, options: dict[str, str], lines: list[list[str]]) -> None:
-        kind = self._kind(options["TYPE"].upper())
-        if kind is None:
+        name = options["TYPE"].upper()
+        plain = name.removesuffix("H")  # hybrid ones have the pressure as unknown besides
+        plain = _TAKEN_AS.get(plain, plain)
+        if plain not in _TYPES:
+            self.data.refused[name] = "no tetrahedron, wedge or hexahedron of displacements"
             return
-        size = len(KINDS[kind].points) + 1
+        if plain != name:
+            self.data.replaced[name] = f"taken as {plain}{_STIFFER if plain == 'C3D8' else ''}"
+        size = len(KINDS[_TYPES[plain]].points) + 1
         entries = [int(value) for fields in lines for value in fields if value]
         if len(entries) % size:
             raise ValueError(
                 f"{len(entries)} numbers are no multiple of {size}, an element with its "
                 f"{size - 1} nodes"
             )
-        table = np.array(entries, dtype=np.int64).reshape(-1, size)
-        region = options.get("ELSET", "solid")
-        self.data.groups.append(ElementGroup(kind, table[:, 0], table[:, 1:], region))
+        for start in range(0, len(entries), size):
+            row = entries[start : start + size]
+            self.data.add_element(_TYPES[plain], options.get("ELSET", "solid"), row)
         if "ELSET" in options:
-            _of(self.data.element_sets, region).extend(table[:, 0].tolist())
-
-    def _kind(self, name: str) -> str | None:
-        """Return the kind of element, None for one that is left out."""
-        plain = name.removesuffix("H")  # hybrid ones have the pressure as unknown besides
-        if name in _TYPES:
-            return _TYPES[name]
-        if plain in _TYPES or plain in _REPLACED:
-            kind, how = _REPLACED.get(plain, (_TYPES.get(plain), f"taken as {plain}"))
-            self.refusals.replaces(name, how)
-            return kind
-        self.refusals.leaves_out(name, "no tetrahedron, wedge or hexahedron of displacements")
-        return None
+            _of(self.data.element_sets, options["ELSET"]).extend(entries[::size])
 
     def _nset(self, options: dict[str, str], lines: list[list[str]]) -> None:
         _extend(self.data.node_sets, options["NSET"], options, lines)
@@ -120,7 +108,7 @@ class _Deck:
         if options.get("TYPE", "ELEMENT").upper() == "NODE":
             _extend(self.data.node_sets, name, options, lines)
             return
-        faces = _of(self.data.surfaces, name)
+        faces = _of(self.surfaces, name)
         for first, face, *_ in lines:
             if face.upper() not in ("S1", "S2", "S3", "S4", "S5", "S6"):
                 raise ValueError(f"a face S1 to S6 of an element is needed, got {face!r}")
@@ -128,18 +116,17 @@ class _Deck:
             faces.extend((element, int(face[1]) - 1) for element in elements)
 
     def _material(self, options: dict[str, str], lines: list[list[str]]) -> None:
-        self.material = options["NAME"]
-        _of(self.data.materials, self.material, dict)
+        self.material = _of(self.data.materials, options["NAME"], dict)
 
     def _elastic(self, options: dict[str, str], lines: list[list[str]]) -> None:
         kind = options.get("TYPE", "ISO").upper()
         if not kind.startswith("ISO"):
             raise ValueError(f"the material must be isotropic, got TYPE={kind}")
-        values = _of(self.data.materials, self.material, dict)
-        values["youngsModulus"], values["poissonsRatio"] = (float(x) for x in lines[0][:2])
+        young, ratio = (float(value) for value in lines[0][:2])
+        self.material |= {"youngsModulus": young, "poissonsRatio": ratio}
 
     def _density(self, options: dict[str, str], lines: list[list[str]]) -> None:
-        _of(self.data.materials, self.material, dict)["density"] = float(lines[0][0])
+        self.material["density"] = float(lines[0][0])
 
     def _solid_section(self, options: dict[str, str], lines: list[list[str]]) -> None:
         self.sections.append((options["ELSET"], options["MATERIAL"]))
@@ -158,6 +145,19 @@ class _Deck:
             name = _spelled(self.data.materials, material)
             chosen = _of(self.data.element_sets, element_set)
             self.data.regions.update(dict.fromkeys(chosen, name))
+
+    def _give_surfaces(self) -> None:
+        """Make node sets of surfaces."""
+        elements = {
+            number: (KINDS[kind], nodes)
+            for (kind, _), rows in self.data.elements.items()
+            for number, *nodes in (rows if self.surfaces else ())
+        }
+        for name, faces in self.surfaces.items():
+            known = [(*elements[number], face) for number, face in faces if number in elements]
+            self.data.node_sets[name] = [
+                nodes[i] for kind, nodes, face in known for i in face_nodes(kind, face)
+            ]
 
 
 _READ = {
@@ -186,21 +186,16 @@ def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, str, dict[str, st
             yield current
         current = (f"line {start} of {path.name}", *_keyword(line), [])
         if current[1] == "INCLUDE":
-            yield from _included(path, current[2], depth)
+            target = path.parent / current[2].get("INPUT", "")
+            if depth == _DEEPEST or not target.is_file():
+                raise ValueError(
+                    f"{path.name}: *INCLUDE needs a file beside it, at most {_DEEPEST} deep, got "
+                    f"{target}"
+                )
+            yield from _blocks(target, depth + 1)
             current = None
     if current is not None:
         yield current
-
-
-def _included(
-    path: Path, options: dict[str, str], depth: int
-) -> Iterator[tuple[str, str, dict[str, str], list[str]]]:
-    target = path.parent / options.get("INPUT", "")
-    if depth == _DEEPEST or not target.is_file():
-        raise ValueError(
-            f"{path.name}: *INCLUDE needs a file beside it, at most {_DEEPEST} deep, got {target}"
-        )
-    return _blocks(target, depth + 1)
 
 
 def _keyword(line: str) -> tuple[str, dict[str, str]]:

@@ -7,9 +7,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
-
-from exudyn_rotor.solid.meshes.mesh_data import ElementGroup, MeshData, Refusals, reading
+from exudyn_rotor.solid.meshes.mesh_data import MeshData, reading
 
 _TETRAHEDRA = {285: "tetra", 187: "tetra10", 92: "tetra10"}
 _LINEAR, _QUADRATIC = (185, 45), (186, 95)
@@ -18,12 +16,12 @@ _AS_WEDGE = [0, 1, 2, 4, 5, 6, 8, 9, 11, 12, 13, 15, 16, 17, 18]
 _AS_TETRAHEDRON = [0, 1, 2, 4, 8, 9, 11, 16, 17, 18]
 _KEYS = {"EX": "youngsModulus", "NUXY": "poissonsRatio", "PRXY": "poissonsRatio", "DENS": "density"}
 _REFUSED = {"CE": "equations between nodes", "CP": "coupled nodes", "RBE3": "a weighted mean"}
+Lines = Iterator[tuple[int, str]]
 
 
-def read(path: Path, refusals: Refusals) -> MeshData:
+def read(path: Path) -> MeshData:
     """Return the mesh of an archive; a region is called as the number of its material."""
     data, types = MeshData(), {}
-    rows: dict[tuple[str, str], list[list[int]]] = {}
     lines = iter(enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), 1))
     for number, line in lines:
         fields = [field.strip() for field in line.split(",")]
@@ -32,12 +30,13 @@ def read(path: Path, refusals: Refusals) -> MeshData:
             if command == "ET":
                 types[int(fields[1])] = int(re.sub(r"\D", "", fields[2]))
             elif command == "NBLOCK":
-                _read_nodes(lines, data)
+                for node, _, _, *position in _block(lines):
+                    values = [float(value) for value in position[:3]]
+                    data.nodes[int(node)] = values + [0.0] * (3 - len(values))
             elif command == "EBLOCK":
                 if len(fields) < 3 or fields[2].upper() != "SOLID":
                     raise ValueError("elements must be written as EBLOCK,19,SOLID")
-                for key, row in _elements(lines, types, refusals):
-                    rows.setdefault(key, []).append(row)
+                _read_elements(lines, types, data)
             elif command == "CMBLOCK":
                 sets = data.node_sets if fields[2].upper().startswith("NODE") else data.element_sets
                 sets[fields[1]] = _component(lines, int(fields[3].split("!")[0]))
@@ -46,14 +45,8 @@ def read(path: Path, refusals: Refusals) -> MeshData:
             elif command == "MP":
                 _give(data, fields[2], fields[1], fields[3])
             elif command in _REFUSED:
-                refusals.leaves_out(command, _REFUSED[command])
-    for (kind, region), table in rows.items():
-        numbers = np.array(table, dtype=np.int64)
-        data.groups.append(ElementGroup(kind, numbers[:, 0], numbers[:, 1:], region))
+                data.refused[command] = _REFUSED[command]
     return data
-
-
-Lines = Iterator[tuple[int, str]]
 
 
 def _widths(line: str) -> list[int]:
@@ -67,53 +60,44 @@ def _widths(line: str) -> list[int]:
 
 
 def _cut(line: str, widths: list[int]) -> list[str]:
-    ends = np.cumsum([0, *widths])
+    ends = itertools.accumulate(widths, initial=0)
     pieces = (line[a:b].strip() for a, b in itertools.pairwise(ends))
     return [piece for piece in pieces if piece]
 
 
-def _read_nodes(lines: Lines, data: MeshData) -> None:
-    widths = _widths(next(lines)[1])
+def _block(lines: Lines) -> Iterator[list[str]]:
+    """Return the fields of the lines of a block, whose format comes first."""
+    widths = _widths(next(lines, (0, ""))[1])
     for _, line in lines:
-        if line.startswith(("N,", "-1")) or line.strip() == "-1":
+        if line.startswith("N,") or line.strip() == "-1":
             return
-        fields = _cut(line, widths)
-        position = [float(value) for value in fields[3:6]]
-        data.numbers.append(int(fields[0]))
-        data.nodes.append(position + [0.0] * (3 - len(position)))
-    raise ValueError("the block has no end (N,R5.3,LOC, -1)")
-
-
-def _elements(
-    lines: Lines, types: dict[int, int], refusals: Refusals
-) -> Iterator[tuple[tuple[str, str], list[int]]]:
-    """Return kind and material, number and nodes of every element of a block."""
-    widths = _widths(next(lines)[1])
-    for _, line in lines:
-        if line.strip() == "-1":
-            return
-        fields = [int(value) for value in _cut(line, widths)]
-        count = fields[8]
-        while len(fields) < 11 + count:
-            fields += [int(value) for value in _cut(next(lines)[1], widths)]
-        found = _solid(types[fields[1]], fields[11:], refusals)
-        if found is not None:
-            kind, nodes = found
-            if 0 in nodes:
-                raise ValueError(
-                    f"element {fields[10]} lacks mid nodes; mesh without dropping them"
-                )
-            yield (kind, str(fields[0])), [fields[10], *nodes]
+        yield _cut(line, widths)
     raise ValueError("the block has no end (-1)")
 
 
-def _solid(kind: int, nodes: list[int], refusals: Refusals) -> tuple[str, list[int]] | None:
+def _read_elements(lines: Lines, types: dict[int, int], data: MeshData) -> None:
+    block = _block(lines)
+    for texts in block:
+        fields = [int(value) for value in texts]
+        while len(fields) < 11 + fields[8]:
+            fields += [int(value) for value in next(block)]
+        material, type_, number = fields[0], types[fields[1]], fields[10]
+        if type_ not in (*_TETRAHEDRA, *_LINEAR, *_QUADRATIC):
+            data.refused[f"element type {type_}"] = "no solid of displacements"
+            continue
+        kind, nodes = _solid(type_, fields[11:])
+        if kind == "hexahedron":
+            how = "hexahedra get all integration points, plain ones"
+            data.replaced[f"SOLID{type_}"] = how
+        if 0 in nodes:
+            raise ValueError(f"element {number} lacks mid nodes; mesh without dropping them")
+        data.add_element(kind, str(material), [number, *nodes])
+
+
+def _solid(kind: int, nodes: list[int]) -> tuple[str, list[int]]:
     """Return meshio's name and nodes; repeated nodes make a wedge or tetrahedron."""
     if kind in _TETRAHEDRA:
         return _TETRAHEDRA[kind], nodes
-    if kind not in _LINEAR + _QUADRATIC:
-        refusals.leaves_out(f"element type {kind}", "no solid of displacements")
-        return None
     is_quadratic = kind in _QUADRATIC
     if len(set(nodes[4:8])) == 1:
         if nodes[2] != nodes[3]:
@@ -124,7 +108,6 @@ def _solid(kind: int, nodes: list[int], refusals: Refusals) -> tuple[str, list[i
         size = 15 if is_quadratic else 6
         return ("wedge15" if is_quadratic else "wedge"), [nodes[i] for i in _AS_WEDGE[:size]]
     if not is_quadratic:
-        refusals.replaces(f"SOLID{kind}", "hexahedra get all integration points, plain ones")
         return "hexahedron", nodes
     return ("hexahedron20 reduced stiffness" if kind == 186 else "hexahedron20"), nodes
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from exudyn_rotor.solid.meshes.mesh_data import ElementGroup, MeshData
+from exudyn_rotor.solid.meshes.mesh_data import MeshData
 from exudyn_rotor.solid.shapes import KINDS
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def convert(mesh: meshio.Mesh) -> MeshData:
     count = len(mesh.points)
     points = np.zeros((count, 3))
     points[:, : mesh.points.shape[1]] = mesh.points
-    data = MeshData(list(range(count)), points.tolist())
+    data = MeshData(dict(enumerate(points.tolist())))
     data.node_sets = {name: np.asarray(set_).tolist() for name, set_ in mesh.point_sets.items()}
     first = 0
     for i, cells in enumerate(mesh.cells):
@@ -48,7 +48,8 @@ def convert(mesh: meshio.Mesh) -> MeshData:
         first += len(cells.data)
         names = _names(mesh, i)
         if cells.type in KINDS:
-            data.groups.append(ElementGroup(cells.type, numbers, cells.data, "solid"))
+            rows = np.column_stack([numbers, cells.data]).tolist()
+            data.elements.setdefault((cells.type, "solid"), []).extend(rows)
             for name, chosen in names:
                 data.regions.update(dict.fromkeys(numbers[chosen].tolist(), name))
                 data.element_sets.setdefault(name, []).extend(numbers[chosen].tolist())

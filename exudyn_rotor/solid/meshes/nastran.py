@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import scipy.sparse as sp
 
-from exudyn_rotor.solid.meshes.mesh_data import ElementGroup, MeshData, Refusals, reading
+from exudyn_rotor.solid.meshes.mesh_data import MeshData, reading
 
 # Kinds by card and number of nodes, and the order of meshio: mid nodes on top before upright ones.
 _SOLIDS = {
@@ -27,69 +27,67 @@ _REFUSED = {
 _NO_ELEMENTS = ("CORD", "CMASS", "CTYPE")
 
 
-def read(path: Path, refusals: Refusals) -> MeshData:
+def read(path: Path) -> MeshData:
     """Return mesh and materials of a bulk data file; a region is called as its property."""
-    data = MeshData()
-    elements: dict[tuple[str, str], list[list[int]]] = {}
-    properties, materials = {}, {}
+    data, properties, materials = MeshData(), {}, {}
     for place, fields in cards(path):
         card = fields[0]
         with reading(f"{place}: {card}"):
             if card == "GRID":
                 if fields[2] not in ("", "0"):
                     raise ValueError("positions must be in the basic system of coordinates")
-                data.numbers.append(int(fields[1]))
-                data.nodes.append([_real(value) for value in fields[3:6]])
+                data.nodes[int(fields[1])] = [_real(value) for value in fields[3:6]]
             elif card in ("CTETRA", "CPENTA", "CHEXA"):
                 entries = [int(value) for value in fields[3:] if value]
                 if (card, len(entries)) not in _SOLIDS:
                     raise ValueError("nodes of an element are missing")
                 kind, order = _SOLIDS[card, len(entries)]
                 row = [int(fields[1]), *(entries[i] for i in order)]
-                elements.setdefault((kind, fields[2]), []).append(row)
+                data.add_element(kind, fields[2], row)
             elif card == "PSOLID":
                 properties[fields[1]] = fields[2]
             elif card == "MAT1":
                 materials[fields[1]] = _material(fields)
             elif card in _REFUSED:
-                refusals.leaves_out(card, _REFUSED[card])
+                data.refused[card] = _REFUSED[card]
             elif card.startswith("C") and not card.startswith(_NO_ELEMENTS):
-                refusals.leaves_out(card, "no tetrahedron, wedge or hexahedron")
-    for (kind, region), rows in elements.items():
-        table = np.array(rows, dtype=np.int64)
-        data.groups.append(ElementGroup(kind, table[:, 0], table[:, 1:], region))
-        if materials.get(properties.get(region)):
-            data.materials[region] = materials[properties[region]]
+                data.refused[card] = "no tetrahedron, wedge or hexahedron"
+    found = {region: materials.get(name) for region, name in properties.items()}
+    data.materials = {region: material for region, material in found.items() if material}
     return data
 
 
-def read_dmig(path: Path, nodes: list[int], name: str) -> sp.csr_array:
-    """Return the symmetric real matrix `name` of DMIG cards on the displacements of `nodes`."""
-    places = {number: 3 * i for i, number in enumerate(nodes)}
-    rows, columns, values = [], [], []
-    known = set()
+def read_dmig(path: Path, nodes: list[int]) -> dict[str, sp.csr_array]:
+    """Return the symmetric real matrices of DMIG cards on the displacements of `nodes`, by name."""
+    places = {
+        (str(number), direction): 3 * i + k
+        for i, number in enumerate(nodes)
+        for k, direction in enumerate("123")
+    }
+    entries: dict[str, list[tuple[int, int, float]]] = {}
     for place, fields in cards(path):
         if fields[0] != "DMIG":
             continue
-        known.add(fields[1])
-        if fields[1] != name:
-            continue
-        if fields[2] == "0":
-            if fields[3] != "6" or fields[4] not in ("1", "2"):
-                raise ValueError(
-                    f"{path.name}: {place}: matrix {name} must be symmetric and real (IFO 6, TIN "
-                    f"1 or 2), got IFO {fields[3]}, TIN {fields[4]}"
-                )
-            continue
-        column = _place(places, fields[2], fields[3], f"{path.name}: {place}")
-        for start in range(5, len(fields) - 2, 4):
-            if fields[start]:
-                columns.append(column)
-                rows.append(_place(places, *fields[start : start + 2], f"{path.name}: {place}"))
-                values.append(_real(fields[start + 2]))
-    if not values:
-        raise ValueError(f"{path.name}: has no matrix {name!r}; it has {sorted(known)}")
-    return symmetric(rows, columns, values, 3 * len(nodes))
+        with reading(f"DMIG of {place} of {path.name}"):
+            name, node, direction, kind = fields[1:5]
+            found = entries.setdefault(name, [])
+            if node == "0":
+                if direction != "6" or kind not in ("1", "2"):
+                    raise ValueError(
+                        f"matrix {name} must be symmetric and real (IFO 6, TIN 1 or 2), got IFO "
+                        f"{direction}, TIN {kind}"
+                    )
+                continue
+            column = places[node, direction]
+            for start in range(5, len(fields) - 2, 4):
+                if fields[start]:
+                    row = places[fields[start], fields[start + 1]]
+                    found.append((row, column, _real(fields[start + 2])))
+    return {
+        name: symmetric(*zip(*found, strict=True), 3 * len(nodes))
+        for name, found in entries.items()
+        if found
+    }
 
 
 def symmetric(rows: list, columns: list, values: list, size: int) -> sp.csr_array:
@@ -134,15 +132,6 @@ def _split(line: str) -> list[str]:
     line = line.ljust(80)
     cuts = [line[8 + i * width : 8 + (i + 1) * width].strip() for i in range(count)]
     return [line[:8].strip(), *cuts]
-
-
-def _place(places: dict[int, int], node: str, direction: str, label: str) -> int:
-    if int(node) not in places or direction not in ("1", "2", "3"):
-        raise ValueError(
-            f"{label}: node {node}, direction {direction}: is no displacement (1, 2, 3) of the "
-            "nodes given"
-        )
-    return places[int(node)] + int(direction) - 1
 
 
 def _material(fields: list[str]) -> dict[str, float]:

@@ -15,7 +15,7 @@ from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.linear.model.turning import interface_motion
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, spin_at_start
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.theory.rotating_axes import into_rotor_frame, parts_across
 
 _SOFT = 1e-8  # of the stiffest mode: resistance of free motions, which are preferred
@@ -39,7 +39,7 @@ def journal_start(scene: LinearScene, speed: float, orders: np.ndarray) -> np.nd
     apart = scene.axes.T @ scene.body.axis.radial(scene.body.frame.origin)
     for n, shift in {0: apart, **into_rotor_frame(-apart)}.items():
         harmonics[at[n]] += scene.N[: scene.count].T @ shift[: scene.count]
-    cage = spin_at_start(scene.body)[0]
+    cage = scene.body.placement.angle
     places = {one.interface: _place(one, load, speed, cage) for one, load in loads.items()}
     places = {name: place for name, place in places.items() if np.any(place)}
     if not places:

@@ -17,8 +17,6 @@ import numpy as np
 
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.multibody.evaluation import evaluating, without_forces
-from exudyn_rotor.multibody.rotor.rotor_body import spin_at_start
-from exudyn_rotor.multibody.supports.connector import BearingConnector, Connector, Force
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.stiffening import stiffening
@@ -63,7 +61,7 @@ class Probe:
         body = scene.body
         self.mbs, self.spin = body.mbs, scene.spin_coordinate
         self.laws = [one.connector for one in body.supports]
-        read, self._cage = body.mbs.systemData.GetNodeLTGODE2, spin_at_start(body)[0]
+        read = body.mbs.systemData.GetNodeLTGODE2
         self._places = [np.concatenate([read(n) for n in law.nodes]) for law in self.laws]
         self.rotor_terms = lru_cache(_KEPT)(self._rotor_terms)
         self.turn = lru_cache(_KEPT)(self._turn)
@@ -91,7 +89,7 @@ class Probe:
         whole = np.zeros((len(self.scene.rest),) * 2)
         for law, places in zip(self.laws, self._places, strict=True):
             if law.has_mass:
-                whole[places[:, None], places] += law.inertia()[0]
+                whole[places[:, None], places] += law.mass_matrix()
         return self._of_free(whole)
 
     @cached_property
@@ -153,22 +151,12 @@ class Probe:
         K, D = self._exudyn_slopes() if slopes else np.zeros((2, size, size))
         for law, places in zip(self.laws, self._places, strict=True) if laws else ():
             law.read(q[places].tolist(), q_t[places].tolist())
-            found = self.law_force(law, theta)
-            force[places] += found.values @ found.J
-            parts = [found.slopes()] if slopes else []
-            if law.has_mass:
-                _, turning, *more = law.inertia()
-                force[places] += turning
-                parts += [more] if slopes else []
-            for by_place, by_rate in parts:
+            force[places] += law.forces(self._time(theta))
+            if slopes:
+                by_place, by_rate = law.slopes(self._time(theta))
                 K[places[:, None], places] += by_place
                 D[places[:, None], places] += by_rate
         return Forces(force[self.scene.free], self._of_free(K), self._of_free(D))
-
-    def law_force(self, law: Connector, theta: float = 0.0) -> Force:
-        """Return the forces of a law on its ports where it has been read, and its tangent."""
-        cage = (self._cage,) if isinstance(law, BearingConnector) else ()
-        return law.tangent(self._time(theta), *cage)
 
     def _exudyn_slopes(self) -> tuple[np.ndarray, np.ndarray]:
         """Return less the derivatives of Exudyn's forces at the present state."""
@@ -247,15 +235,15 @@ def probing(scene: LinearScene, speed: float) -> Iterator[Probe]:
     numbers = [number for one in body.supports for number in one.objects]
     native = [number for number in numbers if "activeConnector" in mbs.GetObject(number)]
 
-    def mute(muted: bool) -> None:
+    def probe(angle: float | None) -> None:
         for one in body.supports:
-            one.connector.muted = muted
+            one.connector.probed = angle
         for number in native:
-            mbs.SetObjectParameter(number, "activeConnector", not muted)
+            mbs.SetObjectParameter(number, "activeConnector", angle is None)
 
-    mute(True)
+    probe(body.placement.angle)
     try:
         with without_forces(mbs, body.objects["physics"]), evaluating(mbs) as solver:
             yield Probe(scene, speed, solver)
     finally:
-        mute(False)
+        probe(None)

@@ -114,7 +114,7 @@ class SceneModel(LinearModel):
         one = self.scene.body.supports[number]
         ends = {one.support.interface: one.connector.base}
         sensor = getattr(one.support, "sensor_interface", None)
-        return ends if sensor is None else ends | {sensor: one.connector.sensor_base}
+        return ends if sensor is None else ends | {sensor: one.connector.seen.base}
 
     @cached_property
     def _standing_bodies(self) -> list[StandingBody]:
@@ -295,7 +295,7 @@ class SceneModel(LinearModel):
             return Support(given.interface, *given.coefficients_at(place, probe.speed))
         if isinstance(given, ClearanceStop):
             return Support(given.interface, *given.slopes(*place, 0.0, 0.0, 0.0, probe.speed))
-        load = -probe.law_force(law).values[:2]
+        load = -np.array(law.wrench(0.0)[:2])
         load[np.abs(load) <= _NO_LOAD * 9.81 * self.scene.mass] = 0.0
         if np.abs(load - given.load).max() <= _SAME_LOAD * np.abs(load).max():
             return given  # it remembers its coefficients

@@ -16,7 +16,7 @@ from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.linear.model.rotor_train import Link, RotorTrain
 from exudyn_rotor.linear.model.scene.linear_scene import check_body, known_objects
 from exudyn_rotor.multibody.drives import SceneConnection
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, spin_at_start
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.rotor_items import known_rotors
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 
@@ -44,14 +44,14 @@ def scene_train(mbs: exudyn.MainSystem, bodies: Sequence[RotorBody]) -> tuple[Ro
     named = {body.name: body for body in bodies}
     links = _links(named)
     _check_nothing_else(mbs, bodies)
-    speed = spin_at_start(bodies[0])[1]
+    speed = bodies[0].placement.speed
     on_ground = {
         name: [one.support for one in body.supports if one.base is None]
         for name, body in named.items()
     }
     train = RotorTrain(
         {name: body.selection.source for name, body in named.items()},
-        {name: spin_at_start(body)[1] / speed for name, body in named.items()},
+        {name: body.placement.speed / speed for name, body in named.items()},
         on_ground,
         links,
         driven=[name for name, body in named.items() if _is_driven(body)],
@@ -77,7 +77,7 @@ def _check_alike(first: RotorBody, body: RotorBody) -> None:
     """Refuse rotors whose equations have no common axes, speed or level, and what trains lack."""
     connections = [isinstance(drive, SceneConnection) for drive in body.drives]
     for fault, is_there in (
-        ("starts without a spin speed, on which ratios depend", spin_at_start(body)[1] == 0.0),
+        ("starts without a spin speed, on which ratios depend", body.placement.speed == 0.0),
         (
             f"has axes (n1, n2, e) that are not parallel to those of {first.name!r}",
             np.abs(body.standing_axes - first.standing_axes).max() > _PARALLEL,

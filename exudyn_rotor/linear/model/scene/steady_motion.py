@@ -22,7 +22,6 @@ from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.linear.model.scene.probe import LinearPoint, Probe, probing
 from exudyn_rotor.linear.model.spin import ARM
 from exudyn_rotor.linear.model.turning import radius_of_gyration
-from exudyn_rotor.multibody.rotor.rotor_body import spin_at_start
 from exudyn_rotor.reduction.reduced_rotor import RIGID_KINDS, ModeKind
 
 Motion = tuple[np.ndarray, np.ndarray]  # orders (h,) and harmonics (h, k)
@@ -140,7 +139,7 @@ class _Search:
 
     @cached_property
     def angles(self) -> np.ndarray:
-        first = 0.0 if self.probe.speed else spin_at_start(self.probe.scene.body)[0]
+        first = 0.0 if self.probe.speed else self.probe.scene.body.placement.angle
         return first + 2.0 * np.pi * np.arange(self.samples) / self.samples
 
     @cached_property
