@@ -46,17 +46,16 @@ class Request:
             raise ValueError(
                 f"speeds: needs one speed or (low, high) [rad/s], got {checks.shown(speeds)}"
             )
-        loads = values
-        if load_frequencies is not None:
-            loads = _frequencies(load_frequencies, "load_frequencies")
+        given = speeds if load_frequencies is None else load_frequencies
+        loads = _frequencies(given, "load_frequencies")
         if values.max() + loads.max() == 0.0:
             raise ValueError(
                 "speeds, load_frequencies: all are zero, so nothing moves; give the highest "
                 "frequency of the loads [rad/s]"
             )
-        accuracy = checks.tolerance(accuracy, "accuracy")
         ends = float(values[0]), float(values[-1]), float(loads.max())
-        return cls(*ends, accuracy, load_frequencies is not None)
+        banded = load_frequencies is not None
+        return cls(*ends, checks.tolerance(accuracy, "accuracy"), banded)
 
     @property
     def highest(self) -> float:

@@ -104,12 +104,14 @@ class RunCheck:
     @property
     def gap(self) -> str:
         """What a record of few instants lacks; empty for a complete one."""
-        if self.complete:
-            return ""
         return (
-            f"only {self.instants} of at least {_ENOUGH} instants are known: call "
-            "body.start_recording() before mbs.Assemble(), and lower "
-            "solution.sensors.writePeriod of the settings"
+            ""
+            if self.complete
+            else (
+                f"only {self.instants} of at least {_ENOUGH} instants are known: call "
+                "body.start_recording() before mbs.Assemble(), and lower "
+                "solution.sensors.writePeriod of the settings"
+            )
         )
 
     def __str__(self) -> str:

@@ -16,7 +16,6 @@ from exudyn_rotor.multibody.full.add_full import add_full, check_memory, make_fu
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.plan import (
     LOCKINGS,
-    LockedForce,
     Plan,
     Setup,
     add_nodes,
@@ -264,11 +263,17 @@ def _equations(plan: Plan, nodes: list) -> ObjectGenericODE2:
     mass, functions = layout.spread(motion.mass_matrix(0.0, rest), layout.lock_mass), {}
     force = np.zeros(layout.size)
     force[layout.unknowns] = constant.force
-    if not motion.is_constant or guide is not None:
+    if not motion.is_constant:
         kernel = Kernel(motion, layout.unknowns, layout.size)
         if kernel.rows.size:
             mass, functions["massMatrixUserFunction"] = _varying_mass(mass, kernel, layout.size)
-        functions["forceUserFunction"] = _forces(kernel, guide)
+
+        def forces(mbs, t, item, q, q_t):
+            found = kernel.forces(t, q, q_t)
+            # Exudyn takes a list faster than an array
+            return (found if guide is None else found + guide(t)).tolist()
+
+        functions["forceUserFunction"] = forces
         # even where it is zero: without it, Exudyn differentiates the object numerically with all
         # its matrices, and calls the user force for every coordinate
         functions["jacobianUserFunction"] = lambda mbs, t, item, q, q_t, factor_q, factor_v: (
@@ -283,16 +288,6 @@ def _equations(plan: Plan, nodes: list) -> ObjectGenericODE2:
         **functions,
         visualization=VObjectGenericODE2(show=False),
     )
-
-
-def _forces(kernel: Kernel, guide: LockedForce | None) -> Callable:
-    """Return the user function of the forces, with those that `guide` locked coordinates."""
-    # Exudyn takes a list faster than an array
-    if guide is None:
-        return lambda mbs, t, item, q, q_t: kernel.forces(t, q, q_t).tolist()
-    if not kernel.has_forces:
-        return lambda mbs, t, item, q, q_t: guide(t).tolist()
-    return lambda mbs, t, item, q, q_t: (guide(t) + kernel.forces(t, q, q_t)).tolist()
 
 
 def _varying_mass(

@@ -66,9 +66,8 @@ class Kernel:
         self._translations = np.array(unknowns[motion.translations], dtype=int)
         self._spin = int(unknowns[form.translation_count]) if form.has_spin else None
         self._varies = form.has_spin and not form.has_frozen_spin  # the spin's own inertia
-        # whether the constant part leaves out inertia forces on the modes, and any force at all
+        # whether the constant part leaves out inertia forces on the modes
         self.has_modal_forces = not form.is_constant_speed
-        self.has_forces = self.has_modal_forces or motion.is_coupled or motion.has_body_force
         self._force, self._jacobian = np.zeros(size), np.zeros((size, size))
         self._modal_force = self._force[self._first :]
         self._stack(motion)

@@ -187,6 +187,21 @@ def test_loads_that_the_frame_does_not_take_are_found(
     assert (check["unresisted load"].value > 0.3) == lost
 
 
+def test_supports_by_a_law_of_their_own_load_the_rotor_alike(reduced):
+    """What the modes leave out follows from the bearings' forces, whoever evaluates them."""
+    found = []
+    for stiffness in (2e7, lambda speed: 2e7 * np.eye(2)):
+        mbs = exu.SystemContainer().AddSystem()
+        body = add_rotor(mbs, reduced, spin=100.0, translation="none", gravity=[0, -9.81, 0])
+        add_supports(body, [Support(name, stiffness, 500.0) for name in ("left", "right")])
+        body.start_recording()
+        mbs.Assemble()
+        solve(mbs, 100, 0.01)
+        found.append(check_run(body, warn=False)["residual"].value)
+    assert found[0] > 1e-3
+    assert found[1] == pytest.approx(found[0], rel=1e-3)
+
+
 def test_yielding_is_found(solid):
     """Von Mises √(3/2 s:s) of the deviator s."""
     reduced = solid.reduce(2, prestress=solid.prestress(yield_stress=1e6))

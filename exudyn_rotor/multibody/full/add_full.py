@@ -3,9 +3,6 @@
 The matrices are sparse, with user functions for what varies. Of a mass matrix that varies, one row
 and column do, that of the spin; they stand in an object of their own, so that the rotor's matrices
 are handed over once.
-
-Exudyn factorises the Jacobian of an implicit step by Eigen's ``SparseLU``, ordered by columns
-(COLAMD), which fills it several times as much as nested dissection and takes no notice of symmetry.
 """
 
 from __future__ import annotations

@@ -12,7 +12,13 @@ from exudyn.itemInterface import SensorSuperElement
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.full.ties import add_ties
-from exudyn_rotor.multibody.rotor.rotor_body import Record, RotorBody, SceneBody, native_settings
+from exudyn_rotor.multibody.rotor.rotor_body import (
+    Record,
+    RotorBody,
+    SceneBody,
+    add_sensor,
+    sensor_options,
+)
 from exudyn_rotor.multibody.rotor.rotor_items import (
     Carrier,
     append_nodes,
@@ -136,7 +142,6 @@ class FullRotorBody(SceneBody):
             self.frame.points(interface.reference),
             np.kron(np.eye(2), self.frame.B),
             interface.radius,
-            nodes,
         )
 
     def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
@@ -146,21 +151,16 @@ class FullRotorBody(SceneBody):
         """
         self.check_present()
         checks.count(node, "node", most=self.node_count - 1)
-        settings = native_settings(self, output, options)
+        checks.instance(output, "output", exudyn.OutputVariableType)
+        options = sensor_options(self, options)
         point = self._nodes_carrier([node], "position")
         (number,) = append_nodes(self.mbs, point.body, *point.virtual_nodes("position"))
-        item = SensorSuperElement(bodyNumber=point.body, meshNodeNumber=number, **settings)
-        return self.mbs.AddSensor(item)
+        at = {"bodyNumber": point.body, "meshNodeNumber": number}
+        return add_sensor(self, SensorSuperElement, options, outputVariableType=output, **at)
 
 
 def reduced_body(body: object, how: str = "add_rotor returned it") -> RotorBody:
-    """Return a rotor body in component modes, which analyses of a scene need.
-
-    Raises
-    ------
-    TypeError
-        For a full body, or anything else.
-    """
+    """Return a rotor body in component modes, which analyses of a scene need."""
     if isinstance(body, FullRotorBody):
         raise TypeError(
             f"body: rotor {body.name!r} is a full body, whose displacements of all nodes this "

@@ -229,14 +229,10 @@ def _add_node_marker(body: RotorItems, given: dict) -> exudyn.MarkerIndex:
 def mean_motion(body: RotorItems) -> np.ndarray:
     """Return the mean displacement and rotation at the node (6, m), axes of the flexible body.
 
-    The frame of Exudyn's flexible body tilts, and moves, with the rotor. The frame of a fixed axis
-    turns only; tilts are modes, and so are translations that the formulation does not have. What
-    moves as the node of Exudyn's body is the mean rigid motion of the rotor at the mesh origin x,
-
-        u = A (Sζ/m + φ × (x − χ)),    φ = I⁻¹ Σ M y × ψ ζ,
-
-    in which rigid modes have a share alone, and Craig–Bampton modes, which hold Exudyn's frame at a
-    boundary (:mod:`exudyn_rotor.reduction.mean_axis`).
+    The node of Exudyn's body moves with the mean rigid motion of the rotor at the mesh origin x,
+    ``u = A (Sζ/m + φ × (x − χ))`` and ``φ = I⁻¹ Σ M y × ψ ζ``, in which rigid modes have a share
+    alone, and Craig–Bampton modes, which hold Exudyn's frame at a boundary
+    (:mod:`exudyn_rotor.reduction.mean_axis`).
     """
     selection, B = body.selection, body.frame.B
     reduced = selection.source

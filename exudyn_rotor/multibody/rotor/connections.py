@@ -204,12 +204,18 @@ def load_places(body: RotorItems) -> tuple[LoadPlace, ...]:
                 motion[3:] = 0.0
             on_mesh = carrier.point @ turn + body.frame.origin
             found.append(LoadPlace(on_mesh, motion, _interface_at(body, on_mesh, motion)))
-    interfaces = body.selection.source.interfaces
-    # drives and connections of rotors act by coordinates
-    driven = {one.at if one.body.script is body.script else one.other_at for one in body.drives}
-    for name in sorted(driven - {None}):
-        motion = interfaces[name].motion @ body.selection.T
-        found.append(LoadPlace(interfaces[name].reference, motion, name))
+    # drives, connections of rotors and laws of supports act by coordinates
+    acting = {
+        one.at if one.body.script is body.script else one.other_at: True for one in body.drives
+    }
+    for one in body.supports:
+        if one.uses_python:
+            acting.setdefault(one.support.interface, getattr(one.support, "tilts", False))
+    for name, interface in body.selection.source.interfaces.items():
+        if name in acting:
+            motion = interface.motion @ body.selection.T
+            motion[3:] *= acting[name]
+            found.append(LoadPlace(interface.reference, motion, name))
     return tuple(found)
 
 

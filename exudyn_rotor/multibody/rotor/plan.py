@@ -303,22 +303,21 @@ def placement(
     """
     place = checks.vector(position, "position", "m")
     velocity, start = checks.vector(initial_velocity, "initial_velocity", "m/s"), np.zeros(3)
-    if formulation.moves_origin:
-        if np.any(velocity):
-            raise ValueError(
-                "velocity given twice: by initial_velocity and by the translation τ(t)"
-            )
-        start, velocity, _ = start_values(formulation.translation, "translation")
-    else:
-        _check_direction(formulation, velocity, axis)
-    if formulation.has_spin:
-        angle, speed = (
-            0.0 if given is None else checks.number(given, name, unit)
-            for given, name, unit in (
-                (initial_angle, "initial_angle", "rad"),
-                (initial_speed, "initial_speed", "rad/s"),
-            )
+    lost = {3: 0.0 * velocity, 2: axis * (axis @ velocity), 0: velocity}
+    missing = np.linalg.norm(lost[formulation.translation_count])
+    if missing > 1e-9 * np.linalg.norm(velocity):
+        raise ValueError(
+            f"initial_velocity: the formulation has no such motion, {missing:.3g} m/s of "
+            f"{velocity.tolist()} m/s; use translation='free', velocities of translation modes in "
+            "modal_velocities, or the velocity of a prescribed translation"
         )
+    if formulation.moves_origin:
+        start, velocity, _ = start_values(formulation.translation, "translation")
+    if formulation.has_spin:
+        angle = 0.0 if initial_angle is None else initial_angle
+        speed = 0.0 if initial_speed is None else initial_speed
+        angle = checks.number(angle, "initial_angle", "rad")
+        speed = checks.number(speed, "initial_speed", "rad/s")
     elif initial_angle is not None or initial_speed is not None:
         raise ValueError(
             "spin given twice: by a prescribed spin, and by initial_angle or initial_speed; leave "
@@ -327,18 +326,6 @@ def placement(
     else:
         angle, speed, _ = start_values(formulation.spin, "spin")
     return Placement(place, rotation, start, velocity, angle, speed)
-
-
-def _check_direction(formulation: Formulation, velocity: np.ndarray, axis: np.ndarray) -> None:
-    """Refuse a velocity that the formulation cannot have; `axis` in inertial axes."""
-    lost = {3: 0.0 * velocity, 2: axis * (axis @ velocity), 0: velocity}
-    missing = np.linalg.norm(lost[formulation.translation_count])
-    if missing > 1e-9 * np.linalg.norm(velocity):
-        raise ValueError(
-            f"initial_velocity: translation={formulation.translation!r} has no such motion, "
-            f"{missing:.3g} m/s of {velocity.tolist()} m/s; use translation='free', or velocities "
-            "of translation modes in modal_velocities"
-        )
 
 
 def color_of(values: Sequence[float]) -> tuple[float, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -55,7 +55,7 @@ _SAME = 1e-9  # share of the speed, and rad, by which start and prescribed spin 
 
 
 @dataclass(frozen=True, eq=False)
-class StartState:
+class StartState(checks.Checked):
     """Coordinates and velocities of a scene at one angle of a rotor.
 
     Attributes
@@ -77,21 +77,10 @@ class StartState:
     array([0. , 0.1])
     """
 
-    q: np.ndarray
-    q_t: np.ndarray
+    q: np.ndarray = checks.numbers("coordinates")
+    q_t: np.ndarray = checks.numbers("coordinates")
     angle: float
     speed: float
-
-    def __post_init__(self) -> None:
-        q = checks.array(self.q, "q", "m, rad")
-        q_t = checks.array(self.q_t, "q_t", "m/s, rad/s")
-        if q.ndim != 1 or q.shape != q_t.shape:
-            raise ValueError(
-                f"q, q_t: need one velocity for each coordinate, got the shapes {q.shape} and "
-                f"{q_t.shape}"
-            )
-        checks.keep(self, q=q, q_t=q_t)
-        checks.keep_numbers(self, {"angle": "rad", "speed": "rad/s"})
 
 
 def keep_in_node(mbs: exudyn.MainSystem, number: int, state: StartState) -> None:
@@ -151,30 +140,14 @@ def _external_moment(
     return moment
 
 
-def add_function_sensor(
-    body: RotorItems, function: Callable, options: Mapping[str, Any]
-) -> exudyn.SensorIndex:
-    """Add a sensor of what a user function returns."""
-    settings = _settings_of(body, options)
-    return body.mbs.AddSensor(SensorUserFunction(sensorUserFunction=function, **settings))
-
-
-def native_settings(
-    body: RotorItems, output: exudyn.OutputVariableType, options: Mapping[str, Any]
-) -> dict[str, Any]:
-    """Return the settings of a native sensor; Exudyn refuses unsuited outputs in Assemble."""
-    checks.instance(output, "output", _KINDS)
-    return {"outputVariableType": output} | _settings_of(body, options)
-
-
-def _settings_of(body: RotorItems, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the settings of a sensor, stored internally by default."""
+def sensor_options(body: RotorItems, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the options of a sensor, checked; it is stored internally by default."""
     body.check_present()
     known = ("name", "storeInternal", "writeToFile", "fileName")
     for option in options:
         if option not in known:
             raise TypeError(f"{option}: is no option of this sensor; it takes {', '.join(known)}")
-    settings = {"storeInternal": True, "writeToFile": False} | dict(options)
+    settings = {"storeInternal": True, "writeToFile": False} | options
     for option in ("storeInternal", "writeToFile"):
         checks.flag(settings[option], option)
     if "fileName" in settings:
@@ -184,6 +157,15 @@ def _settings_of(body: RotorItems, options: Mapping[str, Any]) -> dict[str, Any]
         if int(body.mbs.GetSensorNumber(name)) != -1:
             raise ValueError(f"name: this system already has a sensor {name!r}; choose another")
     return settings
+
+
+def add_sensor(
+    body: RotorItems, kind: type, options: Mapping[str, Any], **item: Any
+) -> exudyn.SensorIndex:
+    """Add a sensor of a kind, of what `item` says; Exudyn refuses unsuited outputs in Assemble."""
+    if "outputVariableType" in item:
+        checks.instance(item["outputVariableType"], "output", _KINDS)
+    return body.mbs.AddSensor(kind(**item, **sensor_options(body, options)))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -309,8 +291,9 @@ class SceneBody(RotorItems, ABC):
     def add_interface_sensor(self, interface: str, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at an interface's marker; `options` go to ``SensorMarker``."""
         marker = self.marker(interface)
-        settings = native_settings(self, output, options)
-        return self.mbs.AddSensor(SensorMarker(markerNumber=marker, **settings))
+        return add_sensor(
+            self, SensorMarker, options, markerNumber=marker, outputVariableType=output
+        )
 
     def add_spin_sensor(self, **options):
         """Add a sensor of spin angle [rad] and spin speed [rad/s]."""
@@ -321,7 +304,7 @@ class SceneBody(RotorItems, ABC):
             speed = mbs.GetNodeOutput(node, _KINDS.Coordinates_t, configuration)[index]
             return [float(angle), float(speed)]
 
-        return add_function_sensor(self, spin, options)
+        return add_sensor(self, SensorUserFunction, options, sensorUserFunction=spin)
 
     def add_drive_torque_sensor(self, **options):
         """Add a sensor of the torque about e that a prescribed spin needs [N m].
@@ -343,7 +326,7 @@ class SceneBody(RotorItems, ABC):
             needed = self.motion.drive_torque(t, q, q_t, q_tt[self.motion.modes])
             return [needed - _external_moment(self, t, q, q_t, configuration)]
 
-        return add_function_sensor(self, torque, options)
+        return add_sensor(self, SensorUserFunction, options, sensorUserFunction=torque)
 
     def add_energy_sensor(self, **options):
         """Add a sensor of kinetic energy, elastic energy and the potential of the weight [J].
@@ -362,7 +345,7 @@ class SceneBody(RotorItems, ABC):
             energy = self.motion.energy(t, q, q_t, gravity)
             return list(energy)
 
-        return add_function_sensor(self, energy, options)
+        return add_sensor(self, SensorUserFunction, options, sensorUserFunction=energy)
 
     def start_recording(self) -> None:
         """Record all coordinates of the coming run, for :func:`exudyn_rotor.check_run`.
@@ -479,7 +462,7 @@ class RotorBody(SceneBody):
                 f"so no mesh nodes; name an interface, got {checks.shown(where)}"
             )
         interface = interface_of_nodes(nodes_of(self.mbs, body)[:count], where, kind)
-        return carrier_of(self.mbs, body, interface, tuple(self.nodes.values()))
+        return carrier_of(self.mbs, body, interface)
 
     def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``.
@@ -495,10 +478,10 @@ class RotorBody(SceneBody):
                 f"node: rotor {self.name!r} has mesh nodes 0 … {count - 1}, not {node}"
                 + ("" if count else "; it has no shapes (without_shapes)")
             )
-        settings = native_settings(self, output, options)
+        at = {"bodyNumber": marker_body, "meshNodeNumber": int(node)}
+        made = add_sensor(self, SensorSuperElement, options, outputVariableType=output, **at)
         _warn_of_static_stress(self, output)
-        item = SensorSuperElement(bodyNumber=marker_body, meshNodeNumber=int(node), **settings)
-        return self.mbs.AddSensor(item)
+        return made
 
     def start_from(self, state: StartState) -> None:
         """Make a state of the whole scene the initial state of the coming runs.

@@ -101,7 +101,6 @@ class Carrier:
     point: np.ndarray  # (3,) Axes of the body [m]
     motion: np.ndarray  # (6, m) Displacement and rotation by coordinates, axes of the body
     radius: float  # of the nodes that a rotation is read from [m]
-    nodes: tuple[exudyn.NodeIndex, ...] = ()  # of the frame, and of the body's coordinates
 
     def shifted(self, arm: np.ndarray) -> Carrier:
         """Return the point at an arm (3,), axes of the body, that turns with the rotation."""
@@ -193,12 +192,11 @@ def carrier_of(
     mbs: exudyn.MainSystem,
     body: exudyn.ObjectIndex,
     interface: Interface,
-    nodes: tuple[exudyn.NodeIndex, ...] = (),
 ) -> Carrier:
     """Return what moves with the mean motion of nodes of a flexible body."""
     columns = np.asarray(mbs.GetObjectParameter(body, "modeBasis"))
     motion = interface.mean_motion(len(columns) // 3) @ columns
-    return Carrier(body, interface.reference, motion, interface.radius, nodes)
+    return Carrier(body, interface.reference, motion, interface.radius)
 
 
 def marker_interface(mbs: exudyn.MainSystem, marker: dict) -> Interface:
@@ -315,7 +313,6 @@ class RotorItems(Plan):
             self.frame.points(found.reference),
             self.frame.columns(found.motion @ self.selection.T),
             found.radius,
-            tuple(self.nodes.values()),
         )
 
     def marker(self, interface: str) -> exudyn.MarkerIndex:

@@ -20,7 +20,7 @@ from typing import Any
 
 import exudyn
 import numpy as np
-from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
+from exudyn.itemInterface import ObjectGenericODE2, SensorUserFunction, VObjectGenericODE2
 from scipy.linalg import block_diag
 
 from exudyn_rotor import checks
@@ -32,7 +32,7 @@ from exudyn_rotor.bearings.support import Support, acts
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.plan import generic_node
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, add_function_sensor
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, add_sensor
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, entry
 from exudyn_rotor.multibody.supports.ends import QUARTER, BaseEnd, FoundationEnd, RotorEnd
 from exudyn_rotor.theory.rotating_axes import axial_rotation, axial_skew
@@ -548,7 +548,7 @@ class SceneLaw(ABC):
         def output(mbs, t, sensors, factors, configuration):
             return np.hstack(self.values(configuration)).tolist()
 
-        return add_function_sensor(self.body, output, options)
+        return add_sensor(self.body, SensorUserFunction, options, sensorUserFunction=output)
 
 
 def check_body(body: Body, argument: str) -> None:

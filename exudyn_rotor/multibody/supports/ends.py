@@ -167,7 +167,8 @@ class RotorEnd:
         own = axes_of(body.axis)
         interface = body.selection.source.interfaces[name]
         carrier = body.interface_carrier(name)
-        self.nodes = carrier.nodes
+        nodes = body.mbs.GetObjectParameter(carrier.body, "nodeNumbers")
+        self.nodes = tuple(map(exudyn.NodeIndex, nodes))
         modes = np.kron(np.eye(2), own.T @ body.frame.B.T) @ carrier.motion
         self.axes = body.standing_axes
         point = own.T @ (body.axis.project(interface.reference) - body.frame.origin)

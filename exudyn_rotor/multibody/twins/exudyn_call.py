@@ -2,10 +2,7 @@
 
 Argument names, defaults and returned keys of ``mbs.CreateFixedAxisFFRFReducedOrderObject`` are
 those of ``mbs.CreateFFRFReducedOrderObject``; changing the name of the call swaps the formulation.
-
-Markers, loads and connectors are all known when a system is assembled. What ``mbs.Assemble()`` does
-for rotors stands in :mod:`exudyn_rotor.multibody.rotor.assembly`, which a scene without rotors does
-not load.
+What ``mbs.Assemble()`` does for rotors stands in :mod:`exudyn_rotor.multibody.rotor.assembly`.
 """
 
 from __future__ import annotations
