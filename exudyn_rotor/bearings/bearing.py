@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.controlled_support import ControlledSupport
-from exudyn_rotor.bearings.own_table import table_of
+from exudyn_rotor.bearings.controlled_support import ControlledSupport, table_of
 from exudyn_rotor.bearings.support import COEFFICIENTS, NoCoefficientsError, Support
 
 _REMEMBERED = 1000  # coefficients of a bearing
@@ -76,17 +75,10 @@ class LoadedBearing(ABC):
     """A bearing across the axis that holds its journal in an equilibrium under a static load.
 
     Components are along (n1, n2) of :attr:`SpinAxis.plane`, which stand still, from the centre of
-    the bearing, where the axis of the rotor at rest passes.
-
-    Attributes
-    ----------
-    interface : str
-        Interface of the rotor that is the journal.
-    load : ndarray, shape (2,), or None
-        Static load on the journal [N], about whose equilibrium linear analyses take the bearing;
-        see :func:`exudyn_rotor.bearing_loads`. Scenes do not need it.
-    carries : bool
-        Whether it takes a share of the rotor's weight.
+    the bearing, where the axis of the rotor at rest passes. Linear analyses take the bearing about
+    its equilibrium under the static `load` on the journal [N], see
+    :func:`exudyn_rotor.bearing_loads`; scenes do not need it. What `carries` takes a share of the
+    rotor's weight.
     """
 
     carries: ClassVar[bool] = True
@@ -179,11 +171,6 @@ class Bearing(LoadedBearing):
     Scenes ask for :attr:`law` and :meth:`slopes` in every step, harmonic balance for
     :meth:`law_along`, all without checks. Where the spin is free, scenes ask for `law_with_torque`:
     the force, and the torque on the journal about the axis [N m]; None of bearings without one.
-
-    Attributes
-    ----------
-    interface, load
-        See :class:`LoadedBearing`.
     """
 
     law_with_torque: ClassVar[LawWithTorque | None] = None
@@ -328,12 +315,7 @@ class Linearised:
         return found[self.index]
 
     def check_range(self, speed: float) -> None:
-        """Refuse a speed at which the bearing has no equilibrium.
-
-        Raises
-        ------
-        NoEquilibriumError
-        """
+        """Refuse a speed at which the bearing has no equilibrium."""
         try:
             self._value(speed)
         except _FAILED as error:

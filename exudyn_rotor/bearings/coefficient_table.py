@@ -30,13 +30,8 @@ class CoefficientTable:
     """A coefficient over the spin speed, the frequency of the motion, or both.
 
     Between its points it is a piecewise cubic polynomial that does not overshoot (PCHIP), along
-    one axis after the other; beyond its ends it keeps the value there.
-
-    Attributes
-    ----------
-    speeds, frequencies : ndarray, shape (s,), (f,), or None
-        [rad/s]; None where the coefficient does not depend on it.
-    values : ndarray, shape (s, f, …), (s, …) or (f, …)
+    one axis after the other; beyond its ends it keeps the value there. Values have the shape
+    (s, f, …), without the axis of what they do not depend on.
     """
 
     speeds: np.ndarray | None
@@ -53,12 +48,7 @@ class CoefficientTable:
         values: ArrayLike,
         shapes: Sequence[tuple[int, ...]],
     ) -> CoefficientTable:
-        """Return a table of numbers or matrices of some `shapes`, checked; `name` is for refusals.
-
-        Raises
-        ------
-        TypeError, ValueError
-        """
+        """Return a table of numbers or matrices of some `shapes`, checked under a `name`."""
         if speeds is None and frequencies is None:
             raise ValueError(f"{name}: needs speeds, frequencies, or both [rad/s]")
         axes = [
@@ -140,14 +130,7 @@ def _smooth(points: np.ndarray, values: np.ndarray) -> Callable[[float], np.ndar
 
 
 def read_columns(source: str | Path | Any) -> dict[str, np.ndarray | None]:
-    """Return axes and coefficients, named as for :meth:`Support.from_table`, of a table.
-
-    Raises
-    ------
-    TypeError, ValueError, OSError
-        For columns that are missing or unknown, values that are no numbers, rows that do not make a
-        full grid of speeds and frequencies, and a file that is not there.
-    """
+    """Return axes and coefficients, named as for :meth:`Support.from_table`, of a table."""
     axes: dict[str, np.ndarray] = {}
     entries: dict[tuple[str, int, int], np.ndarray] = {}
     for header, values in _columns(source).items():

@@ -27,13 +27,7 @@ def given_supports(supports: Sequence[Given] | Given) -> tuple[Given, ...]:
 def linear_supports(
     supports: Sequence[Given] | Given,
 ) -> tuple[tuple[Support, ...], tuple[Controlled, ...]]:
-    """Return supports for linear analyses, those without and with coordinates of their own.
-
-    Raises
-    ------
-    TypeError, ValueError
-        For anything else, and a bearing without a load that needs one.
-    """
+    """Return supports for linear analyses, those without and with coordinates of their own."""
     linear: list[Support] = []
     controlled: list[Controlled] = []
     for given in given_supports(supports):
@@ -46,12 +40,7 @@ def check_interfaces(
     supports: Iterable[Given | Controlled],
     known: Mapping[str, Interface | ReducedInterface],
 ) -> None:
-    """Refuse a support at an interface that the rotor does not have, or that cannot tilt.
-
-    Raises
-    ------
-    ValueError
-    """
+    """Refuse a support at an interface that the rotor does not have, or that cannot tilt."""
     for support in supports:
         for place in (support.interface, getattr(support, "sensor", None) or support.interface):
             if place not in known:

@@ -9,7 +9,7 @@ turns with Ω + Ω_r. Under no load its speed follows from the shear of both fil
 
     Ω_r/Ω = 1/(1 + (μ_o R_o³ L_o c_i)/(μ_i R_i³ L_i c_o)),                                 (2)
 
-and under a load from the torques on it with the eccentricities ε of both films, by (3) of
+and under a load from the torques on it with the eccentricities ε of both films, by (1) of
 :mod:`exudyn_rotor.bearings.short_journal`, the moments of the pressure included. (2) is that of
 M. C. Shaw, T. J. Nussdorfer, *An analysis of the full-floating journal bearing*, NACA Report 866
 (1947).

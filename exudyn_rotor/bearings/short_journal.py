@@ -1,14 +1,10 @@
 """Plain journal bearing that is short: Ocvirk's film of 180°, equilibrium and coefficients.
 
-The film is that of :mod:`exudyn_rotor.bearings.short_film`. At rest, along the line of centres and
-across it, its force is
+The film is that of :mod:`exudyn_rotor.bearings.short_film`. The journal is braked by the shear
+of a film all around it, and by the moment of the pressure about its centre, which is e from the
+centre of the bearing:
 
-    F_r = −(μ Ω R L³/c²) ε²/(1 − ε²)²,   F_t = (μ Ω R L³/c²) π ε/(4 (1 − ε²)^{3/2}).     (2)
-
-The journal is braked by the shear of a film all around it, and by the moment of the pressure about
-its centre, which is e from that of the bearing:
-
-    T = −2π μ Ω R³ L/(c √(1 − ε²)) − ½ e × F.                                              (3)
+    T = −2π μ Ω R³ L/(c √(1 − ε²)) − ½ e × F.                                              (1)
 
 F. W. Ocvirk, NACA TN 2808 (1952); M. I. Friswell et al., *Dynamics of Rotating Machines* (2010),
 Sect. 5.5. Error of the short bearing: below 5 % of the force for L/D ≤ 0.25, and about 20 to 30 %
@@ -84,7 +80,7 @@ class ShortJournalBearing(ShortFilmBearing):
     def law_with_torque(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float, float]:
-        """As :meth:`law`, with the torque (3) on the journal [N m]."""
+        """As :meth:`law`, with the torque (1) on the journal [N m]."""
         fx, fy = self.law(x, y, vx, vy, angle, speed)
         ratio = min(hypot(x, y) / self.clearance, THINNEST)
         return fx, fy, -self._shear * speed / sqrt(1.0 - ratio**2) - 0.5 * (x * fy - y * fx)
@@ -119,7 +115,7 @@ class ShortJournalBearing(ShortFilmBearing):
         return float(brentq(carried, 0.0, _MOST, xtol=1e-15, rtol=1e-14))
 
     def _rest(self, speed: float, load: np.ndarray) -> np.ndarray:
-        """Return where the film carries the load (2) [m]."""
+        """Return where the film carries the load [m]."""
         ratio = self.eccentricity_ratio(speed, load)
         if ratio == 0.0:
             return np.zeros(2)
@@ -135,7 +131,7 @@ class ShortJournalBearing(ShortFilmBearing):
         return found[:, :2], found[:, 2:]
 
     def power_loss(self, speed: float, load: ArrayLike | None = None) -> float:
-        """Return the friction (3) of the journal at rest under a static load, −T Ω [W].
+        """Return the friction (1) of the journal at rest under a static load, −T Ω [W].
 
         Parameters and errors are those of :meth:`equilibrium`.
         """

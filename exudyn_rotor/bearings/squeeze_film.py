@@ -8,15 +8,12 @@ its force is, along the line of centres and against the motion,
 
 which in linear analyses, about an orbit that is given, is a spring and a damper. Without an orbit
 they take the film about rest, at the eccentricity ε at which the spring carries the static load.
-There the film has no stiffness, and damps small harmonic motions along the line of centres by D_r
-and across it by D_t,
-
-    D_r = (μ R L³/c³) π (1 + 2 ε²)/(2 (1 − ε²)^{5/2}),                                     (2)
-    D_t = (μ R L³/c³) π/(2 (1 − ε²)^{3/2}).
+There the film has no stiffness, and damps small harmonic motions by (3) of
+:mod:`exudyn_rotor.bearings.short_film`.
 
 L. San Andrés, *Modern Lubrication Theory*, Notes 13 (Texas A&M, 2010); J. Vance, *Rotordynamics of
-Turbomachinery* (1988), Sect. 6; (2) is (3) of :mod:`exudyn_rotor.bearings.short_film`. Inertia of
-the oil and air in it are left out: for squeeze Reynolds numbers ``ρ ω c²/μ`` well below 10.
+Turbomachinery* (1988), Sect. 6. Inertia of the oil and air in it are left out: for squeeze
+Reynolds numbers ``ρ ω c²/μ`` well below 10.
 """
 
 from __future__ import annotations
@@ -51,7 +48,7 @@ class SqueezeFilmDamper(ShortFilmBearing):
         Of the spring [N/m], relaxed in the centre; 0 for a damper without one.
     orbit : float, optional
         Radius over the clearance of the circular centred orbit about which linear analyses take the
-        film (1), at the spin speed; by default 0, rest under the load, (2).
+        film (1), at the spin speed; by default 0, rest under the load.
     load : array_like, shape (2,), optional
         Static load on the journal along (n1, n2) [N], which the spring carries; none by default.
         An orbit is about the centre whatever the load.
@@ -104,7 +101,7 @@ class SqueezeFilmDamper(ShortFilmBearing):
         return load / self.centring_stiffness
 
     def _matrices(self, speed: float, load: np.ndarray) -> Pair:
-        """Return stiffness and damping on the orbit (1), at the spin speed, or at rest (2)."""
+        """Return stiffness and damping on the orbit (1), at the spin speed, or at rest."""
         return self.coefficients_at(self._rest(speed, load), speed)
 
     def coefficients_at(self, place: np.ndarray, speed: float) -> tuple[np.ndarray, np.ndarray]:

@@ -16,7 +16,7 @@ from exudyn_rotor.bearings.support import NoCoefficientsError
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import UnconvergedError
-from exudyn_rotor.linear.model.build import Target, warn_of_left_out_stiffening
+from exudyn_rotor.linear.model.build import Target, warn_of_omissions
 from exudyn_rotor.linear.response.loads import At, HarmonicForce, Unbalance, checked_places
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.nonlinear.balance import Balance
@@ -168,7 +168,7 @@ def periodic_response(
         highest = values[-1] if over == "speed" else speed
         lowest = next(iter(values[values > 0.0]), 0.0) if over == "speed" else speed
         one = make(given, speed=lowest, highest=highest)
-        warn_of_left_out_stiffening(one.model, highest)
+        warn_of_omissions(one.model, highest)
 
         def problem_at(value: float) -> Problem:
             return one

@@ -11,7 +11,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, rounded
-from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_structural_damping
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import motions_over
 from exudyn_rotor.linear.response.loads import Unbalance, unbalance_load
@@ -67,7 +67,7 @@ def mode_shapes(
     count = checks.count(modes, "modes", least=1)
     tolerance = checks.tolerance(tolerance)
     model = _with_mesh(target, supports, stiffening, axes)
-    warn_of_structural_damping(model, "mode_shapes finds modes")
+    warn_of_omissions(model, what="mode_shapes finds modes")
     motions = motions_over(model, [speed], tolerance=tolerance)
     named = Content.of(model).named(motions)
     lost = np.isnan(motions.values)

@@ -6,6 +6,7 @@ import pytest
 
 from exudyn_rotor import (
     AnnularSeal,
+    ClearanceStop,
     Foundation,
     HarmonicForce,
     MagneticBearing,
@@ -181,8 +182,9 @@ def test_what_has_several_frequencies_at_once_refuses_them():
     add_supports(body, [one.at_frequency(1.5) for one in given])
     with pytest.raises(ValueError, match="round"):
         linear_model(rotor(), supports=given, axes="rotor").at(1.0)
+    stop = ClearanceStop(interface="left", radius=0.05, clearance=1e-3, stiffness=1e6)
     with pytest.raises(ValueError, match="periodic motion has several"):
-        periodic_response(rotor(), [5.0], Unbalance("left", 1e-3), supports=given)
+        periodic_response(rotor(), [5.0], Unbalance("left", 1e-3), supports=[*given, stop])
     with pytest.warns(UserWarning, match="holds 1 to 2 rad/s, and keeps its ends for motions of 5"):
         unbalance_response(rotor(), [5.0], Unbalance("left", 1e-3), supports=given)
 

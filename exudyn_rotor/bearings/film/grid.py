@@ -65,18 +65,10 @@ class Axial:
 class Grid:
     """Nodes of all pads, their neighbours, and the band of the equations.
 
-    Attributes
-    ----------
-    angle, step : numpy.ndarray, (n,)
-        φ of every node and the width Δφ of its volume.
-    pad : numpy.ndarray, (n,)
-        Index of the pad.
-    left, right : numpy.ndarray, (n,)
-        Neighbouring node, −1 at an edge.
-    u : numpy.ndarray, (3, n, 2)
-        (cos φ, sin φ) in the middle, at the left and the right face of each volume.
-    offset : numpy.ndarray, (3, n)
-        h of a journal in the middle there [m].
+    Of every node (n,) the `angle` φ, the width `step` of its volume, the index of its `pad`, and
+    its neighbours `left` and `right`, −1 at an edge; in the middle, at the left and the right face
+    of each volume ``u = (cos φ, sin φ)``, (3, n, 2), and the thickness `offset` about a journal in
+    the middle, (3, n) [m].
     """
 
     def __init__(self, pads: tuple[Pad, ...], nodes: int, axial: Axial) -> None:

@@ -59,13 +59,7 @@ class Equation:
         return self.source * self.grid.axial.weights * (gain + self.grid.step * rates)[..., None]
 
     def solve(self, empty: np.ndarray | None = None) -> Solution:
-        """Return the pressure; `empty` is a guess of the cells without.
-
-        Raises
-        ------
-        ArithmeticError
-            If the cells do not settle.
-        """
+        """Return the pressure; `empty` is a guess of the cells without."""
         shape = (len(self.grid.angle), self.grid.width)
         load = -self.fed(self.heights, self.rates)
         breaks = self.cavitation == "reynolds"

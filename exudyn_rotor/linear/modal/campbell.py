@@ -15,12 +15,7 @@ from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.modal import basis_error, whirl
 from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, Named, OfMotions, rounded
-from exudyn_rotor.linear.model.build import (
-    Target,
-    linear_model,
-    warn_of_left_out_stiffening,
-    warn_of_structural_damping,
-)
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import ModelResult, basis_column, motions_over, table_lines
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
@@ -460,8 +455,7 @@ def campbell(
     )  # fmt: skip
     if modes is not None and modes > model.size:
         raise ValueError(f"modes: {modes} is not between 1 and the {model.size} there are")
-    warn_of_structural_damping(model, "campbell finds modes")
-    warn_of_left_out_stiffening(model, np.abs(values).max())
+    warn_of_omissions(model, np.abs(values).max(), "campbell finds modes")
     motions = motions_over(model, values, progress=progress, label="Campbell")
     named = Content.of(model).named(motions)
     if model.free_motions:

@@ -24,7 +24,7 @@ from exudyn_rotor.linear.modal.resonance import SAME, Search, Stiffness, groups_
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, Named, signed_diameters
 from exudyn_rotor.linear.model.assembly import NO_EQUATIONS
 from exudyn_rotor.linear.model.body import EVEN
-from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import AXES, warn_of_refused
 from exudyn_rotor.linear.over import ModelResult, basis_column, table_lines
 from exudyn_rotor.linear.solve.motions import Motions
@@ -215,7 +215,7 @@ def critical_speeds(
     search.warn()
     model.warn_beyond(result.order * result.speeds)
     if result.speeds.size:
-        warn_of_left_out_stiffening(model, max_speed or result.speeds[0])
+        warn_of_omissions(model, max_speed or result.speeds[0])
     basis_error.warn(result.basis_errors, result._told, model, accuracy)
     return result
 
@@ -482,7 +482,7 @@ def critical_speed_map(
             speeds[here], codes[here] = entry.speeds, [WHIRLS.index(word) for word in entry.whirl]
             errors[here] = np.nan if entry.basis_errors is None else entry.basis_errors
     if np.any(speeds > 0.0):
-        warn_of_left_out_stiffening(first, max_speed or np.nanmin(speeds))
+        warn_of_omissions(first, max_speed or np.nanmin(speeds))
     top = max_speed or float(np.nanmax(speeds, initial=1.0))
     own = (None, None) if bearing is None else _curve(bearing, top)
     result = CriticalSpeedMap(

@@ -191,14 +191,13 @@ def _of_scene(
     return SceneModel.of(LinearScene.of(mbs, reduced_body(body, how=how)), axes)
 
 
-def warn_of_structural_damping(model: LinearModel, what: str) -> None:
-    """Warn that an analysis, named by `what`, leaves structural damping out."""
-    if model.has_structural_damping:
+def warn_of_omissions(model: LinearModel, speed: float = 0.0, what: str = "") -> None:
+    """Warn of structural damping, which the analysis `what` leaves out, and of left-out stiffening.
+
+    The level 'tilt', taken by default, may err much at a speed [rad/s].
+    """
+    if what and model.has_structural_damping:
         warnings.warn(LOSS_LEFT_OUT.format(what), UserWarning, stacklevel=user_level())
-
-
-def warn_of_left_out_stiffening(model: LinearModel, speed: float) -> None:
-    """Warn where the level 'tilt', taken by default, errs much at a speed [rad/s]."""
     if model.stiffening_asked == "auto":
         for rotor in model.rotors.values():
             warn_of_left_out(rotor.invariants, speed, user_level() + 1)

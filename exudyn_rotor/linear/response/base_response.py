@@ -22,12 +22,7 @@ from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.foundations.record import BaseRecord
 from exudyn_rotor.linear.equations import Terms, UnconvergedError, at_angle, states_of
-from exudyn_rotor.linear.model.build import (
-    Target,
-    linear_model,
-    warn_of_left_out_stiffening,
-    warn_of_structural_damping,
-)
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.response.loads import At, Place, checked_places, places
 from exudyn_rotor.linear.response.response import DIRECTIONS, AtPlaces
@@ -211,8 +206,7 @@ def base_response(
             "target: a motion of the ground needs a reduced rotor on supports, and a foundation "
             "with its participation; in a scene, use add_base_motion"
         )
-    warn_of_structural_damping(model, "base_response computes motion over time")
-    warn_of_left_out_stiffening(model, speed)
+    warn_of_omissions(model, speed, "base_response computes motion over time")
     model.check_without_frequency("a motion of the ground")
     model = model.for_responses
     observed = places(model, at, speed)

@@ -17,7 +17,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.linear.modal.basis_error import basis_errors, warn
-from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import forced_over
 from exudyn_rotor.linear.response.loads import (
@@ -130,7 +130,7 @@ def unbalance_response(
     options = at, frame, tolerance, refine, accuracy
     sweep = _OverSpeed(*options, unbalances=unbalances, own=checks.flag(own, "own"))
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
-    warn_of_left_out_stiffening(model, np.abs(values).max())
+    warn_of_omissions(model, np.abs(values).max())
     values, found = sweep.over(model.for_responses, values)
     loads = in_words(model, unbalances, own)
     return UnbalanceResponse(frame=frame, speeds=values, loads=loads, **found)
@@ -197,7 +197,7 @@ def harmonic_response(
     loads = checks.instances(loads, "loads", (HarmonicForce, BaseAcceleration))
     sweep = _OverFrequency(at, frame, tolerance, refine, accuracy, loads=loads, speed=speed)
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
-    warn_of_left_out_stiffening(model, speed)
+    warn_of_omissions(model, speed)
     values, found = sweep.over(model.for_responses, values)
     return HarmonicResponse(frame=frame, frequencies=values, speed=speed, **found)
 

@@ -28,12 +28,7 @@ from exudyn_rotor.linear.modal.whirl import (
     damping_of,
     rounded,
 )
-from exudyn_rotor.linear.model.build import (
-    Target,
-    linear_model,
-    warn_of_left_out_stiffening,
-    warn_of_structural_damping,
-)
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel, warn_of_refused
 from exudyn_rotor.linear.over import (
     NOT_KNOWN,
@@ -204,14 +199,10 @@ class Stability(OfMotions, ModelResult):
     def _told(self, at: tuple[int, int], shown: Units) -> str:
         """Return a motion in words: growth, speed, frequency, whirl, log decrement."""
         speed, n = shown.speeds(self.speeds[at[0]]), self.nodal_diameters[at]
-        parts = [
-            f"{self.exponents[at].real:.4g} 1/s at {speed:.6g} {shown.speed}",
-            f"{shown.frequencies(self.frequencies_inertial[at]):.5g} {shown.frequency}",
-            f"{self.whirl[at]}" + (f", n = {n}" if n >= 0 else ""),
-        ]
-        if np.isfinite(self.log_decrement[at]):
-            parts.append(f"log decrement {self.log_decrement[at]:.3g}")
-        return ", ".join(parts)
+        place = f"{speed:.6g} {shown.speed}"
+        heard = f"{shown.frequencies(self.frequencies_inertial[at]):.5g} {shown.frequency}"
+        whirl = f"{self.whirl[at]}" + (f", n = {n}" if n >= 0 else "")
+        return _in_words(self.exponents[at].real, place, heard, whirl, self.log_decrement[at])
 
     def plot(self, ax: Axes | None = None, *, units: str = "rpm") -> Axes:
         """Draw the growth over the spin speed, of each family and of the least stable motion.
@@ -317,8 +308,7 @@ def stability(
     check_options(tolerance, accuracy, method)
     checks.flag(progress, "progress")
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening, axes=axes)
-    warn_of_structural_damping(model, WHAT)
-    warn_of_left_out_stiffening(model, values[-1])
+    warn_of_omissions(model, values[-1], WHAT)
     motions = motions_over(
         model, values, held=True, method=method, tolerance=tolerance, progress=progress,
         label="stability",
@@ -448,24 +438,17 @@ class StabilityMap(OfMotions, Result):
         for value, growth, marked in zip(self.x, self.growth, marks, strict=True):
             entries = (f"{g:13.5g}{mark}" for g, mark in zip(growth, marked, strict=True))
             lines.append(f"{value:24.6g}" + "".join(entries).rstrip())
-        lines += self._worst_line()
+        if np.any(np.isfinite(self.growth)):
+            at = np.unravel_index(np.nanargmax(self.growth), self.growth.shape)
+            place = f"({self.x[at[0]]:.5g}, {self.y[at[1]]:.5g})"
+            heard = f"{Units.of('Hz').frequencies(self.frequencies_inertial[at]):.5g} Hz"
+            told = _in_words(self.growth[at], place, heard, self.whirl[at], self.log_decrement[at])
+            lines.append(f"least stable: {self.families[at]} motion, {told}")
         if self.basis_errors is None:
             lines.append(NOT_KNOWN)
         elif np.any(self.basis_errors > 0.0):
             lines.append(f"basis error up to {np.nanmax(self.basis_errors):.1e}")
         return "\n".join(lines)
-
-    def _worst_line(self) -> list[str]:
-        """Return which motion grows most, where that is known."""
-        if np.all(np.isnan(self.growth)):
-            return []
-        at = np.unravel_index(np.nanargmax(self.growth), self.growth.shape)
-        parts = [f"{self.growth[at]:.4g} 1/s at ({self.x[at[0]]:.5g}, {self.y[at[1]]:.5g})"]
-        parts.append(f"{Units.of('Hz').frequencies(self.frequencies_inertial[at]):.5g} Hz")
-        parts.append(self.whirl[at])
-        if np.isfinite(self.log_decrement[at]):
-            parts.append(f"log decrement {self.log_decrement[at]:.3g}")
-        return [f"least stable: {self.families[at]} motion, " + ", ".join(parts)]
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the growth as a contour plot, with the limit of stability as a line.
@@ -497,12 +480,17 @@ class StabilityMap(OfMotions, Result):
         return ax
 
 
+def _in_words(growth: float, place: str, heard: str, whirl: str, decrement: float) -> str:
+    """Return a motion in words: growth [1/s] and place, frequency, whirl, log decrement."""
+    told = f"{growth:.4g} 1/s at {place}, {heard}, {whirl}"
+    return f"{told}, log decrement {decrement:.3g}" if np.isfinite(decrement) else told
+
+
 def _is_geometric(values: np.ndarray) -> bool:
     """Return whether values have one ratio, and not one difference."""
     if len(values) < 3 or values[0] <= 0.0:
         return False
-    ratios = values[1:] / values[:-1]
-    return bool(np.ptp(ratios) <= _EVEN * ratios[0])
+    return bool(np.ptp(np.diff(np.log(values))) <= _EVEN)
 
 
 @one_thread()
@@ -576,7 +564,7 @@ def stability_map(
             alike.setdefault((*model.pattern, speed == 0.0), []).append(one)
     warn_of_refused(refused, shape[0] * shape[1])
     models = [points[0][1] for points in alike.values()]
-    warn_of_structural_damping(max(models, key=lambda one: one.has_structural_damping), WHAT)
+    warn_of_omissions(max(models, key=lambda one: one.has_structural_damping), what=WHAT)
     growth, inertial, decrement, errors = np.full((4, *shape), np.nan)
     stable, codes = np.zeros(shape, dtype=bool), np.full(shape, UNKNOWN, dtype=np.int64)
     diameters = np.full(shape, -1, dtype=np.int64)

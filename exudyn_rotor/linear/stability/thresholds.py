@@ -22,12 +22,7 @@ from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.linear.modal import basis_error
 from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, OfMotions
 from exudyn_rotor.linear.model.assembly import NO_EQUATIONS
-from exudyn_rotor.linear.model.build import (
-    Target,
-    linear_model,
-    warn_of_left_out_stiffening,
-    warn_of_structural_damping,
-)
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel, warn_of_refused
 from exudyn_rotor.linear.over import NOT_KNOWN, basis_column, motions_in, table_lines
 from exudyn_rotor.linear.solve.motions import Motions
@@ -351,8 +346,7 @@ def stability_threshold(
 def _over_speed(target: Target, fastest: float, tolerance: float, **made) -> _Margin:
     """Return the margin over the speed; warn of what its model leaves out."""
     model = linear_model(target, **made)
-    warn_of_structural_damping(model, WHAT)
-    warn_of_left_out_stiffening(model, fastest)
+    warn_of_omissions(model, fastest, WHAT)
     return _Margin(lambda speed: (model, speed), tolerance, model)
 
 

@@ -12,7 +12,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
 from exudyn_rotor.bearings.resting import RigidBearing
 from exudyn_rotor.linear.modal.basis_error import is_known, motion_error, warn
-from exudyn_rotor.linear.model.build import warn_of_left_out_stiffening
+from exudyn_rotor.linear.model.build import warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
 from exudyn_rotor.linear.response.loads import At, checked_places, node_number
@@ -122,7 +122,7 @@ def static_response(
         target = reduced_for_loads(target, sorted(nodes), spins=speed != 0.0, stress=stress)
         accuracy = None  # nothing is left out at rest
     problem = Problem.of(target, given, stiffening, speed, frame)
-    warn_of_left_out_stiffening(problem.model, speed)
+    warn_of_omissions(problem.model, speed)
     load = problem.load(named, g)
     y, forces = problem.solved(load)
     fields = problem.seen(y, forces, at)
