@@ -253,7 +253,6 @@ def separation_margins(
     factors = np.array([_amplification(*peak[1::2]) for peak in peaks])
     low, high = limits
     above = at > high
-    required = np.where(above, required_margin(factors, True), required_margin(factors, False))
     actual = np.maximum(np.where(above, at / high - 1.0, 1.0 - at / max(low, 1e-300)), 0.0)
     return SeparationMargins(
         places=tuple(peak[0] for peak in peaks),
@@ -261,7 +260,7 @@ def separation_margins(
         sizes=np.array([peak[2] for peak in peaks]),
         half_power=np.reshape(half_power, (-1, 2)),
         amplification=factors,
-        required=required,
+        required=required_margin(factors, above),
         actual=actual,
         operating_range=limits,
         observed=tuple(names),
@@ -282,14 +281,15 @@ def _warn_of_speeds_left_out(speeds: np.ndarray, limits: np.ndarray) -> None:
         )
 
 
-def required_margin(amplification: ArrayLike, above: bool) -> np.ndarray:
+def required_margin(amplification: ArrayLike, above: bool | np.ndarray) -> np.ndarray:
     """Return the separation margins of SP6.8.2.10, as shares; 0 for an unknown factor."""
     factors = np.asarray(amplification, dtype=float)
     sharp = factors >= _CRITICALLY_DAMPED
     with np.errstate(divide="ignore", invalid="ignore"):
         margin = 0.17 * (1.0 - 1.0 / (factors - 1.5))
-    below, beyond = _LARGEST
-    margin = np.minimum(0.10 + margin, beyond) if above else np.minimum(margin, below)
+    margin = np.where(
+        above, np.minimum(0.10 + margin, _LARGEST[1]), np.minimum(margin, _LARGEST[0])
+    )
     return np.where(sharp, margin, 0.0)
 
 

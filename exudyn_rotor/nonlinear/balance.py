@@ -166,16 +166,14 @@ class Balance:
         """Return R (h, d)."""
         return c - self.given - self.answered(self.harmonics(self.forces(c)[0]))
 
-    def linearised(self, c: np.ndarray, mean: bool = False) -> tuple[np.ndarray, np.ndarray]:
-        """Return R (h, d) and its derivative (hd, hd); by the mean of ∂g alone, if `mean`."""
+    def linearised(self, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return R (h, d) and its derivative (hd, hd)."""
         h, d = c.shape
         g, slopes = self.forces(c)
         spectrum = self.spectrum(slopes)
         k, n = self.orders.T
         A, B = self.points
         across = (k[:, None] - k) % A, (n[:, None] - n) % B
-        if mean:
-            spectrum[1:], spectrum[:, 1:] = 0.0, 0.0
         G = _by_displacement(spectrum[across], self.nu)
         J = np.eye(h * d) - self.answered(G).reshape(h * d, h * d)
         left = c - self.given - self.answered(self.harmonics(g))

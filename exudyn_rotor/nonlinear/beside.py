@@ -22,8 +22,9 @@ from functools import cached_property
 
 import numpy as np
 
+from exudyn_rotor.linear.equations import PeriodicSystem, Terms
 from exudyn_rotor.nonlinear.balance import Balance
-from exudyn_rotor.nonlinear.rest import Unloaded
+from exudyn_rotor.nonlinear.rest import real_rows
 
 _A = np.array([[0.25, 0.25 - np.sqrt(3.0) / 6.0], [0.25 + np.sqrt(3.0) / 6.0, 0.25]])  # Gauss
 _PER_CYCLE = 6  # steps in a cycle of the fastest motion on the laws
@@ -47,16 +48,15 @@ class Beside:
     c: np.ndarray
 
     @cached_property
-    def _rest(self) -> Unloaded:
-        rest, (K, N) = self.balance.rest.unloaded.for_stability, self.balance.reach
-        first, second = self.balance.rest.rates
-        waves = K * abs(first) + N * abs(second)
-        return rest.up_to(_STATIC * waves) if waves else rest
+    def _rest(self) -> tuple[PeriodicSystem, Terms]:
+        """Equations and C of the rest, as far as it is slow."""
+        waves = np.abs(self.balance.reach) @ np.abs(self.balance.rest.rates)
+        return self.balance.rest.unloaded.for_stability.up_to(_STATIC * waves or np.inf)
 
     @cached_property
     def _places(self) -> np.ndarray:
         """Orthonormal motions (p, r) that laws act on."""
-        _, sizes, V = np.linalg.svd(self._rest.rows, full_matrices=False)
+        _, sizes, V = np.linalg.svd(real_rows(self._rest[1]), full_matrices=False)
         return V[sizes > _DEPENDENT * sizes[0]]
 
     def _changes(self, phi: np.ndarray, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -69,7 +69,7 @@ class Beside:
         slopes = -balance.laws.along(motion, phi, theta, rest.speed)[1]
         G, G_t = slopes[..., :2], slopes[..., 2:]
         C, C_t = np.zeros((2, len(q), self.c.shape[1], len(self._places)), dtype=complex)
-        for m, U in self._rest.journals.items():
+        for m, U in self._rest[1].items():
             part = np.exp(1j * m * theta)[:, None, None] * (U @ self._places.T)
             C, C_t = C + part, C_t + 1j * m * rest.speed * part
         shape = len(q), -1, 2, len(self._places)
@@ -85,7 +85,7 @@ class Beside:
         bearings as they stand at the worst angle of the cage, over 1 s.
         """
         rest, (K, N) = self.balance.rest, self.balance.reach
-        system, P = self._rest.system, self._places
+        (system, _), P = self._rest, self._places
         M, D, Ks = system.matrices()
         pulled = np.linalg.solve(M, P.T)
         period, second = self._period()
@@ -127,7 +127,7 @@ class Beside:
         rest, (K, N) = self.balance.rest, self.balance.reach
         first, second = rest.rates
         turn = 2.0 * np.pi
-        spins = bool(N) or len(self._rest.journals) > 1 or 0 not in self._rest.journals
+        spins = bool(N) or [*self._rest[1]] != [0]
         if not K:
             return (turn / abs(second) if second else 0.0), first
         if not spins or not second:

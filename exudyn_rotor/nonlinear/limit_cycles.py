@@ -24,7 +24,7 @@ from exudyn_rotor.linear.model.build import Target
 from exudyn_rotor.linear.response.loads import At, HarmonicForce, checked_places
 from exudyn_rotor.linear.stability.thresholds import StabilityThresholds
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.nonlinear.balance import Balance, orders_of, padded
+from exudyn_rotor.nonlinear.balance import Balance, padded
 from exudyn_rotor.nonlinear.collect import collected
 from exudyn_rotor.nonlinear.continuation import Family, Point
 from exudyn_rotor.nonlinear.periodic_response import warn_of
@@ -124,14 +124,12 @@ def limit_cycles(
         mean, phi = _hopf(problem, frequency, speed)
         p = np.array([frequency, speed])
         spans = np.array([p[0], max(np.ptp(speeds), 0.1 * p[1])])
-        orders = orders_of(_BEGIN)
-        first = (orders == (1, 0)).all(axis=1), (orders == (-1, 0)).all(axis=1)
-        wave = np.zeros((len(orders), phi.size), dtype=complex)
-        wave[first[0]], wave[first[1]] = phi, phi.conj()
-        turned = np.sign(orders[:, :1]) * 1j * wave
+        wave, turned = (
+            padded(np.array([one.conj(), 0.0 * one, one]), (1, 0), _BEGIN)
+            for one in (phi, 1j * phi)
+        )
         family = Family(balance, spans, problem.size, tolerance, _MOST, (turned, _BEGIN))
-        c = _FIRST * family.size / np.linalg.norm(phi) * wave
-        c[~np.any(orders, axis=1)] += mean
+        c = _FIRST * family.size / np.linalg.norm(phi) * wave + padded(mean, (0, 0), _BEGIN)
         row = wave / np.linalg.norm(wave), np.zeros(2)
         try:
             start = family.corrected(Point(c, p, balance(p, _BEGIN)), row)[0]
@@ -144,7 +142,7 @@ def limit_cycles(
 
 
 def _hopf(problem: Problem, frequency: float, speed: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the mean place (d,) and φ of (1) at a limit of stability."""
+    """Return the mean place (1, d) and φ (d,) of (1) at a limit of stability."""
     try:
         mean = problem.at_rest(speed)
     except UnconvergedError as error:
@@ -155,4 +153,4 @@ def _hopf(problem: Problem, frequency: float, speed: float) -> tuple[np.ndarray,
     _, sizes, V = np.linalg.svd(J[2 * d :, 2 * d :])  # of the harmonic 1
     if sizes[-1] > _NEUTRAL * sizes[0]:
         raise ValueError(f"onset: at {speed:g} rad/s no whirl begins; are the supports the same?")
-    return mean[0], V[-1].conj()
+    return mean, V[-1].conj()

@@ -179,9 +179,8 @@ class PeriodicResponse(AtPlaces):
         order = checks.count(passing, "passing"), round(turns)
         if abs(turns - order[1]) > _SAME:
             raise ValueError(f"spin: needs a multiple of 1/{self.revolutions}, got {spin:g}")
-        at = np.flatnonzero((self.orders == order).all(axis=1))
         column = self.motion[:, self._at(place), :, DIRECTIONS.index(direction)]
-        return column[:, at[0]] if at.size else np.zeros(len(self.values), dtype=complex)
+        return column[:, (self.orders == order).all(axis=1)].sum(axis=1)
 
     def displacement(self, point: int, time: ArrayLike, place: str | None = None) -> np.ndarray:
         """Return the displacement over time along (n1, n2), shape (t, 2) [m].

@@ -65,15 +65,14 @@ class Unloaded:
     # the same in axes that stand still, of a round rotor: there what laws do to motions beside a
     # steady one changes little, and not at all on a circle
     standing: LinearModel | None = None
-    within: np.ndarray | None = None  # (r', r) Columns of fewer motions, see :meth:`up_to`
 
     @cached_property
     def for_stability(self) -> Unloaded:
         """The rest in axes that stand still, if it can be."""
         return Unloaded(self.standing, self.names, self.speed) if self.standing else self
 
-    def up_to(self, frequency: float) -> Unloaded:
-        """Return the rest in its motions up to a frequency [rad/s], and static ones of the others.
+    def up_to(self, frequency: float) -> tuple[PeriodicSystem, Terms]:
+        """Return equations and C of motions up to a frequency [rad/s], and static ones of others.
 
         Faster motions follow the forces of the laws as springs do: of them the basis keeps what
         they yield to constant forces.
@@ -81,18 +80,18 @@ class Unloaded:
         M, _, K = self.system.matrices()
         squares, shapes = eigh(0.5 * (K + K.T), 0.5 * (M + M.T))
         fast = squares > frequency**2
-        yields = shapes[:, fast] @ ((self.rows @ shapes[:, fast]) / squares[fast]).T
+        felt = real_rows(self.journals) @ shapes[:, fast]
+        yields = shapes[:, fast] @ (felt / squares[fast]).T
         static = orth(yields, rcond=_DEPENDENT) if np.any(yields) else yields[:, :0]
         if static.shape[1] >= np.sum(fast):
-            return self
+            return self.system, self.journals
         within = np.hstack([shapes[:, ~fast], static])
-        return Unloaded(self.model, self.names, self.speed, self.standing, within)
+        return self.system.projected(within), {n: C @ within for n, C in self.journals.items()}
 
     @cached_property
     def basis(self) -> np.ndarray:
         """Motions that something resists, (k, r)."""
-        resists = resisted(self.model)
-        return resists if self.within is None else resists @ self.within
+        return resisted(self.model)
 
     @cached_property
     def system(self) -> PeriodicSystem:
@@ -102,13 +101,7 @@ class Unloaded:
     @cached_property
     def journals(self) -> Terms:
         """C (d, r)."""
-        found = _journals(self.model, tuple(self.names), bool(self.speed))
-        return found if self.within is None else {n: C @ self.within for n, C in found.items()}
-
-    @cached_property
-    def rows(self) -> np.ndarray:
-        """All parts of C as real rows: what laws feel of the motions."""
-        return np.vstack([np.vstack([C.real, C.imag]) for C in self.journals.values()])
+        return _journals(self.model, tuple(self.names), bool(self.speed))
 
     def answer(self, nu: np.ndarray, F: np.ndarray) -> np.ndarray:
         """Return ``Z⁻¹ F`` at frequencies (h,), F (r, m) or (h, r, m)."""
@@ -197,6 +190,11 @@ class Rest:
         x = self.unloaded.answer(np.array(upper) @ np.array(self.rates), F)[..., 0]
         found = dict(zip(upper, x, strict=True))
         return {(-k, -n): each.conj() for (k, n), each in found.items()} | found
+
+
+def real_rows(journals: Terms) -> np.ndarray:
+    """Return all parts of C as real rows: what laws feel of the motions."""
+    return np.vstack([part for C in journals.values() for part in (C.real, C.imag)])
 
 
 def of_both_signs(load: Mapping[int, np.ndarray]) -> dict[int, np.ndarray]:

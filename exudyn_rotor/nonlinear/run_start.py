@@ -1,8 +1,4 @@
-"""Runs that begin in a steady motion that is known by the coordinates of a reduced rotor.
-
-Of a reduced rotor, ``x = F f + T ζ`` with the motions F of the frame that its formulation has, and
-the basis Ψ = Q T of its modal coordinates. After x come the modes of a foundation.
-"""
+"""Runs that begin in a steady motion that is known by the coordinates of a reduced rotor."""
 
 from __future__ import annotations
 
@@ -13,9 +9,7 @@ import numpy as np
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState
 from exudyn_rotor.nonlinear.scene import check_origin, foundation_below
-from exudyn_rotor.reduction.reduced_rotor import ModeKind
 from exudyn_rotor.theory.axis import skew
-from exudyn_rotor.theory.rotating_axes import axes_of
 
 
 def state_in_scene(
@@ -44,7 +38,7 @@ def state_in_scene(
     scene = LinearScene.of_rotor(body)
     rest = scene.rest.copy()
     rest[scene.free[: scene.count]] = 0.0
-    (y, turn), (y_t, turn_t) = (in_body(body, each[:size]) for each in (x, x_t))
+    (y, y_t), (turn, turn_t) = scene.of_coordinates(np.array([x[:size], x_t[:size]]))
     # a free spin departs from the mean rotation
     state = replace(scene, rest=rest).state(y, y_t, angle + turn, speed + turn_t)
     q, q_t = state.q.copy(), state.q_t.copy()
@@ -59,22 +53,3 @@ def state_in_scene(
     q[places] += N.T @ (A - motion.orientation) @ across
     q_t[places] += speed * N.T @ A @ skew(body.axis.direction) @ across
     return StartState(q, q_t, angle, speed)
-
-
-def in_body(body: RotorBody, x: np.ndarray) -> tuple[np.ndarray, float]:
-    """Return the unknowns y of a rotor in axes that turn with it, and the turn of a free spin."""
-    selection, source = body.selection, body.selection.source
-    count = body.formulation.translation_count
-    kinds = (ModeKind.TRANSLATION_1, ModeKind.TRANSLATION_2, ModeKind.AXIAL)[:count]
-    held = [index for index, kind in enumerate(source.kinds) if kind in kinds]
-    frame = [np.eye(source.size)[:, held]]
-    if body.formulation.has_spin:
-        about = source.invariants.moved(selection.origin - source.center_of_mass)
-        frame.append(about.g[:, None])  # a rotation of 1 rad about the axis
-    f = np.linalg.lstsq(np.hstack([*frame, selection.T]), x, rcond=None)[0]
-    # displacement of a rigid translation by its columns, S/m
-    shift = source.invariants.S[:, held] @ f[: len(held)] / source.invariants.mass
-    turning = axes_of(source.axis)[:, :count].T @ shift
-    zeta = f[len(f) - selection.T.shape[1] :]
-    spin = float(f[len(held)]) if body.formulation.has_spin else 0.0
-    return np.r_[turning, zeta], spin

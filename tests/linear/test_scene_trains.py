@@ -24,7 +24,6 @@ from exudyn_rotor import (
 from exudyn_rotor.linear.model.body import RotorBody as LinearBody
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.multibody.evaluation import evaluating
-from exudyn_rotor.nonlinear.run_start import in_body
 from exudyn_rotor.reduction.selection import _beside_spin
 
 SPEED, ANGLE = 90.0, 0.7
@@ -88,8 +87,8 @@ def forces(mbs, bodies, model, rates, motion):
             ]
         if part.name in model.driven:
             alone = [_beside_spin(body.selection.source) @ one for one in alone]
-        (x, x_t, x_tt), spins = zip(*(in_body(body, one) for one in alone), strict=True)
         given = LinearScene.of_rotor(body)
+        (x, x_t, x_tt), spins = given.of_coordinates(np.array(alone))
         T, T1, T2 = given.turn(rate * ANGLE)
         T1, T2 = rate * SPEED * T1, (rate * SPEED) ** 2 * T2
         q[given.free], q_t[given.free] = T @ x, T @ x_t + T1 @ x

@@ -164,6 +164,15 @@ class LinearScene:
         about_axis = source.invariants.moved(source.axis.project(center) - center).g
         return np.column_stack([self.columns, about_axis])
 
+    def of_coordinates(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return unknowns (…, r) that move the rotor, and the turn of a free spin (…).
+
+        By the coordinates (…, n) of the reduced rotor.
+        """
+        found = x @ np.linalg.pinv(self._with_spin).T
+        count = self.columns.shape[1]
+        return found[..., :count], found[..., count:].sum(axis=-1)
+
     @cached_property
     def by_columns(self) -> np.ndarray:
         """Unknowns that move the rotor by the coordinates of the reduced rotor, (r, n)."""
