@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.controlled_support import ControlledSupport
-from exudyn_rotor.bearings.own_table import table_of
+from exudyn_rotor.bearings.controlled_support import ControlledSupport, table_of
 from exudyn_rotor.bearings.support import COEFFICIENTS, NoCoefficientsError, Support
 
 _REMEMBERED = 1000  # coefficients of a bearing

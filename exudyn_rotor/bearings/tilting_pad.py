@@ -28,7 +28,7 @@ from scipy.optimize import brentq
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing, Equilibria, Force, Linearised, Pair
-from exudyn_rotor.bearings.controlled_support import ControlledSupport
+from exudyn_rotor.bearings.controlled_support import ControlledSupport, impedance
 from exudyn_rotor.bearings.film.film import FilmState, OilFilm
 from exudyn_rotor.bearings.film.pads import direction
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
@@ -183,14 +183,7 @@ class TiltingPadBearing(Bearing):
             )
         soft = min(mass * speed**2, _HELD * float(np.abs(whole).max()))
         held = np.array([soft, 4.0 * np.sqrt(soft * mass)])  # overdamped: no vibration of its own
-        count = len(state.states)
-        total = np.zeros((2, 2 + count, 2 + count))
-        for pad, (each, t) in enumerate(zip(state.states, self.tangents, strict=True)):
-            seen = np.eye(2, 2 + count)
-            seen[:, 2 + pad] = -t
-            film = held[:, None, None] * np.outer(t, t) if each is None else each.coefficients()
-            total += [seen.T @ X @ seen for X in film]
-        return total
+        return state.ports(held)
 
     def _state(self, speed: float, load: np.ndarray) -> _Pads:
         """Return the pads in equilibrium."""
@@ -321,15 +314,24 @@ class _Pads:
                 return None
         return replace(self, speed=speed, place=place, shifts=shifts, states=states)
 
-    def impedance(self, whirl: float, mass: float = 0.0) -> np.ndarray:
-        """Return Z_b of (2) at a frequency [rad/s], shape (2, 2); of pads with a mass I/R² [kg].
+    def ports(self, held: np.ndarray | None = None) -> np.ndarray:
+        """Return stiffness and damping between journal and shifts, (2, 2 + p, 2 + p).
 
-        By (1) the mass takes ``mass whirl²`` from ``tᵀZ t``.
+        Of present pads, or of all, the shifts of absent ones `held` by stiffness and damping (2,).
         """
-        total = np.zeros((2, 2), dtype=complex)
-        for state, t in zip(self.states, self.tangents, strict=True):
-            if state is not None:
-                K, C = state.coefficients()
-                Z = K + 1j * whirl * C
-                total += Z - np.outer(Z @ t, t @ Z) / (t @ Z @ t - mass * whirl**2)
+        pairs = zip(self.states, self.tangents, strict=True)
+        pads = [(state, t) for state, t in pairs if state is not None or held is not None]
+        total = np.zeros((2, 2 + len(pads), 2 + len(pads)))
+        for pad, (state, t) in enumerate(pads):
+            seen = np.eye(2, 2 + len(pads))
+            seen[:, 2 + pad] = -t
+            film = (
+                np.multiply.outer(held, np.outer(t, t)) if state is None else state.coefficients()
+            )
+            total += [seen.T @ X @ seen for X in film]
         return total
+
+    def impedance(self, whirl: float, mass: float = 0.0) -> np.ndarray:
+        """Return Z_b of (2) at a frequency [rad/s], shape (2, 2); of pads with a mass I/R² [kg]."""
+        K, D = self.ports()
+        return impedance(K, D, np.full(len(K) - 2, mass), [whirl])[0]

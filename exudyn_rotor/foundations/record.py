@@ -55,12 +55,7 @@ class BaseRecord:
         times = checks.vector(self.times, "times", "s", size=None)
         if times.size < 2:
             raise ValueError(f"times: needs two or more [s], got {checks.shown(times)}")
-        steps = np.diff(times)
-        if np.any(steps <= 0.0):
-            at = int(np.argmax(steps <= 0.0))
-            raise ValueError(
-                f"times: needs ascending times [s], got {times[at]:g} and then {times[at + 1]:g}"
-            )
+        steps = np.diff(checks.ascending(times, "times", "s"))
         uneven = np.abs(steps - steps.mean()).max()
         if uneven > _UNEVEN * steps.mean():
             raise ValueError(

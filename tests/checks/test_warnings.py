@@ -193,7 +193,7 @@ ELSEWHERE = {
     "theory/stiffening.py:warn_of_left_out": "beyond 'tilt' is left out",
     "ross.py:_check_held": "of shaft elements are left out",
     "bearings/tilting_pad.py:_of_pads": "carry nothing at",
-    "bearings/own_table.py:table_of": "speeds are left out",
+    "bearings/controlled_support.py:table_of": "speeds are left out",
     "linear/own_frequency.py:own_motions": "do not settle at their own frequency",
     "linear/model/linear_model.py:warn_beyond": "keeps its ends for motions of",
     "linear/over.py:motions_over": "do not converge for all motions",

@@ -113,7 +113,7 @@ def test_baseline_and_integrals():
 def test_bad_records_and_calls_are_refused():
     still = np.zeros((3, 3))
     for times, match in (
-        ([0.0, 2.0, 1.0], "needs ascending times .*, got 2 and then 1"),
+        ([0.0, 2.0, 1.0], "in ascending order"),
         ([0.0, 1.0, 3.0], "needs even steps .*, got 1 to 2"),
         ([0.0], "needs two or more"),
     ):
