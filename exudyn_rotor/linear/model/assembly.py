@@ -8,7 +8,7 @@ coordinates of the bodies, ``u = U(θ) y``, is all that depends on the axes of t
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 
 import numpy as np
@@ -188,20 +188,21 @@ def is_isotropic_matrix(X: np.ndarray) -> bool:
     return bool(np.abs(X @ quarter - quarter @ X).max() <= _ROUNDING * np.abs(X).max())
 
 
+@dataclass(frozen=True, eq=False)
 class OwnBody(Body):
-    """Coordinates that a support brings with it, as a body: of a controller, of pads."""
+    """Coordinates that a support brings with it, as a body: of a controller, of pads.
+
+    Attributes
+    ----------
+    shown : ndarray, shape (p, k)
+        What elements see of them, in the axes of the body.
+    """
+
+    shown: np.ndarray = field(kw_only=True)
 
     def supported(self, _: str) -> dict[int, np.ndarray]:
-        """Return the displacements of its pairs of coordinates, seen from outside, (3p, k)."""
-        return turned({0: np.kron(np.eye(self.size // 2), ACROSS)}, self.turns)
-
-
-class PadBody(OwnBody):
-    """The tilts of pads, which stand still."""
-
-    def supported(self, _: str) -> dict[int, np.ndarray]:
-        """Return the coordinates, (k, k)."""
-        return {0: np.eye(self.size)}
+        """Return what elements see, from outside, (p, k)."""
+        return turned({0: self.shown}, self.turns)
 
 
 def own_body(one: Controlled, number: int, turns: int) -> OwnBody:
@@ -210,10 +211,11 @@ def own_body(one: Controlled, number: int, turns: int) -> OwnBody:
     labels = tuple(f"{word}, {n}" for n in range(1, one.size + 1))
     M, none = np.diag(one.masses), np.zeros((one.size, one.size))
     if one.word == "pads":
-        return PadBody(name, 0, M, (none,), (none,), labels)
-    quarter = np.kron(np.eye(one.size // 2), axial_skew(3)[:2, :2])
+        return OwnBody(name, 0, M, (none,), (none,), labels, shown=np.eye(one.size))
+    pairs = np.kron(np.eye(one.size // 2), ACROSS)  # displacements along (n1, n2, e)
+    quarter = pairs.T @ axial_skew(len(pairs)) @ pairs
     powers_D, powers_K = (none, 2.0 * turns * M @ quarter), (none, none, -float(turns) * M)
-    return OwnBody(name, turns, M, powers_D, powers_K, labels)
+    return OwnBody(name, turns, M, powers_D, powers_K, labels, shown=pairs)
 
 
 def _relative(end: End, base: End | None, rows: int = 6) -> Callable[[Seen], Terms]:
@@ -263,8 +265,7 @@ def own_elements(
     if one.sensor is not None:
         ends = end, (end[0], one.sensor)
         ports.append(_relative(ends[1], base(one.sensor), 3))
-    inner = np.eye(own.size) if one.sensor is None else np.kron(np.eye(own.size // 2), ACROSS)
-    lifted = la.block_diag(np.kron(np.eye(len(ports)), ACROSS), inner)
+    lifted = la.block_diag(np.kron(np.eye(len(ports)), ACROSS), own.shown)
 
     def matrices(speed: float, *_: float) -> tuple[np.ndarray, np.ndarray]:
         K, D = one.matrices(rate * speed)

@@ -22,8 +22,9 @@ from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper
 from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, UnconvergedError, joined
-from exudyn_rotor.linear.model.assembly import Assembly, End, PadBody, Powers, put
+from exudyn_rotor.linear.model.assembly import Assembly, End, Powers, put
 from exudyn_rotor.linear.model.body import RotorAlone, RotorBody, StandingBody
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.scene.journal_start import journal_start
@@ -243,7 +244,8 @@ class SceneModel(LinearModel):
         first = len(assembly.bodies) - len(controllers)
         for body, place, one in zip(controllers, assembly.slices[first:], with_own, strict=True):
             metres[place] = np.maximum(metres[place], 1.0)  # of light pads
-            unit = -1.0 / one.support.film.radius if isinstance(body, PadBody) else 1.0
+            is_pads = isinstance(one.support, TiltingPadBearing)
+            unit = -1.0 / one.support.film.radius if is_pads else 1.0
             parts.append((scene.own_unknowns(one), place, {0: unit * np.eye(body.size)}))
         state = _Standing.of(probe, parts, assembly)
         start = journal_start(scene, speed, np.arange(-1, 2)).sum(axis=0).real
