@@ -34,15 +34,11 @@ def axial_share(run: RecordedRun) -> float | None:
         return None
     if isinstance(run.body, FullRotorBody):
         return _share_of_full(run)
-    axes, interfaces = axes_of(source.axis), list(source.interfaces.values())
-    places = np.array([one.reference @ source.axis.direction for one in interfaces])
-    order = np.argsort(places, kind="stable")
-    motions = [
-        np.vstack([axes.T @ part for part in np.split(interfaces[i].motion, 2)])
-        @ run.body.selection.T
-        for i in order
-    ]
-    forces = np.einsum("a,pas->sp", source.axis.direction, run.loads[order, :3])
+    seats, e = list(source.interfaces.values()), source.axis.direction
+    places = np.array([one.reference @ e for one in seats])
+    order, turn = np.argsort(places, kind="stable"), np.kron(np.eye(2), axes_of(source.axis).T)
+    motions = [turn @ seats[i].motion @ run.body.selection.T for i in order]
+    forces = (e @ run.loads[order, :3]).T
     some = np.linspace(0, len(forces) - 1, _LOOKED_AT).astype(int)
     tensions = -np.cumsum(forces[np.unique(some)], axis=1)[:, :-1]
     return max(_share(run, _stiffness(places[order], motions, each)) for each in tensions)

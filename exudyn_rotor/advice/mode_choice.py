@@ -1,10 +1,8 @@
 """Which flexible modes a scene needs: leave one out, look at the response, keep what matters.
 
 The response of the interfaces to forces at them, to uniform acceleration and to the rotor's own
-unbalance is computed with all modes and without some, over the speeds and over the frequencies of
-the rotor frame. Loads grow by ``exp(0.05 ν t)``: at an undamped resonance no finite number of modes
-has an accuracy, and this compares every resonance as if its damping ratio were 5 % larger than it
-is.
+unbalance is that over the speeds and over the frequencies of the rotor frame. Loads grow by
+``exp(0.05 ν t)``: at an undamped resonance no finite number of modes has an accuracy.
 """
 
 from __future__ import annotations

@@ -1,15 +1,13 @@
 """Which step size a scene requires: how much the response changes by what a step does to it.
 
 Generalised alpha replaces the rate s of a motion ``exp(st)`` by ``ŝ = s(1 − κ(sh)² + δ(sh)³)``,
-κ = 0.0844 and δ = 7.3e-5, which damps. The response with ŝ in place of s is that of the simulation.
-The rates are those of the rotor frame: a motion that is slow in space is fast there, and ``κ(sh)²``
-of its fast rate is a large share of its slow one. A frame that carries the translations errs by
-less.
+κ = 0.0844 and δ = 7.3e-5, which damps: the response with ŝ in place of s is that of the simulation.
+The rates are those of the rotor frame, where a motion that is slow in space is fast.
 
 Free motions have ŝ in place of their exponents, too. Where a forward and a backward whirl nearly
-meet, that changes the distance of their frequencies, on which their growth depends, by the shares
-of bearings and of damping that turns with the rotor in them: a step that is right for the response
-may show a stable rotor grow. The step keeps the change of each growth below half of it.
+meet, their growth depends on the distance of their frequencies, by the shares of bearings and of
+damping that turns with the rotor in them, and a step that is right for the response may show a
+stable rotor grow. The step keeps the change of each growth below half of it.
 """
 
 from __future__ import annotations

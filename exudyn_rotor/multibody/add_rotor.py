@@ -19,12 +19,13 @@ from exudyn_rotor.multibody.rotor.plan import (
     Plan,
     Setup,
     add_nodes,
-    check_free_names,
+    check_free,
     color_of,
     in_space,
     main_system,
     make_plan,
     marker_kinds,
+    marker_name,
     placement,
 )
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
@@ -220,7 +221,10 @@ def add_rotor(
         locking=checks.choice(locking, "locking", LOCKINGS),
         color=color_of(color),
     )
-    check_free_names(mbs, setup)
+    for one in setup.marker_kinds:
+        check_free(marker_name(setup.name, one), "marker", mbs.GetMarkerNumber)
+    if setup.name is not None:
+        check_free(setup.name, "object", mbs.GetObjectNumber)
     if full:
         check_memory(rotor)
         if stiffening in ("auto", "full"):

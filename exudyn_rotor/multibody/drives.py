@@ -1,8 +1,7 @@
 """Motors, drag, gears and couplings in a scene.
 
-A connection of two rotors is one object on the coordinates of both. Its forces are those of the
-connection, taken to the coordinates by the derivative of the motion of both interfaces: action and
-reaction are exact, and the Jacobian has what couples the rotors.
+A connection of two rotors is one object on the coordinates of both: action and reaction are exact,
+and the Jacobian has what couples the rotors.
 """
 
 from __future__ import annotations

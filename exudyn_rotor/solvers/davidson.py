@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
+from exudyn_rotor.solvers.factor import rounding_unit
+
 Inverse = Any  # an InertiaRelief or a ConstrainedInverse, which import this file
 _BLOCKS = 4  # of as many columns as modes are sought are kept
 _MORE = 5  # modes are sought beside those that are wanted
@@ -20,21 +22,16 @@ _SEED = 6
 
 
 def davidson_modes(
-    stiffness: sp.csr_array,
-    mass: sp.csr_array,
-    inverse: Inverse,
-    count: int,
-    unit: float,
+    stiffness: sp.csr_array, mass: sp.csr_array, inverse: Inverse, count: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the `count` lowest modes by Davidson iteration with an approximate ``K⁻¹``.
 
-    `unit` is the rounding error of ``K u`` for a displacement of norm 1 [N].
     Returns as :func:`exudyn_rotor.solvers.modes.lanczos_modes`; ValueError without convergence.
 
     Restarts keep the latest Ritz vectors and those before them ("GD+k"): Stathopoulos, Saad,
     "Restarting techniques for the (Jacobi-)Davidson symmetric eigenvalue methods", ETNA 7 (1998).
     """
-    size = stiffness.shape[0]
+    size, unit = stiffness.shape[0], rounding_unit(stiffness)
     sought = min(count + _MORE, size)
     factors = np.where(np.arange(sought) < count, 1.0, _GUARD_MULTIPLE)[: count + _GUARDS]
     seeded = np.random.default_rng(_SEED).standard_normal((size, _GUARDS))

@@ -17,10 +17,7 @@ _RESIDUAL, _RESIDUAL_LIMIT = 1e-7, 1e-6
 
 
 def lowest_modes(
-    stiffness: sp.csr_array,
-    mass: sp.csr_array,
-    inverse: Inverse,
-    count: int,
+    stiffness: sp.csr_array, mass: sp.csr_array, inverse: Inverse, count: int
 ) -> Modes:
     """Return the `count` lowest modes; parameters as of :func:`davidson_modes`."""
     size = mass.shape[0]
@@ -28,8 +25,7 @@ def lowest_modes(
     if 4 * count > size or (size <= DENSE_SIZE and not inverse.iterative):
         return dense_modes(mass, inverse.solve, count)
     if inverse.iterative:
-        unit = rounding_unit(stiffness)
-        return davidson_modes(stiffness, mass, inverse, count, unit)
+        return davidson_modes(stiffness, mass, inverse, count)
     return lanczos_modes(mass, inverse.solve, count, _RESIDUAL)
 
 
@@ -50,12 +46,7 @@ def dense_modes(mass: sp.csr_array, inverse: Solve, count: int) -> Modes:
     return _one_step_further(mass, inverse, squares, modes)
 
 
-def lanczos_modes(
-    mass: sp.csr_array,
-    inverse: Solve,
-    count: int,
-    tolerance: float,
-) -> Modes:
+def lanczos_modes(mass: sp.csr_array, inverse: Solve, count: int, tolerance: float) -> Modes:
     """Return the `count` lowest modes by Lanczos iteration on ``K⁻¹ M`` (ARPACK).
 
     `inverse` is that of the stiffness on the motions that are allowed, of loads (n, k): symmetric,

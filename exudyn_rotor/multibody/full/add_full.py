@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.full.ties import add_ties, container, no_jacobian
-from exudyn_rotor.multibody.rotor.plan import Layout, LockedForce, Plan, Setup, add_nodes, laid_out
+from exudyn_rotor.multibody.rotor.plan import Layout, Plan, Setup, add_nodes, laid_out
 from exudyn_rotor.multibody.rotor.rotor_items import finished, flexible_body
 from exudyn_rotor.prestress.static_solution import relief_rotation
 from exudyn_rotor.reduction.selection import NEGLIGIBLE, check_possible
@@ -277,7 +277,7 @@ def _spread(matrix: sp.csr_array, layout: Layout, diagonal: np.ndarray) -> sp.cs
     return sp.csr_array((entries.data, (rows, columns)), shape=shape) + sp.diags_array(diagonal)
 
 
-def _forces(motion: FullMotion, layout: Layout, guide: LockedForce | None) -> Callable:
+def _forces(motion: FullMotion, layout: Layout, guide: Callable | None) -> Callable:
     def forces(mbs, t, item, q, q_t):
         total = np.zeros(layout.size) if guide is None else np.array(guide(t))
         if motion.has_varying_forces:

@@ -89,13 +89,10 @@ def _why_lost(
 ) -> str | None:
     """Return why what an item does at a marker, its number `place`, is lost; None if it is not."""
     kind = marker["markerType"]
-    if kind == "SuperElementRigid":
-        if int(marker["bodyNumber"]) != int(body.objects["marker_body"]):
-            return None
+    if int(marker.get("bodyNumber", -1)) == int(body.objects["marker_body"]):
         with_lever = item.get("loadType", "ForceVector") == "ForceVector"
-        if with_lever and np.any(marker["offset"]):
+        if with_lever and np.any(marker.get("offset", 0.0)):
             return f"a force at a marker's own offset has no lever for tilts (modes){_INSTEAD}"
-        return None
     if int(marker.get("nodeNumber", -1)) != int(body.nodes["rigid"]):
         return None
     if kind in NODE_MARKERS:  # mbs.Assemble() has pointed the others elsewhere

@@ -118,8 +118,6 @@ MARKER_KINDS = ("rigid", "position")
 MODES = 6  # the first coordinate after those of the rigid-body node
 LOCKS = "locks"  # name of the constraint of all that stands still or turns at constant speed
 
-LockedForce = Callable[[float], np.ndarray]
-
 
 @dataclass(frozen=True, eq=False)
 class Locks:
@@ -269,10 +267,7 @@ class Placement:
 
 @dataclass(frozen=True, eq=False)
 class Setup:
-    """A rotor body as it was asked for; the attributes are arguments of ``add_rotor``, checked.
-
-    The start values of modal coordinates are checked by the plan, which knows the modes.
-    """
+    """A rotor body as asked for: arguments of ``add_rotor``, checked but for start values."""
 
     name: str | None
     formulation: Formulation
@@ -297,10 +292,7 @@ def placement(
     initial_angle: float | None,
     initial_speed: float | None,
 ) -> Placement:
-    """Check and complete the placement; a prescribed motion brings its own initial values.
-
-    `axis` is the spin axis in inertial axes.
-    """
+    """Check and complete the placement of a rotor with a spin `axis` in inertial axes."""
     place = checks.vector(position, "position", "m")
     velocity, start = checks.vector(initial_velocity, "initial_velocity", "m/s"), np.zeros(3)
     lost = {3: 0.0 * velocity, 2: axis * (axis @ velocity), 0: velocity}
@@ -363,18 +355,10 @@ def marker_name(name: str | None, interface: str) -> str:
     return interface if name is None else f"{name}:{interface}"
 
 
-def check_free_names(mbs: exudyn.MainSystem, setup: Setup) -> None:
-    """Refuse a name that an item of `mbs` already has."""
-    name = setup.name
-    taken = [(mbs.GetMarkerNumber, marker_name(name, one)) for one in setup.marker_kinds]
-    if name is not None:
-        taken.append((mbs.GetObjectNumber, name))
-    for find, item in taken:
-        if int(find(item)) != -1:
-            raise ValueError(
-                f"name {name!r}: this system already has an item {item!r}; "
-                "give the second rotor another name"
-            )
+def check_free(name: str, what: str, find: Callable[[str], int]) -> None:
+    """Refuse a name that an item of an ``mbs`` has already; `find` returns its number, or -1."""
+    if int(find(checks.label(name, "name"))) != -1:
+        raise ValueError(f"name: this system already has a {what} {name!r}; choose another")
 
 
 @dataclass(frozen=True, eq=False)
@@ -392,7 +376,7 @@ class Plan(Setup):
     motion: Motion
 
     @property
-    def guide(self) -> LockedForce | None:
+    def guide(self) -> Callable[[float], np.ndarray] | None:
         """Forces (size,) over time that drive huge masses; None where none is driven."""
         varying, masses = self.locks.varying, self.layout.lock_mass
 
@@ -428,9 +412,8 @@ def make_plan(reduced: ReducedRotor, setup: Setup) -> Plan:
     """Check what needs the modes, and lay out the equations."""
     damped = reduced.with_damping(mass=setup.mass_damping, stiffness=setup.stiffness_damping)
     selection = select_modes(damped, setup.formulation)
-    invariants = selection.invariants
-    if setup.stiffening != "none":
-        invariants = invariants.loaded
+    whole = selection.invariants
+    invariants = whole if setup.stiffening == "none" else whole.loaded
     second = second_order(invariants, setup.stiffening)
     described = f"(one per mode: {', '.join(selection.labels)})"
 
@@ -448,11 +431,7 @@ def laid_out(
     motions: Callable[..., Motion],
     start: Callable[[ArrayLike | None, str], np.ndarray],
 ) -> Plan:
-    """Return a plan with frame, locks, layout and motion.
-
-    `motions` lacks orientation, plane and gravity, and `start` makes initial coordinates of what
-    was given.
-    """
+    """Return a plan; `motions` lacks orientation, plane and gravity, `start` checks coordinates."""
     formulation, place = setup.formulation, setup.placement
     turned = turned_origin(selection, place.rotation, place.angle)
     setup = replace(
@@ -464,9 +443,7 @@ def laid_out(
     direction = selection.invariants.direction
     frame = BodyFrame.of(direction, selection.origin, place.position, place.rotation)
     locks = Locks.of(formulation, place.rotation @ direction, frame.spin)
-    plane = None
-    if formulation.translation_count == 2:
-        plane = np.eye(3)[:, locks.unknown[:2]]
+    plane = np.eye(3)[:, locks.unknown[:2]] if formulation.translation_count == 2 else None
     # gravity as a load exerts no moment about e by the deflection Sζ; a free spin needs it
     in_equations = formulation.has_spin and formulation.translation_count == 0
     motion = motions(place.rotation, plane, setup.gravity if in_equations else None)
@@ -499,10 +476,9 @@ def _layout(setup: Setup, locks: Locks, motion: Motion) -> Layout:
 
 
 def turned_origin(selection: Selection, rotation: np.ndarray, angle: float) -> np.ndarray:
-    """Return by how much the frame origin moves where the rotor turns about its axis [m].
+    """Return by how much a frame origin off the axis moves where the rotor turns about it [m].
 
-    The origin is the centre of mass, which may be off the axis, where the translation is free. The
-    `rotation` takes mesh axes to axes of the result at θ = 0.
+    The `rotation` takes mesh axes to axes of the result at θ = 0.
     """
     axis = selection.source.axis
     off = axis.radial(selection.origin)

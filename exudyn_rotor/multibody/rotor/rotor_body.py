@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor.connections import ConnectionWarning, lost_connections
-from exudyn_rotor.multibody.rotor.plan import LOCKS, MARKER_KINDS
+from exudyn_rotor.multibody.rotor.plan import LOCKS, MARKER_KINDS, check_free
 from exudyn_rotor.multibody.rotor.rotor_items import (
     RATES,
     Carrier,
@@ -153,9 +153,7 @@ def sensor_options(body: RotorItems, options: Mapping[str, Any]) -> dict[str, An
     if "fileName" in settings:
         settings["fileName"] = os.fspath(checks.path(settings["fileName"], "fileName"))
     if "name" in settings:
-        name = checks.label(settings["name"], "name")
-        if int(body.mbs.GetSensorNumber(name)) != -1:
-            raise ValueError(f"name: this system already has a sensor {name!r}; choose another")
+        check_free(settings["name"], "sensor", body.mbs.GetSensorNumber)
     return settings
 
 
@@ -276,9 +274,7 @@ class SceneBody(RotorItems, ABC):
         checks.choice(kind, "kind", MARKER_KINDS)
         checks.flag(show, "show")
         if name is not None:
-            checks.label(name, "name")
-            if int(self.mbs.GetMarkerNumber(name)) != -1:
-                raise ValueError(f"name: this system already has a marker {name!r}; choose another")
+            check_free(name, "marker", self.mbs.GetMarkerNumber)
         if not isinstance(where, str):
             point = self._nodes_carrier(where, kind)
         else:

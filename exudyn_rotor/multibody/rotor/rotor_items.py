@@ -188,11 +188,7 @@ def nodes_of(mbs: exudyn.MainSystem, body: exudyn.ObjectIndex) -> np.ndarray:
     return np.reshape(mbs.GetObjectParameter(body, "referencePositions"), (-1, 3))
 
 
-def carrier_of(
-    mbs: exudyn.MainSystem,
-    body: exudyn.ObjectIndex,
-    interface: Interface,
-) -> Carrier:
+def carrier_of(mbs: exudyn.MainSystem, body: exudyn.ObjectIndex, interface: Interface) -> Carrier:
     """Return what moves with the mean motion of nodes of a flexible body."""
     columns = np.asarray(mbs.GetObjectParameter(body, "modeBasis"))
     motion = interface.mean_motion(len(columns) // 3) @ columns

@@ -263,8 +263,7 @@ def _frame_shares(
     """
     rigid = len(reduced.rigid_kinds)
     G = reduced.shapes.matrix.T @ (rotor.mass @ modes)
-    energy = np.einsum("ik,ik->k", G, G)
-    if np.all(np.einsum("ik,ik->k", G[:rigid], G[:rigid]) <= _SEEN * energy):
+    if np.all((G[:rigid] ** 2).sum(axis=0) <= _SEEN * (G**2).sum(axis=0)):
         return None
     return -G[:rigid] @ np.linalg.pinv(G[rigid:])
 
