@@ -150,12 +150,12 @@ class Content:
         directions: list[list[np.ndarray]] = [[] for _ in range(5)]
         for body, place in zip(assembly.bodies, assembly.slices, strict=True):
             if isinstance(body, RotorBody):
-                seen = _seen(body.alone, body.mean)
-                share = max(share, seen.per_mass)
-                for n, turned, rows in seen.waves:
+                waves, seen, per_mass = _seen(body.alone, body.mean)
+                share = max(share, per_mass)
+                for n, turned, rows in waves:
                     shift, spin = n * body.ratio - turned * body.drift, n * body.ratio
                     found.append((n, shift, spin, assembly.wide({0: rows}, place)[0]))
-                for wide, rows in zip(directions, seen.directions, strict=False):
+                for wide, rows in zip(directions, seen, strict=False):
                     wide.append(assembly.wide({0: rows}, place)[0])
         for body, place in zip(assembly.bodies, assembly.slices, strict=True):
             if not isinstance(body, RotorBody) and body.size:  # as heavy as the rotor where alike
@@ -282,20 +282,13 @@ class Content:
         return np.where(defective[:, None, None, None], vectors, turned)
 
 
-class _Seen(NamedTuple):
-    """What is seen of a rotor: rows of each wave n, of coordinates that turn alike.
-
-    Then rows along the axis, the circumference and the radius, and of all motion; and the number
-    of points over the mass.
-    """
-
-    waves: list[tuple[int, int, np.ndarray]]
-    directions: list[np.ndarray]
-    per_mass: float
-
-
 @kept
-def _seen(alone: RotorAlone, mean: bool) -> _Seen:
+def _seen(alone: RotorAlone, mean: bool) -> tuple[list, list[np.ndarray], float]:
+    """Return what is seen of a rotor, and its number of points over the mass.
+
+    Rows of each wave n, of coordinates that turn alike; then rows along the axis, the circumference
+    and the radius, and of all motion.
+    """
     points, motion = rotor_points(alone.rotor, _SAMPLES)
     motion = motion @ alone.Q
     orders, amplitudes, axial = wave_amplitudes(points, motion)
@@ -313,7 +306,7 @@ def _seen(alone: RotorAlone, mean: bool) -> _Seen:
             rows = compressed(rows, least)
             if len(rows):
                 waves.append((n, turned, rows))
-    return _Seen(waves, directions, len(points) / alone.invariants.mass)
+    return waves, directions, len(points) / alone.invariants.mass
 
 
 def _strongest(energy: np.ndarray, multiples: np.ndarray) -> np.ndarray:

@@ -33,7 +33,7 @@ from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
 from exudyn_rotor.linear.over import forced_over, motions_over
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.results import Result, numbers, storable, text_table, words
+from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.units import Units
 
@@ -100,10 +100,6 @@ class Sensitivity(Result):
             f"at [{shown.frequency}]": shown.frequencies(self.frequencies[at]),
             "zone": np.array(self.zones),
         }
-
-    def table(self, *, units: str = "rpm") -> str:
-        """Return peaks and zones as text; `units` are 'rpm', 'Hz' or 'SI'."""
-        return "\n".join(text_table(self.columns(units)))
 
     def plot(self, ax: Axes | None = None, *, units: str = "rpm") -> Axes:
         """Draw ``|S|`` of each axis over the frequency, with the limits of the zones."""
