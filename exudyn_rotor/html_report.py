@@ -177,10 +177,10 @@ def _html(items: list[Any], heading: str, units: str) -> str:
                 parts.append(_picture(made, heading))
         elif callable(getattr(item, "table", None)):
             if not pictured and _draws_alone(item):
-                made = np.ravel(_with_units(item.plot, units)())[0].figure
+                made = np.ravel(_called(item.plot, units))[0].figure
                 parts.append(_picture(made, heading))
                 pyplot.close(made)
-            parts.append(f"<pre>{escape(_with_units(item.table, units)())}</pre>")
+            parts.append(f"<pre>{escape(_called(item.table, units))}</pre>")
         else:
             parts.append(f"<pre>{escape(_described(item))}</pre>")
     return "\n".join(parts)
@@ -204,11 +204,10 @@ def _draws_alone(result: Any) -> bool:
     return all(p.default is not p.empty or p.kind in kinds for p in given)
 
 
-def _with_units(method: Callable, units: str) -> Callable:
-    """Return a method with the units of the report, where it knows units."""
-    if "units" not in inspect.signature(method).parameters:
-        return method
-    return lambda: method(units=units)
+def _called(method: Callable, units: str) -> Any:
+    """Call a method with the units of the report, where it knows units."""
+    knows = "units" in inspect.signature(method).parameters
+    return method(units=units) if knows else method()
 
 
 def _picture(made: Figure, heading: str) -> str:

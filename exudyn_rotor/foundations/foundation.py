@@ -317,10 +317,6 @@ class Foundation:
         rates = self.mass @ self.mode_shapes
         return replace(self, damping=(rates * (2.0 * ratio * self.frequencies)) @ rates.T)
 
-    def undamped(self) -> Foundation:
-        """Return the foundation without damping."""
-        return replace(self, damping=np.zeros_like(self.mass))
-
     def turned(self, rotation: np.ndarray, position: ArrayLike = (0.0, 0.0, 0.0)) -> Foundation:
         """Return it in other axes, into which `rotation` (3, 3) leads, the origin at `position`."""
         rotation = checks.rotation(rotation)

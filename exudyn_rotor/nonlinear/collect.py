@@ -67,14 +67,13 @@ def collected(
 def _seen(coordinates: Waves, observed: Sequence[Place], revolutions: int) -> Waves:
     """Return the harmonics of places (p, 6) in axes that stand still, of one sign."""
     found: Waves = {}
-    for index, one in enumerate(observed):
-        for m, U in one.seen.items():
-            for (k, n), x in coordinates.items():
-                order = k, n + revolutions * m
-                if order >= (0, 0):
-                    if order not in found:
-                        found[order] = np.zeros((len(observed), 6), dtype=complex)
-                    found[order][index] += U @ x
+    for m in {m for one in observed for m in one.seen}:
+        none = np.zeros_like(next(iter(observed[0].seen.values())))
+        U = np.array([one.seen.get(m, none) for one in observed])
+        for (k, n), x in coordinates.items():
+            order = k, n + revolutions * m
+            if order >= (0, 0):
+                found[order] = found.get(order, 0.0) + U @ x
     return _half(found)
 
 

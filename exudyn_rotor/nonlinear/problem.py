@@ -23,7 +23,7 @@ from exudyn_rotor.linear.response.loads import (
     total,
     unbalance_load,
 )
-from exudyn_rotor.nonlinear.balance import Balance, Laws, padded
+from exudyn_rotor.nonlinear.balance import Balance, Laws, padded, real_part_of
 from exudyn_rotor.nonlinear.rest import Rest, Unloaded, of_both_signs
 from exudyn_rotor.nonlinear.scene import Listed
 from exudyn_rotor.reduction.reduced_rotor import ModeKind
@@ -186,8 +186,11 @@ class Problem:
         balance = of(self.reach)
         try:
             c = padded(self.at_rest(balance.rest.speed), (0, 0), balance.reach)
+            # a whole step: at large loads no share of it would make the residual smaller
+            left, J = balance.linearised(c)
+            yield balance, c - real_part_of(np.linalg.solve(J, left.ravel()).reshape(c.shape))
             yield balance, c
-        except UnconvergedError:
+        except (UnconvergedError, np.linalg.LinAlgError):
             pass
         if self.unbalance:  # a rotor that unbalance alone presses: the whirl of a larger one
             most = of(self.reach, _MORE_UNBALANCE[0])

@@ -39,7 +39,10 @@ def levitated(one, own, speed):
 def on_foundation(one, own):
     """Return the rotor and what it stands on, without damping but that of the controllers."""
     rotor, _, foundation = two_masses(own=(own, own))
-    on = {"supports": [*pair(controller=one), AXIAL], "foundation": foundation.undamped()}
+    on = {
+        "supports": [*pair(controller=one), AXIAL],
+        "foundation": foundation.with_damping_ratio(0.0),
+    }
     return rotor, on
 
 

@@ -16,24 +16,17 @@ import scipy.linalg as la
 from exudyn_rotor.linear.equations import PeriodicSystem, States
 from exudyn_rotor.linear.solve.hill import Exponents, lost_of, one_of_each_family, shares
 
-GAUSS_POINTS = 0.5 + np.array([-1.0, 1.0]) * np.sqrt(3.0) / 6.0
+_GAUSS_POINTS = 0.5 + np.array([-1.0, 1.0]) * np.sqrt(3.0) / 6.0
 _STEPS = (64, 128, 256, 512, 1024)  # of a period
 _SLOW = 20.0  # |λ| over Ω up to which motions are waited for
 _STILL = 1e-6  # relative change of an exponent by twice the steps
 _LEAST = 1e-10  # of the largest multiplier: one below is rounding
 
 
-def magnus_exponent(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Return the exponent of a step from h times the matrix at its two Gauss points."""
-    commutator = second @ first - first @ second
-    return 0.5 * (first + second) + np.sqrt(3.0) / 12.0 * commutator
-
-
 def _followed(system: PeriodicSystem, made: States, steps: int) -> list[np.ndarray]:
     """Return the matrices that take the state to the ends of so many steps of a period."""
     period = 2.0 * np.pi / (system.step * abs(system.speed))
-    turn = 2.0 * np.pi / system.step * np.sign(system.speed)
-    angles = turn * (np.arange(steps)[:, None] + GAUSS_POINTS) / steps
+    angles = period * system.speed * (np.arange(steps)[:, None] + _GAUSS_POINTS) / steps
     first, second = (
         period / steps
         * sum(
@@ -44,7 +37,8 @@ def _followed(system: PeriodicSystem, made: States, steps: int) -> list[np.ndarr
     )  # fmt: skip
     followed = [np.eye(len(made.A[0]))]
     with np.errstate(over="ignore", invalid="ignore"):
-        exponents = magnus_exponent(first, second)
+        commutator = second @ first - first @ second
+        exponents = 0.5 * (first + second) + np.sqrt(3.0) / 12.0 * commutator
         for step in la.expm(exponents) if np.all(np.isfinite(exponents)) else np.nan * exponents:
             followed.append(step @ followed[-1])
     return followed

@@ -178,7 +178,9 @@ def _periodic(
     for place in range(len(stack.speed)):
         places, system = np.array([place]), stack[place]
         if system.is_constant:  # at rest
-            parts += [(places, part) for _, part in _constant(joined_at_rest(system))]
+            M, D, K = (X[None] for X in system.matrices())  # the sum of all harmonics
+            still = PeriodicSystem(np.array([system.speed]), M, {0: D}, {0: K}, system.H)
+            parts += [(places, part) for _, part in _constant(still)]
             continue
         made = states_of(system)
         bound = _PERIODIC * float(_bounds(made))
@@ -198,12 +200,6 @@ def _periodic(
         if told is not None:
             told(1)
     return parts
-
-
-def joined_at_rest(system: PeriodicSystem) -> PeriodicSystem:
-    """Return equations at rest, the sum of all their harmonics, as a stack of one speed."""
-    M, D, K = (X[None] for X in system.matrices())
-    return PeriodicSystem(np.array([system.speed]), M, {0: D}, {0: K}, system.H)
 
 
 def _ascending(speed: float, found: Exponents, made: States, bound: float) -> Motions:

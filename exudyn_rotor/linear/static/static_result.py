@@ -82,15 +82,11 @@ class StaticResponse(AtPlaces):
     support_heights: np.ndarray = numbers("supports")
     axes: np.ndarray = numbers(3, 3)
     speed: float
-    frame: str = "inertial"
+    frame: str = checks.one_of(FRAMES, default="inertial")
     basis_errors: np.ndarray | None = numbers("places", optional=True)
     nodes: np.ndarray | None = numbers("nodes", 3, optional=True)
     displacement: np.ndarray | None = numbers("nodes", 3, optional=True)
     stress: np.ndarray | None = numbers("nodes", 6, optional=True)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        checks.choice(self.frame, "frame", FRAMES)
 
     def deflection(self, place: str | None = None) -> np.ndarray:
         """Return the displacement along (n1, n2, e) of a place, the first by default, (3,) [m]."""

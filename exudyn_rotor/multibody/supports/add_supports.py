@@ -235,11 +235,10 @@ def _added(body: Body, support: Given, seat: Seat, sensed: Seat) -> SceneSupport
     mbs, end, base = body.mbs, RotorEnd(body, support.interface), seat.end
     if isinstance(support, Support):
         parts, left = native_parts(body, support, seat)
-        made = SupportConnector(support, end, base, seat.rotor is not None)
+        on_rotor = seat.rotor is not None
+        made = SupportConnector(support, end, base, on_rotor)
         if left is not None:
-            rest = made
-            if left is not support:
-                rest = SupportConnector(left, end, base, seat.rotor is not None)
+            rest = made if left is support else SupportConnector(left, end, base, on_rotor)
             parts.append((mbs.AddObject(rest.item(made)), PYTHON))
         objects, evaluation = zip(*parts, strict=True) if parts else ((), ())
         return SceneSupport(body, objects, evaluation, made, support, seat.base)
