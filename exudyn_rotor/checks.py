@@ -534,6 +534,11 @@ def words(size: int | str, default: Any = MISSING, kw_only: bool = False) -> Any
     return field(default=default, kw_only=kw_only, metadata={"shape": (size,)})
 
 
+def one_of(options: Sequence[str], **given: Any) -> Any:
+    """Describe a word by those that it may be; `given` goes to :func:`dataclasses.field`."""
+    return field(metadata={"options": options}, **given)
+
+
 class Checked:
     """Base of dataclasses whose fields are checked, by their types and :func:`numbers`."""
 
@@ -555,6 +560,8 @@ class Checked:
             else:
                 value = FIELD_CHECKS[types[item.name]](value, item.name)
             _check_shape(np.shape(value), item, sizes)
+            if "options" in item.metadata:
+                choice(value, item.name, item.metadata["options"])
             object.__setattr__(self, item.name, value)
 
     def __repr__(self) -> str:

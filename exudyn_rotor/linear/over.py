@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from exudyn_rotor import checks
 from exudyn_rotor.calls import user_level
+from exudyn_rotor.checks import one_of
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms
 from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
 from exudyn_rotor.linear.own_frequency import met, own_motions
@@ -123,16 +123,9 @@ class ModelResult(Result):
         over a turn.
     """
 
-    stiffening: str | None = field(default=None, kw_only=True)
-    axes: str = field(default="inertial", kw_only=True)
+    stiffening: str | None = one_of(LEVELS, default=None, kw_only=True)
+    axes: str = one_of(AXES[1:], default="inertial", kw_only=True)
     unevenness: float = field(default=0.0, kw_only=True)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.stiffening is not None:
-            checks.choice(self.stiffening, "stiffening", LEVELS)
-        checks.choice(self.axes, "axes", AXES[1:])
-        checks.number(self.unevenness, "unevenness", least=0.0)
 
     def _closing(self, errors: np.ndarray | None) -> list[str]:
         """Return the last lines of a table; `errors` of the basis, None where not known."""

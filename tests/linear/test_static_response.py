@@ -222,6 +222,19 @@ def test_magnets_rest_where_their_sensors_show_it():
     assert found.reaction("0")[1] == pytest.approx(force, rel=1e-8)
 
 
+def test_points_of_a_foundation_that_hold_no_rotor_move_with_it():
+    rotor, sway = block().interface_at("a", 0.05, 0.06).interface_at("b", 0.25, 0.06), np.eye(3, 2)
+    foundation = er.Foundation(
+        5.0 * np.eye(2), np.zeros((2, 2)), 2e5 * np.eye(2), dict.fromkeys(("a", "b", "motor"), sway)
+    )
+    supports = [er.Support(name, 1e7) for name in "ab"]
+    model = er.linear_model(rotor.reduce(0), supports=supports, foundation=foundation)
+    found = er.static_response(model, {"a": [30.0, 0.0, 0.0]})
+    assert found.deflection("motor (foundation)") == pytest.approx([30.0 / 2e5, 0.0, 0.0])
+    found.plot()
+    pyplot.close("all")
+
+
 def test_films_carry_what_their_equilibrium_says():
     rotor = beam()
     loads = er.bearing_loads(rotor, films("0", "8", "16"), DOWN, speed=300.0)

@@ -31,7 +31,7 @@ MAY_BE_NAN = {
 # results whose rows are NaN where nothing could be computed
 WITH_GAPS = (
     "Campbell", "CriticalSpeedMap", "PeriodicResponse",
-    "SeparationMargins", "Sensitivity", "Stability", "StabilityMap",
+    "SeparationMargins", "Sensitivity", "Stability", "StabilityMap", "StaticResponse",
 )  # fmt: skip
 
 

@@ -45,7 +45,7 @@ _ERROR = 1e-6  # last change of a critical speed in a richer basis
 # relative distance of the speeds of one motion in the two planes of a rotor that counts as round
 _PLANES = 0.5 * EVEN
 _CURVE = 200  # speeds of a bearing's own curve
-_FILM = 1e-3  # error of a critical speed on films
+_FILM = 1e-4  # last change of a critical speed on films
 
 
 class _Undamped(ModelResult):

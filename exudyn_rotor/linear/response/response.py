@@ -72,15 +72,11 @@ class Response(AtPlaces, ModelResult):
 
     orders: np.ndarray = numbers("orders", dtype=int)
     motion: np.ndarray = numbers("abscissa", "places", "orders", 6, dtype=complex, finite=False)
-    frame: str
+    frame: str = checks.one_of(FRAMES)
     basis_errors: np.ndarray | None = numbers("abscissa", "places", finite=False, optional=True)
 
     _over: ClassVar[str] = "speeds"
     _what: ClassVar[str] = "spin speed"
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        checks.choice(self.frame, "frame", FRAMES)
 
     @property
     def abscissa(self) -> np.ndarray:

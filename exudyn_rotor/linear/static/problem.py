@@ -215,13 +215,15 @@ class Problem:
         return " – ".join(":".join(filter(None, end)) for end in known)
 
     def _height(self, label: str) -> float:
-        """Return the position of a place along the axis [m]."""
+        """Return the position of a place along the axis [m]; NaN of a foundation's own points."""
         rotor = next(iter(self.model.rotors.values()))
         if label.startswith("node ") and label not in self.model.interfaces:
             point = rotor.shapes.nodes[int(label.removeprefix("node "))]
         else:
             body, name = self.model.owner(label)
             rotor = body.alone.rotor if isinstance(body, RotorBody) else rotor
+            if name not in rotor.interfaces:
+                return np.nan
             point = rotor.interfaces[name].reference
         return float(point @ rotor.axis.direction)
 

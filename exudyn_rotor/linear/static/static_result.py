@@ -42,7 +42,8 @@ class StaticResponse(AtPlaces):
     journals : ndarray, shape (b, 6)
         Displacement [m] and rotation [rad] of the rotor in each support.
     heights : ndarray, shape (p,)
-        Positions of the places along the axis, from the origin of the mesh [m].
+        Positions of the places along the axis, from the origin of the mesh [m]; NaN of a point of a
+        foundation that is no interface.
     support_heights : ndarray, shape (b,)
     speed : float
         Spin speed [rad/s].
@@ -78,19 +79,15 @@ class StaticResponse(AtPlaces):
     supports: tuple[str, ...] = words("supports")
     reactions: np.ndarray = numbers("supports", 6)
     journals: np.ndarray = numbers("supports", 6)
-    heights: np.ndarray = numbers("places")
+    heights: np.ndarray = numbers("places", finite=False)
     support_heights: np.ndarray = numbers("supports")
     axes: np.ndarray = numbers(3, 3)
     speed: float
-    frame: str = "inertial"
+    frame: str = checks.one_of(FRAMES, default="inertial")
     basis_errors: np.ndarray | None = numbers("places", optional=True)
     nodes: np.ndarray | None = numbers("nodes", 3, optional=True)
     displacement: np.ndarray | None = numbers("nodes", 3, optional=True)
     stress: np.ndarray | None = numbers("nodes", 6, optional=True)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        checks.choice(self.frame, "frame", FRAMES)
 
     def deflection(self, place: str | None = None) -> np.ndarray:
         """Return the displacement along (n1, n2, e) of a place, the first by default, (3,) [m]."""
