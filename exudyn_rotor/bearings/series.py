@@ -5,14 +5,9 @@ The ring, of the mass m, moves across the axis by r; with the forces of both, by
     m r̈ = −F_inner(x − r) + F_outer(r − b),    F_rotor = F_inner(x − r).                  (1)
 
 A floating ring turns, too. Films between surfaces that turn with Ω and Ω_r carry as with one that
-turns with Ω + Ω_r. Under no load its speed follows from the shear of both films,
-
-    Ω_r/Ω = 1/(1 + (μ_o R_o³ L_o c_i)/(μ_i R_i³ L_i c_o)),                                 (2)
-
-and under a load from the torques on it with the eccentricities ε of both films, by (1) of
-:mod:`exudyn_rotor.bearings.short_journal`, the moments of the pressure included. (2) is that of
-M. C. Shaw, T. J. Nussdorfer, *An analysis of the full-floating journal bearing*, NACA Report 866
-(1947).
+turns with Ω + Ω_r. Its speed follows from the torques of both films on it, by (1) of
+:mod:`exudyn_rotor.bearings.short_journal`, as without load in M. C. Shaw, T. J. Nussdorfer, *An
+analysis of the full-floating journal bearing*, NACA Report 866 (1947).
 """
 
 from __future__ import annotations
@@ -209,7 +204,7 @@ class FloatingRingBearing:
         for name in ("inner", "outer"):
             checks.instance(getattr(self, name), name, ShortJournalBearing)
         load = np.zeros(2) if self.load is None else checks.vector(self.load, "load", "N", size=2)
-        object.__setattr__(self, "load", checks.read_only(load))
+        checks.keep(self, load=checks.read_only(load))
 
     def ring(self, speed: float) -> RingState:
         """Return the equilibrium of the ring under the load at a spin speed [rad/s].

@@ -50,9 +50,11 @@ class Drive(ABC):
             self.law(checks.number(speed, "speed", "rad/s"), checks.number(time, "time", "s"))
         )
 
-    def _refuse_zero(self, name: str, unit: str) -> None:
+    def _keep_sense(self, name: str) -> None:
+        """Keep a speed, whose sign is the sense of the rotor."""
+        checks.keep_numbers(self, {name: "rad/s"})
         if getattr(self, name) == 0.0:
-            raise ValueError(f"{name}: needs a number [{unit}] that is not zero, got 0.0")
+            raise ValueError(f"{name}: needs a number [rad/s] that is not zero, got 0.0")
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,8 +194,7 @@ class InductionMotor(Drive):
     def __post_init__(self) -> None:
         checks.keep_numbers(self, {"breakdown_torque": "N m"}, above=0.0)
         checks.keep_numbers(self, {"breakdown_slip": ""}, above=0.0, below=1.0)
-        checks.keep_numbers(self, {"synchronous_speed": "rad/s"})
-        self._refuse_zero("synchronous_speed", "rad/s")
+        self._keep_sense("synchronous_speed")
 
     def law(self, speed: float, time: float) -> float:
         """Return the torque [N m]."""
@@ -232,8 +233,7 @@ class DirectCurrentMotor(Drive):
 
     def __post_init__(self) -> None:
         checks.keep_numbers(self, {"stall_torque": "N m"}, above=0.0)
-        checks.keep_numbers(self, {"no_load_speed": "rad/s"})
-        self._refuse_zero("no_load_speed", "rad/s")
+        self._keep_sense("no_load_speed")
 
     def law(self, speed: float, time: float) -> float:
         """Return the torque [N m]."""

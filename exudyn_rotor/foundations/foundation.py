@@ -60,9 +60,9 @@ class Mount:
     def __post_init__(self) -> None:
         at = self.at
         at = checks.label(at, "at") if isinstance(at, str) else checks.vector(at, "at", "m")
-        object.__setattr__(self, "at", at)
-        for name, unit in (("stiffness", "N/m"), ("damping", "N s/m")):
-            object.__setattr__(self, name, _in_three_axes(getattr(self, name), name, unit))
+        stiffness = _in_three_axes(self.stiffness, "stiffness", "N/m")
+        damping = _in_three_axes(self.damping, "damping", "N s/m")
+        checks.keep(self, at=at, stiffness=stiffness, damping=damping)
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,15 +119,14 @@ class Foundation:
             raise ValueError("mass: needs one coordinate or more")
         for name, unit in _UNITS.items():
             matrix = checks.symmetric(getattr(self, name), name, unit, size=size)
-            object.__setattr__(self, name, checks.read_only(0.5 * (matrix + matrix.T)))
+            checks.keep(self, **{name: checks.read_only(0.5 * (matrix + matrix.T))})
         _check_definite(self.mass, "mass: needs a positive definite matrix [kg]")
         _check_definite(
             self.stiffness,
             "stiffness: needs a positive definite matrix [N/m], so that the ground holds every "
             "coordinate; add mounts, or clamp the structure",
         )
-        if _least(self.damping) < -_SINGULAR:
-            raise ValueError(f"damping: needs a matrix ≥ 0 [N s/m], got {_lowest(self.damping)}")
+        _check_definite(self.damping, "damping: needs a matrix ≥ 0 [N s/m]", -_SINGULAR)
         checks.mapping(self.points, "points", "the motion (6, k) or (3, k) of each point")
         points = {
             checks.label(name, "points"): _motion(motion, f"points: {name!r}", size)
@@ -140,11 +139,11 @@ class Foundation:
         places = _positions(self.places, "places")
         for name in places.keys() - points.keys():
             raise ValueError(f"places: {name!r} is none of the points {', '.join(points)}")
-        object.__setattr__(self, "points", checks.read_only_mapping(points))
-        object.__setattr__(self, "places", checks.read_only_mapping(places))
+        checks.keep(self, points=checks.read_only_mapping(points))
+        checks.keep(self, places=checks.read_only_mapping(places))
         if self.participation is not None:
             S = checks.array(self.participation, "participation", "kg", shape=(3, size))
-            object.__setattr__(self, "participation", S)
+            checks.keep(self, participation=S)
 
     @classmethod
     def rigid(
@@ -389,21 +388,13 @@ def _motion(value: ArrayLike, name: str, size: int) -> np.ndarray:
     return checks.read_only(np.vstack([motion, np.zeros((6 - len(motion), size))]))
 
 
-def _least(matrix: np.ndarray) -> float:
-    """Return the least eigenvalue of a symmetric matrix scaled to a diagonal of ones."""
-    size = np.abs(matrix).max()
+def _check_definite(matrix: np.ndarray, needed: str, least: float = _SINGULAR) -> None:
+    """Refuse a symmetric matrix by its least eigenvalue, scaled to a diagonal of ones."""
     diagonal = np.diag(matrix)
-    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, size if size > 0.0 else 1.0))
-    return float(np.linalg.eigvalsh(scale[:, None] * matrix * scale)[0])
-
-
-def _lowest(matrix: np.ndarray) -> str:
-    return f"one with the eigenvalue {np.linalg.eigvalsh(matrix)[0]:.3g}"
-
-
-def _check_definite(matrix: np.ndarray, needed: str) -> None:
-    if np.any(np.diag(matrix) <= 0.0) or _least(matrix) < _SINGULAR:
-        raise ValueError(f"{needed}, got {_lowest(matrix)}")
+    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, np.abs(matrix).max() or 1.0))
+    if np.linalg.eigvalsh(scale[:, None] * matrix * scale)[0] < least:
+        lowest = np.linalg.eigvalsh(matrix)[0]
+        raise ValueError(f"{needed}, got one with the eigenvalue {lowest:.3g}")
 
 
 def _in_three_axes(value: float | ArrayLike, name: str, unit: str) -> np.ndarray:
@@ -411,6 +402,5 @@ def _in_three_axes(value: float | ArrayLike, name: str, unit: str) -> np.ndarray
     if given.ndim < 2:
         given = np.diag(checks.one_or_each(given, name, unit, 3, least=0.0))
     matrix = checks.symmetric(given, name, unit, size=3)
-    if np.linalg.eigvalsh(matrix)[0] < -1e-9 * np.abs(matrix).max():
-        raise ValueError(f"{name}: needs values ≥ 0 [{unit}], got {checks.shown(given)}")
+    _check_definite(matrix, f"{name}: needs a matrix ≥ 0 [{unit}]", -_SINGULAR)
     return matrix

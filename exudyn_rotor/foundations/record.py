@@ -65,8 +65,7 @@ class BaseRecord:
         shape = (times.size, 3)
         given = checks.array(self.accelerations, "accelerations", "m/s²", shape=shape)
         even = checks.read_only(np.linspace(times[0], times[-1], times.size))
-        object.__setattr__(self, "times", even)
-        object.__setattr__(self, "accelerations", given)
+        checks.keep(self, times=even, accelerations=given)
 
     @classmethod
     def from_csv(cls, path: str | PathLike, unit: str) -> BaseRecord:
