@@ -18,8 +18,7 @@ from scipy.optimize import brentq
 from exudyn_rotor import checks
 
 _LEAST_GAP = 0.05  # of the gap in the centre: the magnets do not come closer
-# over the gap, where an equilibrium is looked for
-_PLACES = np.linspace(0.0, 1.0 - _LEAST_GAP, 200)
+_TRIED = 200  # places or currents, between which an equilibrium is looked for
 
 
 @dataclass(frozen=True)
@@ -59,13 +58,9 @@ class LinearActuator:
         """Return the derivatives of (1) by current [N/A] and place [N/m]: K_i and K_s."""
         return self.force_current, self.negative_stiffness
 
-    def _current_for(self, force: float) -> float:
-        """Return the current [A] that makes a force [N] in the centre."""
-        return force / self.force_current
-
-    def _place_under(self, load: float, gain: float) -> float:
-        """Return where ``F(−gain x, x) + load = 0`` [m], next to the centre."""
-        return load / (self.force_current * gain - self.negative_stiffness)
+    def _carrying(self, load: float, current: float, place: float) -> float:
+        """Return s with ``F(s current, s place) + load = 0``."""
+        return -load / self.law(current, place)
 
 
 @dataclass(frozen=True)
@@ -138,33 +133,24 @@ class SaturatingActuator:
         by_place = [i**2 / gap**3 for i, gap in magnets]
         return 2.0 * self.constant * sum(by_current), 2.0 * self.constant * sum(by_place)
 
-    def _current_for(self, force: float) -> float:
-        """Return the current [A] that makes a force [N] in the centre."""
-        most = max(self.bias_current, self.current_limit - self.bias_current)
-        largest = self.law(most, 0.0)
-        if not abs(force) < largest:
+    def _carrying(self, load: float, current: float, place: float) -> float:
+        """Return s, next to 0, with ``F(s current, s place) + load = 0``, for a current below 0."""
+
+        def left(s: float) -> float:
+            return load + self.law(s * current, s * place)
+
+        side = 1.0 if load >= 0.0 else -1.0
+        reach = (1.0 - _LEAST_GAP) * self.gap if place else self.current_limit
+        tried = side * reach * np.linspace(0.0, 1.0, _TRIED)
+        spare = np.array([-side * left(s) for s in tried])
+        if not np.any(spare > 0.0):
             raise ValueError(
-                f"load: the magnets pull with less than {largest:.4g} N in the centre, not "
-                f"{abs(force):.4g} N; give a larger current_limit"
+                f"load: a control axis of these magnets carries {abs(load) + spare.max():.4g} N, "
+                f"not {abs(load):.4g} N; give a larger current_limit"
+                + (", or an integral" if place else "")
             )
-        return brentq(lambda i: self.law(i, 0.0) - force, -most, most, xtol=1e-15, rtol=1e-14)
-
-    def _place_under(self, load: float, gain: float) -> float:
-        """Return where ``F(−gain x, x) + load = 0`` [m], next to the centre."""
-
-        def left(place: float) -> float:
-            return self.law(-gain * place, place) + load
-
-        side = 1.0 if left(0.0) >= 0.0 else -1.0
-        places = side * self.gap * _PLACES
-        beyond = [side * left(place) < 0.0 for place in places]
-        if not any(beyond):
-            raise ValueError(
-                f"load: a control axis of these magnets does not carry {abs(load):.4g} N with a "
-                f"gain of {gain:g} A/m; give a larger current_limit, or an integral"
-            )
-        first = beyond.index(True)
-        return brentq(left, places[first - 1], places[first], xtol=1e-15, rtol=1e-14)
+        first = int(np.argmax(spare > 0.0))
+        return brentq(left, tried[first - 1], tried[first], xtol=1e-15, rtol=1e-14)
 
     def _magnets(
         self, current: float, place: float

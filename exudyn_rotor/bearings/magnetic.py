@@ -135,10 +135,9 @@ class MagneticBearing(LoadedBearing):
                 f"stiffness K_s of {pulled:.4g} N/m, so that there is no equilibrium; give a "
                 "larger proportional gain"
             )
-        if self.controller.integral:
-            return [(0.0, actuator._current_for(-pull)) for pull in axes @ load]
-        places = [actuator._place_under(pull, gain) for pull in axes @ load]
-        return [(place, -gain * place) for place in places]
+        current, place = (-1.0, 0.0) if self.controller.integral else (-gain, 1.0)
+        shares = [actuator._carrying(pull, current, place) for pull in axes @ load]
+        return [(place * share, current * share) for share in shares]
 
     def linearised(self) -> ControlledSupport:
         """Return the equations for linear analyses, about the equilibrium under the load.

@@ -236,9 +236,9 @@ def test_refused_input():
         (ValueError, "current_limit: needs", lambda: replace(MAGNETS, current_limit=1.5)),
         (ValueError, "K_i P of 2.4e.05 N/m is not above", lambda: bearing(
             controller=weak, load=[0.0, 1.0]).linearised()),
-        (ValueError, "the magnets pull with less", lambda: bearing(
+        (ValueError, "carries 2250 N, not 4000 N", lambda: bearing(
             actuator=MAGNETS, load=[0.0, -4e3]).equilibrium(0.0)),
-        (ValueError, "does not carry 4000 N with a gain", lambda: bearing(
+        (ValueError, "not 4000 N; give a larger current_limit, or an", lambda: bearing(
             actuator=MAGNETS, controller=PD, load=[0.0, -4e3]).equilibrium(0.0)),
         (ValueError, "as that of its sensor, 'top'", lambda: stability(
             rigid(), [0.0], supports=pair(sensor="top"))),
