@@ -325,9 +325,10 @@ class Support:
             value = _coefficient(value(speed), where, shapes=_SHAPES)
         elif isinstance(value, CoefficientTable):
             value = value.at(speed, frequency)
+        value = np.asarray(value)
         full = np.zeros((*np.shape(speed), 6, 6))
-        if np.ndim(value) > np.ndim(speed):
-            size = np.shape(value)[-1]
+        if value.ndim > full.ndim - 2:
+            size = value.shape[-1]
             full[..., :size, :size] = value
         else:
             full[..., 0, 0] = full[..., 1, 1] = value
@@ -381,6 +382,8 @@ def _coefficient(
 
 def acts(value: Coefficient) -> bool:
     """Return whether a coefficient is not zero; a function is taken for one that is not."""
+    if isinstance(value, float):  # asked for at every instant of a table over the speed
+        return value != 0.0
     return callable(value) or bool(np.any(getattr(value, "values", value)))
 
 

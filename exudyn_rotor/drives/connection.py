@@ -13,14 +13,15 @@ ABOUT_AXIS = 5  # row of the first interface's rotation about e
 class Springs(NamedTuple):
     """Springs and dampers of a connection at a motion.
 
-    Deformations ξ (m,), their derivatives B (m, 12) by the motion, stiffnesses k (m,) and damping
-    coefficients d (m,), and the derivative k′ of each stiffness by row `ABOUT_AXIS`.
+    Deformations ξ (m,), their derivatives B (m, 12) by the motion, stiffnesses k and damping
+    coefficients d, (m,) or one for all, and the derivative k′ of each stiffness by row
+    `ABOUT_AXIS`.
     """
 
     xi: np.ndarray
     B: np.ndarray
-    k: np.ndarray
-    d: np.ndarray
+    k: np.ndarray | float
+    d: np.ndarray | float
     slope: float = 0.0
 
 
@@ -64,14 +65,15 @@ class Connection(ABC):
     def tangent(self, x: np.ndarray, x_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return −∂f/∂x and −∂f/∂ẋ for Newton's method but for how B and k vary, each (12, 12)."""
         _, B, k, d, _ = self.springs(x, x_t)
-        return B.T @ (k[:, None] * B), B.T @ (d[:, None] * B)
+        return B.T * k @ B, B.T * d @ B
 
     def energy(self, x: np.ndarray) -> float:
         """Return the elastic energy [J]."""
         xi, _, k, *_ = self.springs(x, 0.0 * x)
-        return float(0.5 * k @ xi**2)
+        return float(0.5 * (k * xi) @ xi)
 
     def loss(self, x: np.ndarray, x_t: np.ndarray) -> float:
         """Return the power lost by damping [W]."""
         _, B, _, d, _ = self.springs(x, x_t)
-        return float(d @ (B @ x_t) ** 2)
+        rate = B @ x_t
+        return float((d * rate) @ rate)

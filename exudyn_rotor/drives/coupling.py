@@ -107,7 +107,7 @@ class FlexibleCoupling(Connection):
 
     def springs(self, x: np.ndarray, x_t: np.ndarray) -> Springs:
         """Return six springs and dampers, deformed by ξ of (1)."""
-        R = np.kron(np.eye(2), axial_rotation(x[5]))
+        R = axial_rotation(x[5], 6)
         apart = x[6:] - x[:6] + self._fixed
         by_motion = np.hstack([-R.T, R.T])
         by_motion[:, 5] -= R.T @ axial_skew(6) @ apart

@@ -186,15 +186,15 @@ class GearMesh(Connection):
             angles = orders * x[ABOUT_AXIS]
             share += float(self.variation @ np.cos(angles))
             slope -= float((self.variation * orders) @ np.sin(angles))
-        k, B, xi = self.stiffness * share, self._flanks, self._flanks @ x
-        d = np.full(len(B), self.damping)
+        k, d, B, xi = self.stiffness * share, self.damping, self._flanks, self._flanks @ x
         if self.backlash is not None:
             near = xi > 0.5 * self.backlash
-            B, xi, d = B[near], xi[near] - 0.5 * self.backlash, d[near]
+            B, xi = B[near], xi[near] - 0.5 * self.backlash
             rate = B @ x_t
             pulls = k * xi + d * rate < 0.0
+            d = np.full(len(xi), d)
             d[pulls] = -k * xi[pulls] / rate[pulls]
-        return Springs(xi, B, np.full(len(B), k), d, self.stiffness * slope)
+        return Springs(xi, B, k, d, self.stiffness * slope)
 
     def transmitted(self, x: np.ndarray, x_t: np.ndarray) -> float:
         """Return the force along the line of action, negative on the other flank."""

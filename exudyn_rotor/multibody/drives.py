@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import exudyn
 import numpy as np
 from exudyn.itemInterface import CoordinateSpringDamper, MarkerNodeCoordinate, NodePointGround
-from scipy.linalg import block_diag
 
 from exudyn_rotor import checks
 from exudyn_rotor.drives.connection import Connection
@@ -360,19 +359,27 @@ class RotorConnector(Connector):
 
     def rows(self) -> np.ndarray:
         """Return the rows J (12, size) of both ends."""
-        return block_diag(self.end.rows(), self._into @ self.base.rows())
+        return self._of_both(self.end.rows(), self.base.rows())
 
     def rate_rows(self) -> np.ndarray:
         """Return the derivative (12, size) of the rates of both ends by the coordinates."""
-        return block_diag(self.end.rate_rows(), self._into @ self.base.rate_rows())
+        return self._of_both(self.end.rate_rows(), self.base.rate_rows())
 
-    def wrench(self, t: float) -> tuple[np.ndarray]:
-        """Return the forces on all coordinates."""
-        return (self._law.forces(*self.motion) @ self.rows(),)
+    def _of_both(self, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+        """Return rows of both ends, one under the other, in axes of the first rotor."""
+        rows = np.zeros((12, self.size))
+        rows[:6, : self._first], rows[6:, self._first :] = first, self._into @ second
+        return rows
 
-    def pull(self, forces: np.ndarray) -> list[float]:
-        """Return the forces on all coordinates as a list."""
-        return forces.tolist()
+    def wrench(self, t: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return force and moment on both ends, each (6,) in axes of its own."""
+        forces = self._law.forces(*self.motion)
+        return forces[:6], forces[6:] @ self._into
+
+    def pull(self, first: np.ndarray, second: np.ndarray) -> list[float]:
+        """Return the forces on all coordinates by those of both ends."""
+        pairs = (self.end, first.tolist()), (self.base, second.tolist())
+        return [f for end, loads in pairs for f in end.pull(*loads[:3], loads[3:]).tolist()]
 
     def tangent(self, t: float) -> Tangent:
         """Return the law's tangent, with rows (12, size) of both ends."""

@@ -39,10 +39,16 @@ def axial_skew(size: int) -> np.ndarray:
     return read_only(np.kron(np.eye(size // 3), skew([0.0, 0.0, 1.0])))
 
 
-def axial_rotation(angle: float) -> np.ndarray:
-    """Return ``R(θ)``, which turns rotor axes into inertial axes, (3, 3) along (n1, n2, e)."""
+def axial_rotation(angle: float, size: int = 3) -> np.ndarray:
+    """Return ``R(θ)``, which turns rotor axes into inertial axes, on triples along (n1, n2, e)."""
     c, s = cos(angle), sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    R = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    if size == 3:
+        return R
+    whole = np.zeros((size, size))
+    for i in range(0, size, 3):  # np.kron takes ten times as long
+        whole[i : i + 3, i : i + 3] = R
+    return whole
 
 
 @cache

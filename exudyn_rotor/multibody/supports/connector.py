@@ -238,12 +238,15 @@ class SupportConnector(Connector):
     def __init__(self, support: Support, end: RotorEnd, base: BaseEnd, on_rotor: bool) -> None:
         super().__init__(end, base)
         self.support, self._turns = support, support.frame == "rotor"
-        self.has_mass = acts(support.mass)
+        self.has_mass, self._varies = acts(support.mass), support.varies
         self._between = on_rotor  # tables are over the difference of both speeds
         self._known = None, None  # the last speed, and matrices
 
     @property
     def _speed(self) -> float:
+        """Speed that coefficients are over; zero of constant ones."""
+        if not self._varies:
+            return 0.0
         return self.end.speed - (self.base.speed if self._between else 0.0)
 
     def _matrices(self) -> tuple[np.ndarray, np.ndarray]:
@@ -253,7 +256,7 @@ class SupportConnector(Connector):
             self._known = speed, self.support.matrices(speed)
         K, D = self._known[1]
         if self._turns:
-            R = np.kron(np.eye(2), axial_rotation(self.end.angle))
+            R = axial_rotation(self.end.angle, 6)
             K, D = R @ K @ R.T, R @ D @ R.T
         return K, D
 
@@ -408,14 +411,16 @@ class BearingConnector(Connector):
     def wrench(self, t: float) -> tuple:
         """Return force and torque on the rotor, and moments on pads."""
         motions = self.motions()
-        self.outside = any(m[0] * m[0] + m[1] * m[1] >= self._least for m in motions)
         if self.levers is None:
-            force = self.laws[0](*motions[0])
+            motion = motions[0]
+            self.outside = motion[0] ** 2 + motion[1] ** 2 >= self._least
+            force = self.laws[0](*motion)
             fx, fy = force[:2]
             if self._turn is not None:
                 c, s = self._turn
                 fx, fy = c * fx - s * fy, s * fx + c * fy
             return (fx, fy, 0.0, (0.0, 0.0, force[2])) if self.brakes else (fx, fy, 0.0)
+        self.outside = any(m[0] ** 2 + m[1] ** 2 >= self._least for m in motions)
         forces = np.array([law(*m) for law, m in zip(self.laws, motions, strict=True)])
         total, own = forces.sum(axis=0).tolist(), -(forces[:, :2] * self.levers).sum(axis=1)
         return *total[:2], 0.0, (0.0, 0.0, total[2] if self.brakes else 0.0), own

@@ -219,6 +219,10 @@ class RotorEnd:
         self, fx: float, fy: float, fz: float, moment: Sequence[float] = (0.0, 0.0, 0.0)
     ) -> np.ndarray:
         """Return the forces on the coordinates by a force and a moment where it has been read."""
+        return self._pull.dot(self._loads(fx, fy, fz, moment))
+
+    def _loads(self, fx: float, fy: float, fz: float, moment: Sequence[float]) -> list[float]:
+        """Return moments about the angles of the node, the force, and both in the rotor's axes."""
         C, S, (ax, ay, az) = self._c, self._s, self._arm
         mx, my, mz = moment
         px, py, pz = mx + ay * fz - az * fy, my + az * fx - ax * fz, mz + ax * fy - ay * fx
@@ -230,11 +234,11 @@ class RotorEnd:
             k, m = C * k - S * m, S * k + C * m
         loads = [about, p * px + r * py + e * pz, k * px + m * py + n * pz, fx, fy, fz]
         loads += [C * fx + S * fy, C * fy - S * fx, fz, C * mx + S * my, C * my - S * mx, mz]
-        return self._pull.dot(loads)
+        return loads
 
     def rows(self) -> np.ndarray:
         """Return the rows J (6, size) of displacement and rotation: the forces of unit wrenches."""
-        return np.array([self.pull(*one[:3], one[3:]) for one in _WRENCHES])
+        return np.array([self._loads(*one[:3], one[3:]) for one in _WRENCHES]) @ self._pull.T
 
     def rate_rows(self) -> np.ndarray:
         """Return the derivative (6, size) of the rate by the coordinates: J turns with the spin."""
