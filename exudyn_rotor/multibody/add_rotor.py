@@ -192,7 +192,8 @@ def add_rotor(
     >>> settings.staticSolver.verboseMode = 0
     >>> mbs.SolveStatic(settings)
     True
-    >>> outwards = abs(body.coordinates()[0][0])
+    >>> kind = exudyn.OutputVariableType.Displacement
+    >>> outwards = mbs.GetMarkerOutput(body.marker("top"), kind)[0]
     >>> bool(np.isclose(outwards, 10.0 / (1e6 - 100.0), rtol=1e-9))
     True
     """
