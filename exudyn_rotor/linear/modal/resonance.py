@@ -46,7 +46,7 @@ _NO_INERTIA = 1e-6  # share of the largest inertia
 _BRACKETS = 200  # speeds at which signs of eigenvalues are looked at; half of them for blocks
 _SLOW, _RATIO = 12, 2.0**0.25  # speeds on each side of the first of these, and their ratio
 _FEW, _MORE = 4, (8, 12, 16)  # harmonics on each side of the middle one
-_EDGE, _CLOSE = 1e-10, 1e-5  # energy of the last ones that is none, and a last change of a speed
+_EDGE, _CLOSE = 1e-10, 1e-4  # energy of the last ones that is none, and a last change of a speed
 _ITERATIONS = 12
 _BESIDE = 0.97  # of a critical speed: from where its slope is told at first
 _STEP = 1e-6  # relative distance of speeds between which H has a slope
@@ -239,12 +239,15 @@ class Search:
     ) -> Motions | None:
         """Return a motion with as many harmonics as it needs; None where there are too few."""
         last = speed
+        slower = self.grid.speed[self.grid.speed < _BESIDE * speed] if self.varies else np.zeros(0)
+        before = float(slower[-1]) if slower.size else None  # where a film is solved already
         for most in _MORE:
             orders = step * np.arange(-(most // step), most // step + 1)
             room = (len(orders) - len(motion)) // 2
             motion = np.pad(motion, ((room, room), (0, 0)))
             try:
-                last, motion = self.stiffness.refined(last, motion, center + orders, _CLOSE)
+                given = last, motion, center + orders, _CLOSE, before
+                last, motion = self.stiffness.refined(*given)
             except NO_EQUATIONS:  # beside the end of a table
                 break
             energy = np.sum(np.abs(motion) ** 2, axis=1)
