@@ -23,6 +23,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
+import scipy.linalg as la
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks
@@ -83,6 +84,12 @@ class Stiffness:
         """Return H at a speed for frequencies `multiples` (h,) of it, (h·k, h·k)."""
         return dynamic_stiffness(self.system(speed), multiples)
 
+    def reach(self, multiples: np.ndarray) -> int:
+        """Return how far from its diagonal H has entries."""
+        system = next(iter(self.known.values()))
+        far = max(map(abs, (*system.K, *system.D)))
+        return system.size * np.count_nonzero(multiples - multiples[0] < far + 0.5) - 1
+
     def motions(self, vectors: np.ndarray, multiples: np.ndarray) -> np.ndarray:
         """Return vectors (h·k, n) of H as harmonics (h, c, n) in all coordinates of the model."""
         return self.basis @ vectors.reshape(len(multiples), -1, vectors.shape[1])
@@ -110,7 +117,7 @@ class Stiffness:
                 slope = (H - earlier) / (speed - last)
                 last, earlier = speed, H
             try:
-                moved = np.linalg.solve(H, slope @ x)
+                moved = _solved(H, slope @ x, self.reach(multiples))
             except np.linalg.LinAlgError:  # there already
                 return speed, motion
             change = (np.vdot(x, x) / np.vdot(x, moved)).real
@@ -393,6 +400,17 @@ def _eigenvalues(H: np.ndarray) -> np.ndarray:
 def _between(at: float, A: np.ndarray, change: np.ndarray, j: int) -> float:
     """Return an eigenvalue of what lies between two matrices, at a share from 0 to 1."""
     return _eigenvalues(A + at * change)[j]
+
+
+def _solved(H: np.ndarray, load: np.ndarray, reach: int) -> np.ndarray:
+    """Return the solution of equations whose matrix has entries so near to its diagonal alone."""
+    size = len(H)
+    if 4 * reach > size:
+        return np.linalg.solve(H, load)
+    bands = np.zeros((2 * reach + 1, size), dtype=H.dtype)
+    for n in range(-reach, reach + 1):  # column j of row reach − n is H[j − n, j]
+        bands[reach - n, max(n, 0) : size + min(n, 0)] = np.diagonal(H, n)
+    return la.solve_banded((reach, reach), bands, load, check_finite=False)
 
 
 def _direct(stiffness: Stiffness, multiples: np.ndarray) -> list[Zero]:
