@@ -18,7 +18,7 @@ added to each motion by itself. Source: Genta, Dynamics of Rotating Systems (200
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -32,7 +32,7 @@ from exudyn_rotor.linear.equations import PeriodicSystem
 from exudyn_rotor.linear.modal.whirl import Content
 from exudyn_rotor.linear.model.assembly import NO_EQUATIONS, rotors_of
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.solve.hill import real_waves
+from exudyn_rotor.linear.solve.hill import in_real_waves, real_waves
 from exudyn_rotor.linear.solve.motions import Motions, joined_motions
 from exudyn_rotor.solvers.factor import one_thread
 
@@ -40,7 +40,7 @@ _SHARE = 0.4  # of a motion's energy that must turn with the excitation
 # a motion whose mean order is below minus this share of the order is the conjugate of another
 _CONJUGATE = 0.25
 SAME = 1e-7  # relative distance of speeds that are one
-_FINE, _DIGITS = 1e-9, 7  # of a place between two speeds, and digits of places that are one
+_FINE, _DIGITS = 1e-6, 7  # of a place between two speeds, and digits of places that are one
 _AT_REST = 1e-8  # rad/s: a rotor runs, and its inertia is below the rounding of any stiffness
 _FREE = 1e-13  # share of the largest stiffness that is rounding
 _NO_INERTIA = 1e-6  # share of the largest inertia
@@ -291,14 +291,16 @@ class Search:
         h, basis = len(multiples), np.eye(stack.shape[-1])
         if h > 1 and np.array_equal(multiples, -multiples[::-1]):  # real in cosines and sines
             basis = np.kron(real_waves(h), np.eye(len(basis) // h))
-            stack = (basis.conj().T @ stack @ basis).real
-        signs = _eigenvalues(stack) < 0.0
+            stack = in_real_waves(stack, h)
+        values = _eigenvalues(stack)
+        signs = values < 0.0
         gaps = np.diff(np.searchsorted(sorted(self.refused), speeds)) > 0
         found = []
         for row, j in np.argwhere((signs[:-1] != signs[1:]) & ~gaps[:, None]):
             A, change = stack[row], stack[row + 1] - stack[row]
             width = speeds[row + 1] - speeds[row]
-            at = brentq(_between, 0.0, 1.0, args=(A, change, j), xtol=_FINE)
+            ends = {0.0: values[row, j], 1.0: values[row + 1, j]}
+            at = brentq(_between, 0.0, 1.0, args=(A, change, j, ends), xtol=_FINE)
             at = np.round(at, _DIGITS)  # of zeros that are one, orthogonal vectors
             guess, vectors = speeds[row] + at * width, basis @ np.linalg.eigh(A + at * change)[1]
             exact = guess, self.stiffness.motions(vectors[:, [j]], multiples)[..., 0]
@@ -397,9 +399,11 @@ def _eigenvalues(H: np.ndarray) -> np.ndarray:
     return np.where(np.abs(values) <= rounding, 0.0, values)
 
 
-def _between(at: float, A: np.ndarray, change: np.ndarray, j: int) -> float:
+def _between(
+    at: float, A: np.ndarray, change: np.ndarray, j: int, known: Mapping[float, float]
+) -> float:
     """Return an eigenvalue of what lies between two matrices, at a share from 0 to 1."""
-    return _eigenvalues(A + at * change)[j]
+    return known[at] if at in known else _eigenvalues(A + at * change)[j]
 
 
 def _solved(H: np.ndarray, load: np.ndarray, reach: int) -> np.ndarray:

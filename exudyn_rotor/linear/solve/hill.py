@@ -164,10 +164,9 @@ def _solved(made: States, orders: np.ndarray, speed: float) -> tuple[np.ndarray,
             if m - n in made.A:
                 matrix[a, :, b] = made.A[m - n]
         matrix[a, np.arange(size), a, np.arange(size)] -= 1j * m * speed
-    turn = real_waves(h)  # exp(imΩt) from 1, cosines and sines
-    real = np.einsum("ap,aibj,bq->piqj", turn.conj(), matrix, turn, optimize=True).real
-    values, vectors = np.linalg.eig(real.reshape(h * size, h * size))
-    states = np.tensordot(turn, vectors.reshape(h, size, -1), (1, 0))
+    [real] = in_real_waves(matrix.reshape(1, h * size, h * size), h)
+    values, vectors = np.linalg.eig(real)
+    states = np.tensordot(real_waves(h), vectors.reshape(h, size, -1), (1, 0))
     return values, states
 
 
@@ -180,3 +179,11 @@ def real_waves(h: int) -> np.ndarray:
         turn[top + n, 2 * n - 1], turn[top - n, 2 * n - 1] = np.sqrt(0.5), np.sqrt(0.5)
         turn[top + n, 2 * n], turn[top - n, 2 * n] = -1j * np.sqrt(0.5), 1j * np.sqrt(0.5)
     return turn
+
+
+def in_real_waves(stack: np.ndarray, h: int) -> np.ndarray:
+    """Return what is between exponentials, (s, h·k, h·k), between 1, √2 cos and √2 sin: real."""
+    waves, shape = real_waves(h), stack.shape
+    rows = waves.conj().T @ stack.reshape(shape[0], h, -1)
+    columns = np.swapaxes(rows.reshape(shape), 1, 2).reshape(shape[0], h, -1)
+    return np.swapaxes((waves.T @ columns).reshape(shape), 1, 2).real
