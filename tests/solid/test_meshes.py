@@ -273,8 +273,13 @@ def test_included_files_and_element_sets_as_materials(tmp_path):
     (tmp_path / "main.inp").write_text(f"*INCLUDE, INPUT=mesh/nodes.inp\n{mark}{tail}")
     heavy = {**STEEL, "density": 2 * 7850.0}
     materials = {"body": STEEL, "lower": heavy}
-    rotor = SolidRotor.from_mesh(tmp_path / "main.inp", materials, "z", length_unit="mm")
+    mm = {"length_unit": "mm"}
+    rotor = SolidRotor.from_mesh(tmp_path / "main.inp", materials, "z", **mm)
     assert rotor.total_mass == pytest.approx(7850.0 * SIZE.prod() * (1 + 1 / 8), rel=1e-12)
+    more = text.replace("*MATERIAL", "*ELSET, ELSET=twice, GENERATE\n1, 4\n*MATERIAL")
+    (tmp_path / "main.inp").write_text(more)
+    with pytest.raises(ValueError, match="element 1 is in 'lower' and in 'twice'"):
+        SolidRotor.from_mesh(tmp_path / "main.inp", materials | {"twice": STEEL}, "z", **mm)
 
 
 # ------------------------------------------------------------------ what is refused, or replaced

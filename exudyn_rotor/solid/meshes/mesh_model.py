@@ -114,6 +114,12 @@ def _regions(data: MeshData, materials: Mapping[str, Any] | None) -> dict[int, s
     sets = materials if isinstance(materials, Mapping) else ()
     for name in sets:
         if name in data.element_sets and name not in own:
+            twice = [number for number in data.element_sets[name] if number in given]
+            if twice:
+                raise ValueError(
+                    f"materials: element {twice[0]} is in {given[twice[0]]!r} and in {name!r}; "
+                    "give sets that have no element in common"
+                )
             given.update(dict.fromkeys(data.element_sets[name], name))
     return data.regions | given
 
