@@ -62,6 +62,22 @@ def test_a_beam_column_between_two_bearings(share):
     assert np.sqrt(bending(loaded)) == pytest.approx(np.sqrt(square + added), rel=1e-3)
 
 
+def test_whirl_of_a_spinning_shaft_under_thrust():
+    """``EI k⁴ + N k² = ω² (ρA + ρI k²) ∓ 2 Ω ω ρI k²`` with k = π/L: Rayleigh's beam.
+
+    ω without thrust at rest is the mesh's own.
+    """
+    speed, force, wave = 3000.0, -0.6 * EULER, (np.pi / LENGTH) ** 2
+    line, turn = RHO * AREA, RHO * SECOND * wave
+    stiff = bending(unloaded())[0] * (line + turn) + force * wave
+    loaded = shaft().reduce(modes(), prestress=thrust(-0.6 * EULER))
+    found = er.campbell(loaded, [speed], supports=PINNED, accuracy=None)
+    for name, sign in (("backward", 1.0), ("forward", -1.0)):
+        expected = np.roots([line + turn, sign * 2.0 * speed * turn, -stiff]).max()
+        whirls = found.frequencies_inertial[0, np.array(found.whirl[0]) == name]
+        assert whirls[whirls > 1.0].min() == pytest.approx(expected, rel=1e-3)
+
+
 def test_a_spinning_shaft_held_at_both_ends_is_in_tension():
     """Poisson's contraction ``ν ρ ω² R²/(2E)`` meets the springs and E A."""
     radius, length, spring = 0.05, 1.5, 2e9
