@@ -64,6 +64,11 @@ class PeriodicSystem:
         return 0 if np.all(self.speed == 0.0) else gcd(*self.D, *self.K)
 
     @property
+    def highest(self) -> int:
+        """Highest harmonic of the coefficients."""
+        return max(map(abs, (*self.D, *self.K)))
+
+    @property
     def is_constant(self) -> bool:
         """True where the coefficients do not change in time."""
         return self.step == 0

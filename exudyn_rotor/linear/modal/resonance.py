@@ -87,8 +87,7 @@ class Stiffness:
     def reach(self, multiples: np.ndarray) -> int:
         """Return how far from its diagonal H has entries."""
         system = next(iter(self.known.values()))
-        far = max(map(abs, (*system.K, *system.D)))
-        return system.size * np.count_nonzero(multiples - multiples[0] < far + 0.5) - 1
+        return system.size * np.count_nonzero(multiples - multiples[0] < system.highest + 0.5) - 1
 
     def motions(self, vectors: np.ndarray, multiples: np.ndarray) -> np.ndarray:
         """Return vectors (h·k, n) of H as harmonics (h, c, n) in all coordinates of the model."""

@@ -180,11 +180,6 @@ def _beside_free(A: np.ndarray, b: np.ndarray) -> np.ndarray:
 # ------------------------------------------------------------------ periodic equations
 
 
-def _reach(system: PeriodicSystem) -> int:
-    """Return to how many neighbours harmonics are coupled."""
-    return max(abs(n) for terms in (system.D, system.K) for n in terms) // system.step
-
-
 def _acting(system: PeriodicSystem) -> np.ndarray:
     """Return a basis (k, r) of the forces that repeat, and of the motions that they depend on."""
     weights, rows = np.random.default_rng(0), []
@@ -215,7 +210,7 @@ def _coupled(
     twice as many where these do not suffice. The next ones follow from the last two by the ratio
     of these.
     """
-    far = _reach(system)
+    far = system.highest // system.step  # neighbours that a harmonic is coupled with
     most = more * far * system.step
     orders = list(range(min(loads) - most, max(loads) + most + 1, system.step))
     X = _chain(system, loads, rates, driven, orders)
