@@ -137,14 +137,10 @@ class StabilityLevelOne(Result):
     frequencies: np.ndarray = numbers("applied")
     anticipated: float
     speed: float
-    machine: str
+    machine: str = checks.one_of(MACHINES)
     threshold: float | None = None
     critical_speed_ratio: float | None = None
     gas_density: float | None = None
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        checks.choice(self.machine, "machine", MACHINES)
 
     @property
     def anticipated_decrement(self) -> float:

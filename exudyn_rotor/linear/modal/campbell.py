@@ -133,11 +133,7 @@ class Campbell(OfMotions, ModelResult):
     continued: np.ndarray = numbers("speeds", "modes", dtype=bool)
     free_motions: tuple[str, ...] = ()
     basis_errors: np.ndarray | None = numbers("speeds", "modes", finite=False, optional=True)
-    frame: str = "inertial"
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        checks.choice(self.frame, "frame", FRAMES)
+    frame: str = checks.one_of(FRAMES, default="inertial")
 
     def tracked(self) -> Campbell:
         """Return the same result with columns that follow each mode over the speeds.
@@ -256,10 +252,8 @@ class Campbell(OfMotions, ModelResult):
 
         values = self.frequencies_inertial if frame == "inertial" else self.frequencies_rotor
         moves = whirl.oscillates(self.growth, self.frequencies_inertial)
-        speeds, values = (
-            units.speeds(self.speeds),
-            units.frequencies(np.where(moves, values, np.nan)),
-        )
+        speeds = units.speeds(self.speeds)
+        values = units.frequencies(np.where(moves, values, np.nan))
         marker, seen = {"marker": "o", "ms": 4} if len(speeds) == 1 else {}, set()
         for column in range(values.shape[1]):
             code, joined = self.whirl_codes[:, column], self.continued[:, column]
