@@ -14,8 +14,10 @@ import numpy as np
 
 from exudyn_rotor.linear.equations import PeriodicSystem, States
 
-_SIZES = (2, 3, 4, 6)  # harmonics on either side, in steps of the coefficients
-_LARGEST = 250  # unknowns beyond which no harmonics are added
+_SIZES = (2, 3, 4, 5, 6)  # harmonics on either side, in steps of the coefficients
+_LARGEST, _MOST = 250, 1000  # unknowns beyond which fast motions are not waited for, and none
+_SLOW = 3.0  # |λ| over Ω up to which a motion is slow
+_NEAR = 1e-2  # of |λ|: by how much more one that is known about may grow
 _FAST = 30.0  # decay over Ω above which a motion is over before the coefficients change
 _OVER = 3.0  # decay over Ω, and over the own frequency, beyond which nobody looks at a motion
 # energy at the edge of the sum that counts as none, over the tolerance, which is the error of λ
@@ -54,27 +56,35 @@ def hill_motions(
     """Return the motions of a system, and with how many harmonics to begin at the next speed.
 
     Harmonics are added until those at the edge of the sum hold next to nothing of each motion. Fast
-    decays are not waited for; where only the growth of the least stable motion is asked for, nor
-    are motions that decay faster than it. Growth up to `neutral` [1/s] then counts as none.
-    Exponents that do not get there are NaN.
+    decays are not waited for, nor are fast motions of many coordinates. Where only the growth of
+    the least stable motion is asked for, nor are slow motions that decay faster than it, once they
+    are known about. Growth up to `neutral` [1/s] then counts as none. Exponents that do not get
+    there are NaN.
     """
+    k, speed = system.size, abs(system.speed)
+    unknowns = [2 * k * (2 * size + 1) for size in _SIZES]
     for place in range(begin, len(_SIZES)):
         orders = system.step * np.arange(-_SIZES[place], _SIZES[place] + 1)
         values, states = _solved(made, orders, system.speed)
         chosen = one_of_each_family(values, states, orders, system, made)
         values, states = values[chosen], states[:, :, chosen]
         energy, growth = shares(states), values.real
-        fast = -growth > _FAST * abs(system.speed)
-        waited = ~fast
+        fast, slow = -growth > _FAST * speed, np.abs(values) <= _SLOW * speed
+        allowed = np.where(fast, np.inf, _EDGE * tolerance)
         if neutral is not None:
+            allowed *= 10.0  # a growth is off by about a hundredth of the energy
             least = growth[np.abs(growth) > neutral].max(initial=-np.inf)
-            waited &= growth >= least
+            near = slow & (growth >= least - _NEAR * np.abs(values))
+            allowed[growth < least] = np.inf
+            allowed[near & (growth < least)] = _LOST
+        few = np.where(slow, allowed, np.inf)
         edges = energy[0] + energy[-1]
-        settled = np.all(edges[waited] <= _EDGE * tolerance)
-        larger = 2 * system.size * (2 * _SIZES[min(place + 1, len(_SIZES) - 1)] + 1)
-        if settled or larger > _LARGEST:
+        last = place + 1 == len(_SIZES)
+        wanted = few if last or unknowns[place + 1] > _LARGEST else allowed
+        if np.all(edges <= wanted) or last or unknowns[place + 1] > _MOST:
             break
-    fewer = np.all((energy[1] + energy[-2])[waited] <= _EDGE * tolerance)
+    wanted = few if unknowns[place] > _LARGEST else allowed
+    fewer = np.all(energy[1] + energy[-2] <= wanted)
     found = fast | (edges <= _LOST)
     kept = np.where(found, values, np.nan)
     return Exponents(kept, states, orders, lost_of(values[~found], system)), max(place - fewer, 0)

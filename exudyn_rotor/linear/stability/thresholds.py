@@ -1,9 +1,9 @@
 """Limits of stability over the spin speed or any other parameter.
 
 The margin g(p) is the largest growth of a motion that is not neutral, less what rounding can make
-of it: positive where the rotor is unstable. It is computed at samples; each change of its sign is
-found by Brent's method, and where a peak of it comes near zero between samples a few values look
-whether it crosses.
+of it: positive where the rotor is unstable. It is computed at samples; where a peak of it comes
+near zero between samples a few values look whether it crosses. Each change of its sign is found by
+Brent's method, on the stable side of it by the growth of the motion that grows on the other.
 """
 
 from __future__ import annotations
@@ -166,6 +166,7 @@ class _Margin:
     tolerance: float
     model: LinearModel | None = None
     known: dict[float, float] = field(default_factory=dict)
+    seen: dict[float, Motions] = field(default_factory=dict)
     resting: int | None = None
 
     def at(self, points: Sequence[float]) -> None:
@@ -176,6 +177,7 @@ class _Margin:
             try:
                 motions = self.motions(group)
                 found += zip(group, motions.values.real, motions.bounds, strict=True)
+                self.seen |= {point: motions[[i]] for i, point in enumerate(group)}
             except NO_EQUATIONS as error:
                 refused.append((f"{group[0]:.5g}", error))
         warn_of_refused(refused, len(together))
@@ -236,10 +238,24 @@ class _Margin:
         found = []
         for (a, low), (b, high) in pairwise(zip(*self.course, strict=True)):
             if (low > 0.0) != (high > 0.0):
-                # −0.0 is stable, as brentq needs a sign
-                limit = brentq(lambda p: self(p) or -1e-300, a, b, xtol=root, rtol=1e-15)
+                limit = brentq(self._of_one, a, b, xtol=root, rtol=1e-15)
                 found.append((float(limit), high > 0.0))
         return found
+
+    def _of_one(self, point: float) -> float:
+        """Return the margin; of a stable point that of the motion that grows at the nearest other.
+
+        It has no kink at the limit, where the margin is often that of other motions on one side.
+        """
+        margin = self(point)
+        if margin > 0.0 or np.isnan(self.known[point]):
+            return margin
+        grows = min((p for p in self.seen if self.known[p] > 0.0), key=lambda p: abs(p - point))
+        beside, here = self.seen[grows], self.seen[point]
+        shape = beside.main[0, :, np.nanargmax(beside.values[0].real)]
+        alike = np.maximum(*(np.abs(each @ here.main[0]) for each in (shape, shape.conj())))
+        growth = here.values[0, np.argmax(np.where(np.isnan(here.values[0]), -1.0, alike))].real
+        return min(float(growth - here.bounds[0]), -1e-300)  # as brentq needs a sign
 
 
 def stability_threshold(
