@@ -19,6 +19,7 @@ from exudyn_rotor import (
     harmonic_response,
     linear_model,
     stability,
+    stability_threshold,
     static_response,
 )
 
@@ -136,6 +137,20 @@ def test_series_of_two_films_is_stable_where_the_eliminated_ring_says():
     roots = roots[np.abs(roots) > 1e-6]
     found = stability(rotor(), [speed], supports=[floating(name=n) for n in NAMES], accuracy=None)
     assert np.nanmax(found.growth) == pytest.approx(roots.real.max(), rel=1e-6)
+
+
+@pytest.mark.parametrize(("clearance", "inner", "outer"), [(2e-5, 0.5, 0.5), (5e-5, 0.0, 0.5)])
+def test_at_the_limit_of_stability_one_film_whirls_with_half_the_speed(clearance, inner, outer):
+    """About half the ring's speed, or half of the ring's and the journal's, by the parameters.
+
+    A. Boyaci, W. Seemann, C. Proppe, PAMM 7 (2007) 4050005.
+    """
+    supports = [floating(load=[0.0, -10.0], name=name, clearance=clearance) for name in NAMES]
+    limit = stability_threshold(rotor(), 200.0, 4000.0, supports=supports, accuracy=None)
+    [speed], [whirl] = limit.values, limit.frequencies_inertial
+    expected = inner * speed + outer * supports[0].ring(speed).speed
+    assert limit.onset.tolist() == [True]
+    assert whirl == pytest.approx(expected, rel=0.1)
 
 
 BAD = {

@@ -1,5 +1,7 @@
 """Supports with coefficients over speed and frequency, against models that carry the states."""
 
+from functools import partial
+
 import exudyn as exu
 import numpy as np
 import pytest
@@ -27,6 +29,7 @@ from exudyn_rotor import (
     linear_model,
     periodic_response,
     stability_map,
+    stability_threshold,
     static_response,
     unbalance_response,
 )
@@ -74,6 +77,7 @@ def seal(name):
 
 
 KINDS = {"magnetic bearing": magnetic, "pads with inertia": pads, "seal with inertia": seal}
+LIMITS = dict(zip(KINDS, (2.2e7, 3.8e8, 1.7e7), strict=True))  # about, of cross-coupling [N/m]
 
 
 @pytest.fixture(scope="module", params=KINDS)
@@ -116,6 +120,35 @@ def test_each_motion_has_the_coefficients_of_its_own_frequency(both):
         shifted = value * (1.0 + 1e-6)
         moved = np.linalg.svd(K + shifted * D + shifted**2 * M, compute_uv=False)
         assert singular[-1] < 0.5 * moved[-1]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_at_the_limit_of_stability_a_motion_is_that_of_the_states(kind):
+    """There it neither grows nor decays, as the motions that the coefficients are of."""
+    with_states = [KINDS[kind](name) for name in NAMES]
+    tables = [
+        one.table([SPEED, SPEED + 1.0], np.linspace(1.0, 6000.0, 6000)) for one in with_states
+    ]
+    stiffness = 1e6 if kind.startswith("seal") else 0.0
+
+    def beside(given: list, cross: float) -> list:
+        matrix = [[stiffness, cross], [-cross, stiffness]]
+        return [*given, Support("left", matrix), Support("right", stiffness)]
+
+    low, high = 0.9 * LIMITS[kind], 1.1 * LIMITS[kind]
+    how = {"speed": SPEED, "samples": 2, "accuracy": None}
+    limits, values = [], []
+    for given in (with_states, tables):
+        supports = partial(beside, given)
+        found = stability_threshold(rotor(), low, high, supports=supports, **how)
+        [limit] = found.values
+        state = campbell(rotor(), [SPEED], supports=beside(given, limit), accuracy=None)
+        limits.append(limit)
+        growth, frequencies = state.growth[0], state.frequencies_inertial[0]
+        whirls = (frequencies > 1.0) & (frequencies < 1e4)  # the rod's stretch is faster
+        values.append(frequencies[np.nanargmin(np.where(whirls, np.abs(growth), np.inf))])
+    assert limits[1] == pytest.approx(limits[0], rel=1e-6)
+    assert values[1] == pytest.approx(values[0], rel=1e-6)
 
 
 def test_closed_forms_of_a_spring_behind_a_damper():
