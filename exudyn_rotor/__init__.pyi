@@ -12,7 +12,6 @@ from exudyn_rotor.bearings.clearance_stop import ClearanceStop as ClearanceStop
 from exudyn_rotor.bearings.film.film import OilFilm as OilFilm
 from exudyn_rotor.bearings.film.pads import Pad as Pad
 from exudyn_rotor.bearings.film.pads import grooved_pads as grooved_pads
-from exudyn_rotor.bearings.film.picture import plot_pressure as plot_pressure
 from exudyn_rotor.bearings.journal_bearing import JournalBearing as JournalBearing
 from exudyn_rotor.bearings.magnetic import MagneticBearing as MagneticBearing
 from exudyn_rotor.bearings.pid_controller import PIDController as PIDController
@@ -98,6 +97,7 @@ from exudyn_rotor.nonlinear.limit_cycles import limit_cycles as limit_cycles
 from exudyn_rotor.nonlinear.periodic_response import periodic_response as periodic_response
 from exudyn_rotor.nonlinear.periodic_result import PeriodicResponse as PeriodicResponse
 from exudyn_rotor.pictures.motion_shapes import MotionShapes as MotionShapes
+from exudyn_rotor.pictures.pressure import plot_pressure as plot_pressure
 from exudyn_rotor.pictures.shapes import mode_shapes as mode_shapes
 from exudyn_rotor.pictures.shapes import response_shapes as response_shapes
 from exudyn_rotor.pictures.spectra import Spectra as Spectra
