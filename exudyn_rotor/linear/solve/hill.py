@@ -20,9 +20,9 @@ _SLOW = 3.0  # |λ| over Ω up to which a motion is slow
 _NEAR = 1e-2  # of |λ|: by how much more one that is known about may grow
 _FAST = 30.0  # decay over Ω above which a motion is over before the coefficients change
 _OVER = 3.0  # decay over Ω, and over the own frequency, beyond which nobody looks at a motion
-# energy at the edge of the sum that counts as none, over the tolerance, which is the error of λ
-# where no two motions meet; and energy that is too much
-_EDGE, _LOST = 1.0, 3e-3
+# energy at the edge of the sum that counts as none, over the tolerance of λ, which errs by less
+# than a tenth of it; and energy that is too much
+_EDGE, _LOST = 10.0, 3e-3
 _COPY, _ALIKE = 1e-6, 0.7  # of pΩ, and of a shape: how near a copy of a motion is
 
 
@@ -72,7 +72,6 @@ def hill_motions(
         fast, slow = -growth > _FAST * speed, np.abs(values) <= _SLOW * speed
         allowed = np.where(fast, np.inf, _EDGE * tolerance)
         if neutral is not None:
-            allowed *= 10.0  # a growth is off by about a hundredth of the energy
             least = growth[np.abs(growth) > neutral].max(initial=-np.inf)
             near = slow & (growth >= least - _NEAR * np.abs(values))
             allowed[growth < least] = np.inf
