@@ -1,5 +1,6 @@
 """What a rotor cannot carry is found, for any axis; nothing else is."""
 
+import re
 from functools import cache
 
 import exudyn as exu
@@ -12,7 +13,13 @@ from exudyn.itemInterface import (
     MarkerBodyMass,
     MarkerBodyRigid,
     MarkerNodeCoordinate,
+    MarkerNodeCoordinates,
+    MarkerNodePosition,
     MarkerNodeRigid,
+    MarkerNodeRotationCoordinate,
+    MarkerSuperElementRigid,
+    ObjectConnectorCoordinateVector,
+    SensorNode,
     Torque,
 )
 from exudyn.utilities import (
@@ -46,7 +53,7 @@ MOUNTED = {
 def rotor(mount):
     """Return two rings of point masses, their axis z turned into the mesh; made once."""
     mesh = MOUNTED[mount][0]
-    return rings(mesh, np.zeros(3), mesh[:, 2])
+    return rings(mesh, np.zeros(3), mesh[:, 2]).reduce(2)
 
 
 def rings(mesh, center, axis):
@@ -59,16 +66,16 @@ def rings(mesh, center, axis):
         nodes,
         axis,
         interfaces={"left": np.arange(5), "right": np.arange(5, 10)},
-    ).reduce(2)
+    )
 
 
 class Scene:
     """A rotor in an mbs, and directions: n along its spin axis, a and b across it."""
 
-    def __init__(self, mount="z", **options):
+    def __init__(self, mount="z", source=None, **options):
         mesh, space = MOUNTED[mount]
         self.mbs = exu.SystemContainer().AddSystem()
-        self.body = add_rotor(self.mbs, rotor(mount), rotation=space, **options)
+        self.body = add_rotor(self.mbs, source or rotor(mount), rotation=space, **options)
         self.node, self.flexible = self.body.nodes["rigid"], self.body.objects["marker_body"]
         self.a, self.b, self.n = (space @ mesh).T
         self.rigid = self.mbs.AddMarker(MarkerNodeRigid(nodeNumber=self.node))
@@ -102,6 +109,27 @@ def load(kind, vector, **options):
     return lambda s: s.mbs.AddLoad(kind(markerNumber=s.rigid, loadVector=vector(s), **options))
 
 
+def on_node(kind, **options):
+    return lambda s: s.mbs.AddLoad(
+        LoadCoordinate(markerNumber=s.mbs.AddMarker(kind(nodeNumber=s.node, **options)), load=1.0)
+    )
+
+
+def force(kind, **options):
+    return lambda s: s.mbs.AddLoad(
+        Force(markerNumber=s.mbs.AddMarker(kind(s, **options)), loadVector=[1.0, 2.0, 3.0])
+    )
+
+
+def held_tilt(s):
+    """Hold a tilt of the frame's node by a constraint of several coordinates."""
+    markers = [s.mbs.AddMarker(MarkerNodeCoordinates(nodeNumber=s.node)) for _ in range(2)]
+    rows = np.eye(1, len(s.mbs.GetNode(s.node)["referenceCoordinates"]), s.body.locks.tilts[0])
+    return ObjectConnectorCoordinateVector(
+        markerNumbers=markers, scalingMarker0=rows, scalingMarker1=0.0 * rows, offset=[0.0]
+    )
+
+
 def obj(make):
     return lambda s: s.mbs.AddObject(make(s))
 
@@ -121,6 +149,7 @@ CARRIED = {
     "damper about the axis": obj(lambda s: dampers(s, 0.0, 0.0, 1.0)),
     "torsional spring": obj(lambda s: TorsionalSpringDamper(**s.pair(stiffness=10.0))),
     "inactive joint": obj(lambda s: GenericJoint(**s.pair(activeConnector=False))),
+    "position": force(lambda s: MarkerNodePosition(nodeNumber=s.node)),
     "weight of the script": lambda s: s.mbs.AddLoad(
         Gravity(
             markerNumber=s.mbs.AddMarker(MarkerBodyMass(bodyNumber=s.flexible)),
@@ -155,3 +184,35 @@ def test_run_check_counts_them_and_a_warning_names_them():
     row = check_run(s.body, warn=False)["connections"]
     assert row.value == 1
     assert not row.ok
+
+
+def offset_marker(s):
+    options = {"offset": [0.1, 0.0, 0.0], "useAlternativeApproach": False}
+    nodes = {"meshNodeNumbers": list(range(5)), "weightingFactors": 5 * [0.2]}
+    return MarkerSuperElementRigid(bodyNumber=s.flexible, **nodes, **options)
+
+
+def spin_sensor(s):
+    rates = exu.OutputVariableType.AngularVelocityLocal
+    return s.mbs.AddSensor(SensorNode(nodeNumber=s.node, outputVariableType=rates, name="rates"))
+
+
+BESIDE = rings(np.eye(3), np.array([0.1, 0.0, 0.0]), [0.0, 0.0, 1.0])
+LOST = {
+    "rotation": (on_node(MarkerNodeRotationCoordinate, rotationCoordinate=0), None, "not tilt"),
+    "constraint": (obj(held_tilt), None, "does not tilt .* on its coordinate 3 has no effect"),
+    "offset": (force(offset_marker), None, "at a marker's own offset has no lever for tilts"),
+    "sensor": (spin_sensor, None, "sensor 'rates': AngularVelocityLocal .* without tilts; take"),
+    "beside": (on_node(MarkerNodeCoordinate, coordinate=0), BESIDE.reduce(2), "0.1 m off the node"),
+    "full": (force(lambda s: MarkerNodeRigid(nodeNumber=s.node)), BESIDE, "full body does not"),
+}
+
+
+@pytest.mark.parametrize("case", LOST)
+def test_what_is_lost_is_told_with_what_to_do(case):
+    attach, source, message = LOST[case]
+    s = Scene(source=source)
+    on_node(MarkerNodeRotationCoordinate, rotationCoordinate=2)(s)  # about the axis is carried
+    attach(s)
+    (found,) = s.found()
+    assert re.search(message, found), found
