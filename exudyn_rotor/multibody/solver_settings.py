@@ -97,7 +97,7 @@ def recommended_settings(
     if step > end_time:
         raise ValueError(f"step: {step!r} s is longer than end_time, {end_time!r} s")
     if not end_time / step < _MOST_STEPS:
-        raise ValueError(f"step: {step} s makes {end_time / step:.3g} steps of {end_time} s")
+        raise ValueError(f"step: {step} s makes {end_time / step:.3g} steps; give a longer one")
     accuracy = checks.tolerance(accuracy, "accuracy")
     settings = exudyn.SimulationSettings() if settings is None else settings
     integration, newton = settings.timeIntegration, settings.timeIntegration.newton

@@ -470,10 +470,8 @@ class RotorBody(SceneBody):
         """
         marker_body, count = self.objects["marker_body"], self.mesh_node_count
         if checks.count(node, "node", least=-1) not in range(count):
-            raise ValueError(
-                f"node: rotor {self.name!r} has mesh nodes 0 … {count - 1}, not {node}"
-                + ("" if count else "; it has no shapes (without_shapes)")
-            )
+            there = f"mesh nodes 0 … {count - 1}" if count else "no shapes, so no mesh nodes"
+            raise ValueError(f"node: rotor {self.name!r} has {there}, got {node}")
         at = {"bodyNumber": marker_body, "meshNodeNumber": int(node)}
         made = add_sensor(self, SensorSuperElement, options, outputVariableType=output, **at)
         _warn_of_static_stress(self, output)

@@ -111,7 +111,7 @@ def _number(mbs: exudyn.MainSystem, body: Moved) -> exudyn.ObjectIndex:
     if body.mbs is not mbs:
         raise ValueError("bodies: one is in another mbs")
     if isinstance(body, SceneFoundation) and body.foundation.participation is None:
-        raise ValueError("bodies: the foundation needs its participation")
+        raise ValueError("bodies: the foundation needs its participation=…")
     return body.objects["physics" if _has_own_weight(body) else "marker_body"]
 
 

@@ -71,7 +71,7 @@ class Seat:
             return cls(*where, FoundationEnd(base.node, motion, axes))
         checks.instance(base, "base", (exudyn.MarkerIndex, exudyn.ObjectIndex, SceneFoundation))
         item, origin, orientation = _reference(mbs, base)
-        _refuse_own(body, name, base, item)
+        _refuse_own(body, name, item)
         apart = np.linalg.norm(off_place(origin - place, where[3]))
         if isinstance(base, exudyn.MarkerIndex) and apart > SAME_PLACE:
             raise ValueError(
@@ -113,28 +113,29 @@ def _reference(mbs: exudyn.MainSystem, base: Base) -> tuple[dict, np.ndarray, np
     """Return a marker, or what one of a body says of it, its reference place and orientation."""
     is_marker = isinstance(base, exudyn.MarkerIndex)
     count = mbs.systemData.NumberOfMarkers() if is_marker else mbs.systemData.NumberOfObjects()
+    named = f"{'marker' if is_marker else 'object'} {int(base)}"
     if not 0 <= int(base) < count:
-        raise ValueError(f"base: this system has no {base}")
+        raise ValueError(f"base: this system has no {named}")
     item = mbs.GetMarker(base) if is_marker else {"bodyNumber": base}
     if is_marker and "localHT" not in item:
-        raise ValueError(f"base: {base} is no rigid marker with a frame of its own (localHT)")
+        raise ValueError(f"base: needs a rigid marker with a frame of its own, got {named}")
     read, at = (mbs.GetMarkerOutput, ()) if is_marker else (mbs.GetObjectOutputBody, (np.zeros(3),))
     try:
         place, turn = (read(base, kind, *at, _REFERENCE) for kind in _FRAME)
     except Exception as error:  # Exudyn's own, of several kinds
         raise ValueError(
-            f"base: {base} has no place and orientation; give a rigid marker or a rigid body"
+            f"base: the {named} has no place and orientation; give a rigid marker or body"
         ) from error
     return item, np.asarray(place), np.reshape(turn, (3, 3))
 
 
-def _refuse_own(body: RotorItems, name: str, base: Base, item: dict) -> None:
+def _refuse_own(body: RotorItems, name: str, item: dict) -> None:
     """Refuse what moves with the rotor itself: between the two nothing would ever act."""
     own = {"bodyNumber": body.objects, "nodeNumber": body.nodes}
     if any(int(item[kind]) in map(int, own[kind].values()) for kind in own.keys() & item.keys()):
         raise ValueError(
-            f"base: {base} belongs to rotor {body.name!r} itself, which cannot carry its own "
-            f"bearing at {name!r}; give what stands beside it, or leave base out for the ground"
+            f"base: it belongs to rotor {body.name!r} itself, which cannot carry its own bearing "
+            f"at {name!r}; give what stands beside it, or leave base out for the ground"
         )
 
 

@@ -147,7 +147,7 @@ def add_foundation(
     turn = np.eye(3) if rotation is None else checks.rotation(rotation)
     g = checks.vector(gravity, "gravity", "m/s²")
     if np.any(g) and foundation.participation is None:
-        raise ValueError("gravity: needs a foundation with its participation")
+        raise ValueError("gravity: needs a foundation with its participation=…")
     placed = foundation.turned(turn, place)
     start = np.zeros(placed.size)
     coordinates = mbs.AddNode(generic_node(start, start))
