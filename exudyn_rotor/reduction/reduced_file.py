@@ -84,8 +84,6 @@ def _rotor(data: dict[str, Any], classes: tuple[type, ...]) -> Rotor:
         finer = _rotor(attached, classes)
         shape = finer.size, found["invariants"].size
         columns = checks.array(data.pop(_IN_ATTACHED), _IN_ATTACHED, shape=shape)
-        if finer.interfaces.keys() != found["interfaces"].keys():
-            raise ValueError("with_attachments: needs the interfaces of the rotor")
         found["attached"] = partial(tuple, (finer, columns))
     return make(**found, **data)
 

@@ -1,5 +1,7 @@
 """The twin of Exudyn's own call: one script, the name of the call swapped."""
 
+from importlib import reload
+
 import exudyn as exu
 import exudyn.utilities
 import numpy as np
@@ -9,7 +11,7 @@ from exudyn.FEM import FEMinterface
 from models import disc_fem
 from scipy.spatial.transform import Rotation
 
-import exudyn_rotor  # noqa: F401  adds the call to MainSystem
+from exudyn_rotor.multibody.twins import exudyn_call  # adds the call to MainSystem
 
 OWN, TWIN = "CreateFFRFReducedOrderObject", "CreateFixedAxisFFRFReducedOrderObject"
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
@@ -145,3 +147,23 @@ def test_swapping_the_name_of_the_call_gives_the_same_motion(fem, direction):
     for name, signal in own.items():
         change = abs(signal - signal[0]).max()
         assert abs(twin[name] - signal).max() < AGREEMENT[name] * change, name
+
+
+def test_offsets_of_markers_are_those_of_exudyn(fem, capfd):
+    """In a mesh about x, whose axes are not those of the rotor's frame."""
+    places, model = [], turned(fem, TO_X)
+    for call, more in ((OWN, {}), (TWIN, {"axis": "x", "verbose": True})):
+        mbs = exu.SystemContainer().AddSystem()
+        offsets = [[0.1, 0.0, 0.2], [0.0, 0.3, 0.4]]
+        made = getattr(mbs, call)("shaft", model, superElementRigidMarkersOffsets=offsets, **more)
+        mbs.Assemble()
+        markers = (made[f"shaft:{name}"] for name in ("left", "right"))
+        places.append([mbs.GetMarkerOutput(m, exu.OutputVariableType.Position) for m in markers])
+    np.testing.assert_allclose(places[1], places[0], atol=1e-9)
+    assert "shaft" in capfd.readouterr().out
+
+
+def test_a_second_import_leaves_assemble_as_it_is():
+    wrapped = exu.MainSystem.Assemble
+    reload(exudyn_call)
+    assert exu.MainSystem.Assemble is wrapped

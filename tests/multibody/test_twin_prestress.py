@@ -1,8 +1,9 @@
-"""The twin of Exudyn's call with a prestress."""
+"""The twin of Exudyn's call with a prestress, and what it refuses."""
 
 import exudyn as exu
 import numpy as np
 import pytest
+from exudyn.FEM import FEMinterface
 from models import disc_fem, disc_rotor
 from run_scenes import item_counts
 
@@ -47,17 +48,32 @@ def test_full_stiffening_with_a_given_prestress(fem, solid, source):
     assert np.abs(found - tilt).max() > 0.1 * 2000.0**2
 
 
-WRONG_PRESTRESS = {
+WRONG_CALLS = {
     "full without": ({"stiffening": "full"}, ValueError, r"full' .*: give prestress=; .*makes one"),
     "True": ({"prestress": True}, TypeError, "prestress: needs Prestress, got True"),
+    "no modes": ({"femInterface": FEMinterface()}, ValueError, "no modes; call fem.Compute"),
+    "no axis": ({"axis": None}, ValueError, "axis: is not known, .* give axis='x'"),
+    "tumbles": ({"initialAngularVelocity": [3, 0, 4]}, ValueError, "has 3 rad/s across .* cannot"),
+    "two speeds": (
+        {"spin": 5.0, "initialAngularVelocity": [0.0, 0.0, 4.0]},
+        ValueError,
+        "spin given twice: .* is 4.0 rad/s .* starts with 5.0",
+    ),
+    "offsets": (
+        {"superElementRigidMarkersOffsets": np.zeros((2, 3)), "markers": "position"},
+        ValueError,
+        "superElementRigidMarkersOffsets: needs markers='rigid', got 'position'",
+    ),
 }
 
 
-@pytest.mark.parametrize("case", WRONG_PRESTRESS)
-def test_prestress_that_cannot_be_used_says_what_to_give(fem, case):
-    options, kind, message = WRONG_PRESTRESS[case]
+@pytest.mark.parametrize("case", WRONG_CALLS)
+def test_calls_that_cannot_be_say_what_to_give(fem, case):
+    options, kind, message = WRONG_CALLS[case]
     mbs = exu.SystemContainer().AddSystem()
     before = item_counts(mbs)
     with pytest.raises(kind, match=message):
-        mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", fem, axis="z", **options)
+        mbs.CreateFixedAxisFFRFReducedOrderObject(
+            "rotor", **{"femInterface": fem, "axis": "z"} | options
+        )
     assert item_counts(mbs) == before

@@ -1,6 +1,7 @@
 """Meshes and matrices of other programs: elements one by one, and the same block in each format."""
 
 import itertools
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -149,6 +150,7 @@ def abaqus(kind: str, change: tuple[str, str] = ("", "")) -> str:
         rows(*low),
         "*NSET, NSET=first, GENERATE\n5, 9, 2",
         "*ELSET, ELSET=lower, GENERATE\n1, 1",
+        "*SURFACE, TYPE=NODE,\nNAME=Again\nlow",
         f"*SURFACE, NAME=Face\nLOWER, {bottom}",
         "*MATERIAL, NAME=steel\n*ELASTIC\n210000., 0.3\n*DENSITY\n7.85e-9,",
         "*SOLID SECTION, ELSET=Body, MATERIAL=STEEL",
@@ -167,7 +169,14 @@ def nastran(kind: str, wide: bool = False) -> str:
         "wedge15": [*range(9), 12, 13, 14, 9, 10, 11],
     }.get(kind, list(range(elements.shape[1])))
     card = {"t": "CTETRA", "w": "CPENTA", "h": "CHEXA"}[kind[0]]
-    lines = ["SOL 103", "CEND", "BEGIN BULK", "MAT1,7,2.1+11,,.3,7850.", "PSOLID,3,7"]
+    lines = [
+        "SOL 103",
+        "CEND",
+        "BEGIN BULK",
+        f"MAT1,7,2.1+11,{2.1e11 / 2.6!r},,7850.",
+        "",
+        "PSOLID,3,7",
+    ]
     for i, (x, y, z) in enumerate(nodes):
         if wide:
             lines.append(f"GRID*   {i + 1:>16}{'':16}{x:16.9E}{y:16.9E}*\n*       {z:16.9E}")
@@ -235,9 +244,10 @@ def test_every_format_gives_the_same_matrices(name, tmp_path):
     assert abs(rotor.mass - expected.mass).max() < 1e-8 * abs(expected.mass).max()
     assert abs(rotor.stiffness - expected.stiffness).max() < 1e-8 * abs(expected.stiffness).max()
     if path.suffix == ".inp":
-        assert list(rotor.interfaces) == ["low", "first", "Face"]
+        assert list(rotor.interfaces) == ["low", "first", "Again", "Face"]
         low = rotor.interfaces["low"]
         np.testing.assert_allclose(low.center, SIZE / 2 * [1, 1, 0], atol=1e-12)
+        assert np.array_equal(rotor.interfaces["Again"].nodes, low.nodes)
         assert rotor.interfaces["first"].nodes.tolist() == [0, 2, 4]
         assert np.all(rotor.nodes[rotor.interfaces["Face"].nodes][:, 2] == 0.0)
     elif path.suffix == ".cdb":
@@ -263,6 +273,20 @@ def test_gmsh_gives_names_of_volumes_and_surfaces(tmp_path):
     assert rotor.total_mass == pytest.approx((7850 + 2700) / 2 * SIZE.prod(), rel=1e-12)
     assert list(rotor.interfaces) == ["low"]
     assert rotor.elements.materials == ["a", "b"]
+
+
+def test_sets_of_cells_are_materials_and_interfaces():
+    nodes, elements = block("hexahedron")
+    cells = [("hexahedron", elements), ("quad", elements[::2, [0, 3, 2, 1]])]
+    names = {"a": [np.arange(4), []], "b": [np.arange(4, 8), None], "low": [[], np.arange(4)]}
+    heavy = {**STEEL, "density": 2 * 7850.0}
+    rotor = SolidRotor.from_mesh(
+        meshio.Mesh(nodes, cells, cell_sets=names), {"a": STEEL, "b": heavy}, "z"
+    )
+    assert rotor.total_mass == pytest.approx(1.5 * 7850.0 * SIZE.prod(), rel=1e-12)
+    np.testing.assert_allclose(rotor.interfaces["low"].center, SIZE / 2 * [1, 1, 0], atol=1e-12)
+    with pytest.raises(ValueError, match="holds pyramid cells; needs tetrahedra, wedges or hex"):
+        SolidRotor.from_mesh(meshio.Mesh(nodes, [("pyramid", elements[:, :5])]), STEEL, "z")
 
 
 def test_included_files_and_element_sets_as_materials(tmp_path):
@@ -297,6 +321,7 @@ BAD_DECKS = {
     "inside out": (("\n1, 5, 6,", "\n1, 6, 5,"), r"turned inside out or have no volume"),
     "nodes are missing": (("\n1, 5, 6,", "\n1, 5,"), "no multiple of 9"),
     "unknown set": (("LOWER, S1", "LOWER, S9"), "a face S1 to S6 .*got 'S9'"),
+    "no such set": (("*NSET, NSET=low", "*NSET, NSET=low\nhigh"), "there is no set 'high'"),
     "parts": (("*HEADING\nblock", "*INSTANCE, NAME=a\n*INSTANCE, NAME=b"), "one part"),
     "included": (("*HEADING\nblock", "*INCLUDE, INPUT=none.inp"), "INCLUDE needs a file"),
     "no elements": (("*ELEMENT, TYPE=C3D8, ELSET=body", "*USER"), "got no solid element"),
@@ -313,12 +338,27 @@ def test_bad_decks_are_refused(case, tmp_path):
         SolidRotor.from_mesh(path, None, "z", length_unit="mm")
 
 
+def ending(archive: str, last: list[int]) -> str:
+    """Return an archive whose last element ends with other nodes."""
+    head, mark, tail = archive.partition("\n       -1\nCMB")
+    numbers = "".join(f"{one:9}" for one in last)
+    return head[: -len(numbers)] + numbers + mark + tail
+
+
 BAD_FILES = {
     "rbe2.bdf": (nastran("hexahedron").replace("ENDDATA", "RBE2,1,2,3"), "holds RBE2"),
     "shell.bdf": (nastran("hexahedron").replace("ENDDATA", "CQUAD4,1,2,3"), "holds CQUAD4"),
-    "system.bdf": (nastran("hexahedron").replace("GRID,1,,", "GRID,1,4,"), "line 6: GRID"),
+    "system.bdf": (nastran("hexahedron").replace("GRID,1,,", "GRID,1,4,"), "line 7: GRID"),
     "mids.bdf": (nastran("hexahedron").replace("CHEXA ", "CPENTA"), "nodes of an element"),
     "ce.cdb": (ansys("hexahedron", 185) + "\nCE,R5.0,DEFI", "holds CE"),
+    "blocked.cdb": (ansys("hexahedron", 185).replace("19,SOLID", "19"), "as EBLOCK,19,SOLID"),
+    "free.cdb": (
+        ansys("hexahedron", 185).replace("3i9,6e21.13e3", "free"),
+        "a format as .* is needed",
+    ),
+    "dropped.cdb": (ending(ansys("tetra10", 187), [0]), "element 48 lacks mid nodes"),
+    "pyramid.cdb": (ending(ansys("hexahedron", 185), 4 * [1]), "holds pyramids; mesh with"),
+    "include.bdf": (nastran("hexahedron").replace("ENDDATA", "INCLUDE 'a'"), "join the files"),
     "shell.cdb": (ansys("hexahedron", 181), "holds element type 181"),
     "cut.cdb": (ansys("hexahedron", 185)[:2000], "cannot be read"),
     "text.vtk": ("nothing", "meshio cannot read it"),
@@ -331,6 +371,13 @@ def test_bad_files_are_refused(name, tmp_path):
     (tmp_path / name).write_text(text)
     with pytest.raises(ValueError, match=message):
         SolidRotor.from_mesh(tmp_path / name, None, "z")
+
+
+def test_a_missing_meshio_is_named(monkeypatch, tmp_path):
+    (tmp_path / "mesh.vtk").write_text("")
+    monkeypatch.setitem(sys.modules, "meshio", None)
+    with pytest.raises(ImportError, match=r"pip install .exudyn-rotor\[meshes\]"):
+        SolidRotor.from_mesh(tmp_path / "mesh.vtk", STEEL, "z")
 
 
 def test_what_is_left_out_or_taken_as_another_element(tmp_path):
@@ -376,12 +423,21 @@ def test_matrices_of_calculix(tmp_path):
         SolidRotor.from_mesh(tmp_path / "deck.inp", None, "z", **call)
 
 
-@pytest.mark.parametrize("change", [("", ""), ("KAAX", "MBBX"), ("       2\n", "       4\n")])
-def test_matrices_of_nastran(change, tmp_path):
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (("", ""), ""),
+        (("       2\n", "       4\n"), ""),
+        (("KAAX", "MBBX"), r"one matrix M… and one K…, got \['MAAX', 'MBBX'\]"),
+        (("0       6", "0       1"), "KAAX must be symmetric and real .* got IFO 1, TIN 2"),
+    ],
+)
+def test_matrices_of_nastran(change, message, tmp_path):
     (tmp_path / "deck.bdf").write_text(nastran("hexahedron"))
     expected = rotor_of("hexahedron")
     lines = []
     for name, matrix in (("KAAX", expected.stiffness), ("MAAX", expected.mass)):
+        lines.append("PARAM,POST,-1")
         lines.append(f"DMIG    {name:8}       0       6       2       0                      81")
         for i, j, value in triangle(matrix):
             lines.append(f"DMIG*   {name:16}{j // 3 + 1:16}{j % 3 + 1:16}{'':16}*")
@@ -389,8 +445,8 @@ def test_matrices_of_nastran(change, tmp_path):
             lines.append(f"*       {i // 3 + 1:16}{i % 3 + 1:16}{number}")
     (tmp_path / "deck.pch").write_text("\n".join(lines).replace(*change))
     call = {"matrices": tmp_path / "deck.pch"}
-    if change[0] == "KAAX":
-        with pytest.raises(ValueError, match=r"one matrix M… and one K…, got \['MAAX', 'MBBX'\]"):
+    if message:
+        with pytest.raises(ValueError, match=message):
             SolidRotor.from_mesh(tmp_path / "deck.bdf", None, "z", **call)
         return
     rotor = SolidRotor.from_mesh(tmp_path / "deck.bdf", None, "z", **call)

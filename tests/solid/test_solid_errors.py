@@ -1,11 +1,15 @@
 """Wrong input of the finite-element layer: every error names the value and what to do."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
 from exudyn.FEM import FEMinterface
 from models import STEEL, block_beam, two_material_cylinder
+from point_rotors import free_stiffness
 
+from exudyn_rotor import Formulation, ModeBasis, craig_bampton_modes, keep_modes, select_modes
 from exudyn_rotor.solid_rotor import SolidRotor
 
 
@@ -22,6 +26,9 @@ def chain(count=3, spring=1e6):
         "stiffness": spring * np.eye(3 * count),
         "nodes": np.stack([number, 0.1 * number**2, 0.1 * number**3], axis=1),
     }
+
+
+SOFT = free_stiffness(chain()["nodes"], np.eye(9)) + 1e-7 * np.eye(9)
 
 
 def make(changes):
@@ -43,6 +50,15 @@ def make(changes):
         ({"stiffness": None}, r"stiffness matrix: is missing"),
         ({"damping": np.eye(6)}, r"damping matrix: the shape must be \(9, 9\)"),
         ({"stiffness": 1j * np.eye(9)}, "stiffness matrix: needs real numbers, got imaginary"),
+        ({"mass": np.diag(np.arange(1.0, 10.0))}, "not consist of multiples of the 3×3 identity"),
+        (
+            {"mass": np.diag(6 * [1.0] + 3 * [0.0])},
+            r"1 nodes have no mass .* nodes 2; remove nodes",
+        ),
+        ({"mass": 1e-9 * np.eye(9)}, r"units: .* kg/m³, cannot be"),
+        ({"stiffness": -np.eye(9)}, "9 diagonal entries are negative, at nodes .*wrong sign"),
+        ({"stiffness": np.triu(np.ones((9, 9)))}, r"is not symmetric.* pass A \+ A.T - diag"),
+        ({"stiffness": SOFT}, "6 rigid motions are neither free nor held .* digits in an export"),
         ({"triangles": [[0.5, 1, 2]]}, "triangles: needs whole numbers, got"),
         ({"triangles": [[0, 1]]}, r"triangles: the shape must be \(t, 3\) or \(t, 6\)"),
         ({"triangles": [[0, 1, 3]]}, "triangles: node numbers 0 to 3 are outside"),
@@ -153,3 +169,35 @@ def node_set(name, *numbers):
 def test_wrong_fem_interface(changes, message):
     with pytest.raises(ValueError, match=message):
         SolidRotor.from_fem_interface(fem_interface(**changes), "x")
+
+
+# ------------------------------------------------------------------ what is asked of a rotor
+
+CALLS = [
+    (lambda r: r.interface_at("c", 0.0, 1.0), "no surface to look for nodes on; .* with_interface"),
+    (lambda r: r.clamped([]), r"needs one interface or more of \['a', 'b'\], got none"),
+    (lambda r: r.clamped("a"), r"the 2 nodes of \['a'\] lie on one line .* clamp three"),
+    (lambda r: r.add_point_mass(np.zeros(3), 0.0), "mass: .* other than zero, got 0.0"),
+    (
+        lambda r: r.add_point_mass(np.zeros(3), -1.0),
+        "taking 1 kg from node 0 .* give less than 1 kg",
+    ),
+    (lambda r: r.reduce("two"), "modes: expected a number .* got 'two'"),
+    (lambda r: r.reduce(0), "basis is empty: ask for at least one component mode"),
+    (lambda r: r.reduce(FEMinterface()), r"holds no modes; call fem\.ComputeEigenmodes"),
+    (lambda r: r.reduce(1, stress=True), "no stress recovery; make it with from_ngsolve"),
+    (lambda r: ModeBasis(np.ones((6, 1)), ["a"], r.nodes), "matrix: needs 9 rows, got 6"),
+    (lambda r: replace(r.reduce(2), shapes=r.reduce(1).shapes), "one column for each of 2, got 1"),
+    (lambda r: craig_bampton_modes(r, 1), "'a' and 'b' share node 1, .* use coupling='RBE3'"),
+    (lambda r: keep_modes(r.reduce(2), []), "no rigid motions; keep at least one mode"),
+    (
+        lambda r: select_modes(r.reduce(2), Formulation("free", "free")),
+        "holds this rotor in its own",
+    ),
+]
+
+
+@pytest.mark.parametrize(("call", "message"), CALLS)
+def test_what_a_rotor_cannot_do(call, message):
+    with pytest.raises((ValueError, TypeError), match=message):
+        call(make({"interfaces": {"a": [0, 1], "b": [1, 2]}}))

@@ -205,11 +205,7 @@ def _wrap_assemble() -> None:
         return assembly.warn_of_lost_connections(mbs, stacklevel=3)
 
     setattr(assemble, _OWN, True)
-    if hasattr(original, "_exudynExtension"):
-        # registered, or Exudyn's own would be put back with the next extension
-        extends(exudyn.MainSystem, "Assemble")(assemble)
-    else:
-        exudyn.MainSystem.Assemble = assemble
+    exudyn.MainSystem.Assemble = assemble
 
 
 _wrap_assemble()
