@@ -1,11 +1,13 @@
 """Advice before and after a run, against responses, frequencies and runs computed otherwise."""
 
 import warnings
+from dataclasses import replace
 
 import exudyn as exu
 import numpy as np
 import pytest
 from models import centered_disc
+from point_rotors import random_rotor
 from run_scenes import scene
 
 import exudyn_rotor as er
@@ -127,6 +129,8 @@ def test_proposal_prints_what_add_rotor_takes(reduced):
     text = str(proposal)
     assert f"{proposal.count} of 20" in text
     assert all(reason in text for reason in proposal.reasons)
+    with pytest.raises(ValueError, match=r"needs 0 ≤ low ≤ high .* got 2.0, 1.0"):
+        replace(proposal, speeds=(2.0, 1.0))
     with pytest.raises(ValueError, match="chose from 20"):
         proposal.truncated(proposal.truncated(reduced))
 
@@ -134,6 +138,10 @@ def test_proposal_prints_what_add_rotor_takes(reduced):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
+        (
+            {"speeds": 1.0, "reduced": random_rotor(1).reduce(0)},
+            "reduced: has no interfaces, .* rotor.with_interface",
+        ),
         ({"speeds": []}, "speeds: "),
         ({"speeds": -1.0}, "speeds: "),
         ({"speeds": np.nan}, "speeds: "),
@@ -147,7 +155,7 @@ def test_proposal_prints_what_add_rotor_takes(reduced):
 )
 def test_bad_requests_are_refused(plain, options, message):
     with pytest.raises(ValueError, match=message):
-        er.propose(plain, **options)
+        er.propose(**{"reduced": plain} | options)
 
 
 @pytest.mark.parametrize("indices", [[20], [-1], [1, 1], [0.5], [[1]], [True], "ab"])

@@ -58,6 +58,13 @@ def test_quiet_run_passes_and_says_so(run, recwarn):
     assert "FAILS" not in str(check)
     assert not recwarn.list
     assert check["unresisted load"].value < 1e-5
+    with pytest.raises(KeyError, match="no check 'steps' here; there are: "):
+        check["steps"]
+
+
+def test_a_rotor_that_rests_has_no_error_of_the_step(reduced):
+    check = er.check_run(_finished(reduced, "none", steps=30, end_time=1e-3, spin=0.0))
+    assert check["step"].value == 0.0
 
 
 def test_run_of_few_instants_is_told(reduced):
