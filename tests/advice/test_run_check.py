@@ -15,13 +15,16 @@ from exudyn_rotor import (
     AssumptionWarning,
     BaseRecord,
     DirectCurrentMotor,
+    OilFilm,
     Support,
+    TiltingPadBearing,
     add_base_motion,
     add_drive,
     add_rotor,
     add_supports,
     check_run,
     craig_bampton_modes,
+    grooved_pads,
     keep_modes,
 )
 
@@ -102,6 +105,21 @@ def test_motors_and_shaken_ground_are_resisted(reduced, translation):
     body.start_recording()
     mbs.Assemble()
     solve(mbs, 100, 0.01)
+    assert check_run(body, warn=False)["unresisted load"].value < 1e-3
+
+
+def test_pads_with_inertia_pull_without_moments(reduced):
+    """Of five pads all around a journal in the middle, alike, nothing is left."""
+    angles = np.radians([18.0, 90.0, 162.0, 234.0, 306.0])
+    pads = grooved_pads(1e-4, angles, 0.2, preload=0.5)
+    film = OilFilm(radius=0.02, length=0.02, viscosity=0.01, pads=pads, nodes=24, axial_nodes=0)
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, reduced, spin=200.0)
+    add_supports(body, [Support(name, 2e6, damping=500.0) for name in ("left", "right")])
+    add_supports(body, TiltingPadBearing(interface="left", film=film, pad_inertia=1e-4))
+    body.start_recording()
+    mbs.Assemble()
+    solve(mbs, 20, 0.002)
     assert check_run(body, warn=False)["unresisted load"].value < 1e-3
 
 
