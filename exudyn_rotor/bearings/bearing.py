@@ -295,11 +295,12 @@ class Linearised:
         Without an equilibrium, at rest above all, that at the next of some other speeds: some ask
         for the directions that a bearing holds. What asks for its size calls `check_range` before.
         """
+        refused: Exception | None = None
         for tried in (speed, *self.bearing._tried):
             try:
                 return self._value(tried)
             except _FAILED as error:
-                refused = error
+                refused = refused or error  # that of the speed that was asked for
         raise refused
 
     def _value(self, speed: float) -> np.ndarray:

@@ -52,3 +52,21 @@ def test_speeds_that_would_wind_up_are_refused(name, turn):
     sensor = connect_rotors(*arguments).add_sensor()
     run(mbs, 0.1, 10)
     np.testing.assert_allclose(mbs.GetSensorStoredData(sensor)[:, 2], 0.0, atol=1e-12)  # energy [J]
+
+
+GEARS, COUPLING = (connection for connection, _ in CONNECTIONS.values())
+
+
+@pytest.mark.parametrize(
+    ("connection", "apart", "axis", "words"),
+    [
+        (COUPLING, [0.0, 0.0, 0.1], [0.0, 0.0, 1.0], "its interface is 0.1 m from that of the"),
+        (COUPLING, [0.0, 0.0, 0.0], [0.1, 0.0, 1.0], "on one axis, and the second is 0.1 rad off"),
+        (GEARS, [0.1, 0.0, 0.0], [0.1, 0.0, 1.0], "other: gears need parallel axes"),
+        (GEARS, [0.1, 0.0, 0.1], [0.0, 0.0, 1.0], "other: its gear is 0.1 m along the axis"),
+        (GEARS, [0.1, 0.0, 0.0], [0.0, 0.0, 1.0], r"0.1 m .* the gears need 0.0957\d* m"),
+    ],
+)
+def test_rotors_elsewhere_than_a_connection_needs_them_are_refused(connection, apart, axis, words):
+    with pytest.raises(ValueError, match=words):
+        connection.check_places(np.array(apart), np.array(axis))

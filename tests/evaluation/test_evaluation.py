@@ -274,3 +274,39 @@ def test_picture_of_level_one_has_threshold_and_limit_in_it(damping):
     assert low < -0.01 * (high - low)
     assert high > 0.1 + 0.01 * (high - low)
     pyplot.close(ax.figure)
+
+
+def test_a_flank_from_rest_is_a_line():
+    """Between 0 at rest and 0.9 at 10 rad/s; the peak at 20 rad/s is known from three points."""
+    response = sized([0.0, 10.0, 20.0, 30.0, 40.0], [0.0, 0.9, 1.0, 0.6, 0.5])
+    with pytest.warns(UserWarning, match="too far apart"):
+        found = separation_margins(response, (1.0, 2.0))
+    assert found.half_power[0, 0] == pytest.approx(10.0 / 0.9 * np.sqrt(0.5) * found.sizes[0])
+
+
+SOFT = Support("disc", 1.0)
+STIFF = SolidRotor.from_matrices(
+    np.eye(3), np.diag([1e9, 1e9, 1e4]), [[0, 0, 0]], "z", interfaces={"disc": [0]}
+).reduce(1)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: level_one(-1.0, 20.0), "cross_coupling: needs a positive number .* got -1.0"),
+        (lambda: level_one([1.0, 2.0], 20.0), "cross_coupling: needs a positive number"),
+        (lambda: level_one(5.0, 20.0, critical_speed_ratio=0.0), "critical_speed_ratio: needs"),
+        (lambda: stability_level_one(STIFF, 9.0, 5.0, "disc", supports=SOFT), "no lateral mode"),
+        (lambda: standard_unbalances("conical", "a", 5.0, 1.0), "'conical' takes 2 place"),
+        (lambda: standard_unbalances("conical", ["a", "a"], [5.0, 5.0], 1.0), "got 'a' twice"),
+        (
+            lambda: standard_unbalances("conical", ["a", "b"], 5.0, 1.0),
+            "masses: needs two positive",
+        ),
+        (lambda: standard_unbalances("overhung", "a", -5.0, 1.0), "masses: needs one or two"),
+        (lambda: separation_margins(jeffcott(0.1), None), "operating_range: needs the lowest"),
+    ],
+)
+def test_what_is_refused_is_told(call, words):
+    with pytest.raises((TypeError, ValueError), match=words):
+        call()

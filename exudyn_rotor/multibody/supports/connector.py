@@ -99,7 +99,7 @@ class Connector(Between, ABC):
     Its coordinates are those of the `nodes` of both, and `own` more of the law, on a node in `mbs`.
     """
 
-    has_mass = False  # whether a mass goes with the rotor across the axis
+    has_mass = False  # whether a mass, added_mass(), goes with the rotor across the axis
     constant: Sequence[np.ndarray] = ()  # mass, damping and stiffness of own coordinates
     outside = False  # whether it was evaluated beyond a clearance
     guard: Callable[[exudyn.MainSystem], None] | None = None  # looks at the accepted state then
@@ -138,10 +138,6 @@ class Connector(Between, ABC):
     @abstractmethod
     def tangent(self, t: float) -> Tangent:
         """Return the law's tangent where the ends have been read."""
-
-    def added_mass(self) -> float:
-        """Return the mass that goes with the rotor at its speed [kg]."""
-        return 0.0
 
     def friction(self) -> float:
         """Return the torque on the rotor that a prescribed spin does not feel [N m]."""
