@@ -110,6 +110,21 @@ def test_motors_and_shaken_ground_are_resisted(reduced, translation):
     assert er.check_run(body, warn=False)["unresisted load"].value < 1e-3
 
 
+def test_pads_with_inertia_pull_without_moments(reduced):
+    """Of five pads all around a journal in the middle, alike, nothing is left."""
+    angles = np.radians([18.0, 90.0, 162.0, 234.0, 306.0])
+    pads = er.grooved_pads(1e-4, angles, 0.2, preload=0.5)
+    film = er.OilFilm(radius=0.02, length=0.02, viscosity=0.01, pads=pads, nodes=24, axial_nodes=0)
+    mbs = exu.SystemContainer().AddSystem()
+    body = er.add_rotor(mbs, reduced, spin=200.0)
+    er.add_supports(body, [er.Support(name, 2e6, damping=500.0) for name in ("left", "right")])
+    er.add_supports(body, er.TiltingPadBearing(interface="left", film=film, pad_inertia=1e-4))
+    body.start_recording()
+    mbs.Assemble()
+    solve(mbs, 20, 0.002)
+    assert er.check_run(body, warn=False)["unresisted load"].value < 1e-3
+
+
 @pytest.mark.parametrize("translation", ["free", "in-plane", "none"])
 @pytest.mark.parametrize(("locking", "markers"), [("mass", "rigid"), ("constraints", "position")])
 def test_every_formulation_keeps_all_loads(reduced, translation, locking, markers):

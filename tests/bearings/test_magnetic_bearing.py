@@ -17,6 +17,7 @@ from exudyn_rotor import (
     SolidRotor,
     Support,
     bearing_loads,
+    campbell,
     linear_model,
     sensitivity,
     stability,
@@ -226,6 +227,17 @@ def test_magnets_pull_by_the_square_of_current_over_gap():
     centre = MAGNETS.slopes(0.0, 0.0)
     assert centre == pytest.approx((4 * k * i_0 / s_0**2, 4 * k * i_0**2 / s_0**3), rel=1e-14)
     assert (MAGNETS.force_current, MAGNETS.negative_stiffness) == pytest.approx(centre, rel=1e-14)
+
+
+@pytest.mark.parametrize("integral", [0.0, 2e4, 2e5])
+def test_an_integral_leaves_the_motions_their_names(integral):
+    """Of a rotor they are four, at 43 to 61 Hz; those of the controller alone are its own."""
+    given = replace(DELAYED, integral=integral)
+    found = campbell(rigid(), [300.0], supports=pair(controller=given), accuracy=None)
+    own = np.abs(found.frequencies_inertial[0] / (2.0 * np.pi) - 52.0) < 10.0
+    assert sorted(found.whirl[0, own]) == 2 * ["backward"] + 2 * ["forward"]
+    assert np.all(found.nodal_diameters[0, own] == 1)
+    assert sorted(set(found.families[0, ~own])) == ["axial", "foundation", "torsional"]
 
 
 def test_refused_input():

@@ -8,7 +8,14 @@ from exudyn.itemInterface import SensorNode
 from models import STEEL, block_beam
 from netgen.occ import Cylinder, OCCGeometry, Pnt, Z
 
-import exudyn_rotor as er
+from exudyn_rotor import (
+    Formulation,
+    SolidRotor,
+    StressField,
+    add_rotor,
+    select_modes,
+    stress_history,
+)
 from exudyn_rotor.solid.elements import principal, von_mises
 
 INNER, OUTER, SPEED = 0.05, 0.2, 1000.0
@@ -19,22 +26,20 @@ KINDS = exu.OutputVariableType
 def ring():
     solid = Cylinder(Pnt(0, 0, 0), Z, OUTER, 0.02) - Cylinder(Pnt(0, 0, -1), Z, INNER, 3)
     mesh = ngs.Mesh(OCCGeometry(solid).GenerateMesh(maxh=0.04))
-    return er.SolidRotor.from_ngsolve(mesh, STEEL, "z").reduce(8, stress=True, prestress=True)
+    return SolidRotor.from_ngsolve(mesh, STEEL, "z").reduce(8, stress=True, prestress=True)
 
 
 @pytest.fixture(scope="module")
 def beam():
-    return er.SolidRotor.from_ngsolve(block_beam(), STEEL, "z").reduce(
-        6, stress=True, prestress=True
-    )
+    return SolidRotor.from_ngsolve(block_beam(), STEEL, "z").reduce(6, stress=True, prestress=True)
 
 
 def steady_state(reduced, speed):
     """Return the field of a free rotor at constant speed, and its static modal coordinates."""
-    selection = er.select_modes(reduced, er.Formulation("none", speed))
+    selection = select_modes(reduced, Formulation("none", speed))
     stiffness, load = np.diag(selection.invariants.K), selection.invariants.h
     zeta = np.where(stiffness > 1.0, speed**2 * load / np.maximum(stiffness, 1.0), 0.0)
-    return er.StressField.of(reduced, selection), zeta
+    return StressField.of(reduced, selection), zeta
 
 
 def test_scalars_of_the_stress_tensor():
@@ -67,7 +72,7 @@ def test_history_is_the_superposition_and_finds_the_peak(beam):
     time = np.linspace(0.0, 1.0, 41)
     shake = np.zeros((time.size, zeta.size))
     shake[:, -1] = 1e-4 * np.sin(7.0 * time)
-    history = er.stress_history(field, time, zeta + shake, 300.0, count=4)
+    history = stress_history(field, time, zeta + shake, 300.0, count=4)
     everywhere = von_mises(field.history(zeta + shake, np.full(41, 300.0), slice(None)))
     node = int(np.argmax(everywhere.max(axis=0)))
     assert history.hottest == history.nodes[0] == node
@@ -76,7 +81,7 @@ def test_history_is_the_superposition_and_finds_the_peak(beam):
     assert history.von_mises[:, 0] == pytest.approx(everywhere[:, node])
     assert history.principal.shape == (41, 4, 3)
     assert str(node) in history.table()
-    chosen = er.stress_history(field, time, zeta + shake, 300.0, nodes=[3, node])
+    chosen = stress_history(field, time, zeta + shake, 300.0, nodes=[3, node])
     assert chosen.nodes.tolist() == [node, 3]
 
 
@@ -89,7 +94,7 @@ def test_stress_in_a_run_is_the_static_one_and_what_exudyn_s_own_sensor_adds(bea
     mbs = exu.SystemContainer().AddSystem()
     static = steady_state(beam, 300.0)[1]
     options = {"spin": 300.0, "translation": "none", "stiffening": "full"}
-    body = er.add_rotor(mbs, beam, modal_coordinates=static, **options)
+    body = add_rotor(mbs, beam, modal_coordinates=static, **options)
     modes = mbs.AddSensor(
         SensorNode(
             nodeNumber=body.nodes["modes"],
@@ -110,8 +115,8 @@ def test_stress_in_a_run_is_the_static_one_and_what_exudyn_s_own_sensor_adds(bea
     settings.solution.file.write, settings.solution.sensors.writePeriod = False, 1e-3 / 30
     mbs.SolveDynamic(settings)
     record, sensed = (mbs.GetSensorStoredData(sensor)[:, 1:] for sensor in (modes, native))
-    field = er.StressField.of(beam, body.selection)
-    history = er.stress_history(field, np.arange(len(record)), record, 300.0, nodes=[node])
+    field = StressField.of(beam, body)
+    history = stress_history(field, np.arange(len(record)), record, 300.0, nodes=[node])
     expected = beam.static_stress(300.0)[node] + sensed - sensed[0]
     scale = np.abs(sensed - sensed[0]).max()
     assert scale > 1e3
@@ -124,7 +129,7 @@ def test_stress_in_a_run_is_the_static_one_and_what_exudyn_s_own_sensor_adds(bea
 def test_a_field_is_stored_and_tabulated(beam, tmp_path):
     field, zeta = steady_state(beam, 300.0)
     field.save(tmp_path / "field.npz")
-    again = er.StressField.load(tmp_path / "field.npz")
+    again = StressField.load(tmp_path / "field.npz")
     assert np.array_equal(again.at(zeta, 9.0), field.at(zeta, 9.0))
     rows = field.table().splitlines()
     assert len(rows) == 1 + zeta.size
@@ -134,41 +139,35 @@ def test_a_field_is_stored_and_tabulated(beam, tmp_path):
 
 
 def test_stress_at_speed_without_the_static_part_warns():
-    rotor = er.SolidRotor.from_ngsolve(block_beam(), STEEL, "z")
+    rotor = SolidRotor.from_ngsolve(block_beam(), STEEL, "z")
     field, zeta = steady_state(rotor.reduce(4, stress=True, prestress=False), 300.0)
     rows = np.stack([zeta, zeta])
     advice = r"up to 300 rad/s without .* reduce\(…, stress=True, prestress=True\)"
     with pytest.warns(UserWarning, match=advice) as caught:
-        er.stress_history(field, [0.0, 1.0], rows, [0.0, -300.0])
+        stress_history(field, [0.0, 1.0], rows, [0.0, -300.0])
     with pytest.warns(UserWarning, match=advice) as drawn:
         field.plot(zeta, 300.0)
     assert [w.filename for w in (*caught, *drawn)] == [__file__] * 2
-    er.stress_history(field, [0.0, 1.0], rows, 0.0)  # at rest there is no such part
+    stress_history(field, [0.0, 1.0], rows, 0.0)  # at rest there is no such part
     field.plot(zeta, 0.0)
 
 
 def test_bad_input_is_refused(beam):
     field, zeta = steady_state(beam, 300.0)
-    rows = np.stack([zeta, zeta])
-    with pytest.raises(ValueError, match=r"modal_coordinates: needs .* of shape \(2, 11\)"):
-        er.stress_history(field, [0.0, 1.0], rows[:, :-1], 300.0)
-    with pytest.raises(ValueError, match="modal_coordinates: needs finite numbers"):
-        er.stress_history(field, [0.0, 1.0], rows * np.nan, 300.0)
-    with pytest.raises(ValueError, match=r"speed: needs .* of shape \(2,\)"):
-        er.stress_history(field, [0.0, 1.0], rows, [1.0, 2.0, 3.0])
-    with pytest.raises(
-        ValueError, match=r"modal_coordinates: needs .* shape \(11,\), got .* the shape \(10,\)"
+    rows, form = np.stack([zeta, zeta]), Formulation("none", 300.0)
+    bare = SolidRotor.from_ngsolve(block_beam(), STEEL, "z").reduce(1)
+    own, chosen = select_modes(bare, form), select_modes(beam, form)
+    for call, match in (
+        (lambda: stress_history(field, [0, 1], rows[:, :-1], 1.0), r"needs .* of shape \(2, 11\)"),
+        (lambda: stress_history(field, [0, 1], rows * np.nan, 1.0), "modal_coordinates: needs fin"),
+        (lambda: stress_history(field, [0, 1], rows, [1.0] * 3), r"speed: needs .* shape \(2,\)"),
+        (lambda: field.at(zeta[:-1], 1.0), r"needs .* shape \(11,\), got .* the shape \(10,\)"),
+        (lambda: stress_history(beam, [0, 1], rows, 1.0), "field: needs StressField, got Reduced"),
+        (lambda: StressField.of(beam, None), "selection: needs Selection or RotorBody, got None"),
+        (lambda: StressField.of(beam, form), "selection: needs Selection or RotorBody, got Form"),
+        (lambda: StressField.of(beam, own), "selection: it is of another rotor"),
+        (lambda: StressField.of(field, chosen), "reduced: needs ReducedRotor, got StressField"),
+        (lambda: StressField.of(bare, own), "without stress modes"),
     ):
-        field.at(zeta[:-1], 300.0)
-    with pytest.raises(TypeError, match="field: needs StressField, got ReducedRotor"):
-        er.stress_history(beam, [0.0, 1.0], rows, 300.0)
-    for wrong in (None, er.Formulation("none", 300.0)):
-        with pytest.raises(
-            TypeError, match=r"selection: needs Selection or RotorBody, got (None|Form)"
-        ):
-            er.StressField.of(beam, wrong)
-    with pytest.raises(TypeError, match="reduced: needs ReducedRotor, got StressField"):
-        er.StressField.of(field, er.select_modes(beam, er.Formulation("none", 300.0)))
-    bare = er.SolidRotor.from_ngsolve(block_beam(), STEEL, "z").reduce(1)
-    with pytest.raises(ValueError, match="without stress modes"):
-        er.StressField.of(bare, er.select_modes(bare, er.Formulation("none", 1.0)))
+        with pytest.raises((TypeError, ValueError), match=match):
+            call()
