@@ -128,11 +128,31 @@ def test_rotations():
 def test_ascending():
     assert checks.ascending(3, "speeds").tolist() == [3.0]
     assert checks.ascending((1, 2.5), "speeds").tolist() == [1.0, 2.5]
+    assert checks.ascending(np.array([1.0 + 0.0j, 2.5]), "speeds").tolist() == [1.0, 2.5]
     for values in ([], [2.0, 1.0], [1.0, 1.0]):
         with pytest.raises(ValueError, match=r"^speeds: needs at least one number, in ascending"):
             checks.ascending(values, "speeds")
     with pytest.raises(TypeError, match=r"^speeds: needs"):
         checks.ascending("12", "speeds")
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: checks.number(10**400, "x"), "x: needs a finite number, got 1000"),
+        (lambda: checks.number(2e150, "x"), "x: needs a number below 1e\\+150 in size"),
+        (lambda: checks.vector([1e200, 0.0, 0.0], "x"), "x: needs numbers below 1e\\+150 in size"),
+        (lambda: checks.array(np.zeros(0), "x", dtype=bool), "x: needs flags"),
+        (lambda: checks.items(np.array(1.0), "x", "a list"), "x: needs a list, got array"),
+        (lambda: checks.function(3, "x"), "x: needs a function, got 3"),
+        (lambda: checks.label("a\nb", "x"), "x: needs printable characters"),
+        (lambda: checks.path(""), r"path: needs the path of a file \(text or Path\), got ''"),
+        (lambda: checks.file("."), "path: needs a file, '.' is a folder"),
+    ],
+)
+def test_what_is_refused_is_told(call, words):
+    with pytest.raises((TypeError, ValueError, OSError), match=words):
+        call()
 
 
 def test_messages_show_eighty_characters_of_a_value():

@@ -117,3 +117,32 @@ def test_a_table_follows_a_free_spin():
     np.testing.assert_allclose(force, -stiffness @ u - 50.0 * v, rtol=1e-6)
     assert body.uses_python
     assert "left by Python function; right by Exudyn" in body.report()
+
+
+@pytest.mark.parametrize("driven", [{"spin": SPEED}, {"initial_speed": SPEED}])
+def test_a_film_takes_the_rotor_that_carries_it_along(driven):
+    """Its torque in the middle is 2πμR³LΩ/c, whether the journal's spin is prescribed or free."""
+    mbs, reduced, start = exu.SystemContainer().AddSystem(), rings(heavy=0.0), 50.0
+    film = {"radius": 0.02, "length": 0.02, "clearance": 1e-4, "viscosity": 0.01}
+    inner = er.add_rotor(mbs, reduced, name="inner", **driven)
+    outer = er.add_rotor(mbs, reduced, name="outer", initial_speed=start)
+    for body in (inner, outer):
+        er.add_supports(
+            body, [er.Support(end, 1e6 * np.eye(3), 100.0) for end in ("left", "right")]
+        )
+    er.add_supports(inner, er.ShortJournalBearing(interface="left", **film), outer.marker("left"))
+    mbs.Assemble()
+    settings = er.recommended_settings(end_time=0.05, step=1e-3)
+    settings.solution.file.write = False
+    mbs.SolveDynamic(settings)
+    torque = 2.0 * np.pi * 0.01 * 0.02**3 * 0.02 / 1e-4 * (SPEED - start)
+    speed = outer.coordinates()[1][3]  # after the translations
+    assert reduced.invariants.Theta * (speed - start) == pytest.approx(torque * 0.05, rel=2e-3)
+
+
+def test_a_support_that_was_deleted_is_named():
+    mbs, body, added = on_supports(rings(), [er.Support("left", 1e6, 50.0), HELD], spin=SPEED)
+    mbs.DeleteObject(added[0].objects[0], suppressWarnings=True)
+    mbs.Assemble()
+    with pytest.raises(ValueError, match=r"'rotor' under its numbers: left by .* build the scene"):
+        er.linear_model(mbs, body=body)
