@@ -67,9 +67,19 @@ def test_a_rotor_that_rests_has_no_error_of_the_step(reduced):
     assert check["step"].value == 0.0
 
 
+def test_a_joint_at_a_place_leaves_no_linear_equations(reduced):
+    def joint(mbs, body):
+        ends = [mbs.CreateGround(), body.marker("left")]
+        mbs.CreateGenericJoint(itemNumbers=ends, constrainedAxes=[1, 1, 0, 0, 0, 0])
+
+    body = _finished(reduced, "none", joint, steps=30, end_time=1e-3, spin=200.0)
+    assert "growth" not in [row.name for row in er.check_run(body, warn=False).rows]
+
+
 def test_run_of_few_instants_is_told(reduced):
     mbs, body = scene(reduced, "none", spin=200.0)
-    body.start_recording()
+    for _ in range(2):  # the second call finds the sensors of the first
+        body.start_recording()
     mbs.Assemble()
     er.check_run(body)  # before a run there is nothing to miss
     solve(mbs, 400, 0.04, period=0.01)
@@ -77,7 +87,7 @@ def test_run_of_few_instants_is_told(reduced):
         er.AssumptionWarning, match=r"only 5 of at least 20 instants .* and lower solution"
     ):
         check = er.check_run(body, accuracy=0.5)
-    assert check.instants == 5
+    assert check.instants == len(body.recorded().time) == 5
     assert not check.complete
     assert check.ok
 

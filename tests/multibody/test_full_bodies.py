@@ -160,12 +160,18 @@ def test_markers_and_sensors_at_mesh_nodes_move_with_them(bar):
     corner = int(bar.interfaces["right"].nodes[0])
     marker = body.add_marker([corner], kind="position")
     sensor = body.add_node_sensor(corner, KINDS.DisplacementLocal)
+    place = body.add_node_sensor(corner, KINDS.Position)
     mbs.CreateForce(itemNumber=marker, loadVector=[0.0, 0.0, 50.0])
     mbs.Assemble()
     mbs.SolveDynamic(er.recommended_settings(1e-3, 1e-4, body=body))
     moved = body.displacement()[corner]
     assert moved[2] > 1e-9
     np.testing.assert_allclose(mbs.GetSensorValues(sensor), moved, rtol=1e-9)
+    state = mbs.systemData.GetODE2Coordinates()
+    mbs.systemData.SetODE2Coordinates(state, exudyn.ConfigurationType.Visualization)
+    (drawn,) = add_full.surface_drawing(body, *body.nodes.values())(mbs, 0)
+    points = np.reshape(drawn["points"], (-1, 3))
+    assert np.linalg.norm(points - mbs.GetSensorValues(place), axis=1).min() < 1e-12
 
 
 def test_stress_is_that_of_the_rotation(bar):

@@ -41,6 +41,7 @@ def test_modes_are_those_of_the_factor(cylinder, case):
 
 @pytest.mark.parametrize("coupling", ["RBE2", "RBE3"])
 def test_craig_bampton_modes_are_those_of_the_factor(cylinder, coupling, monkeypatch):
+    monkeypatch.setattr("pyngcore.GetNumThreads", lambda: 2)
     monkeypatch.setattr(davidson, "_MOST_STEPS", 27)  # 25 are needed
     modes = [craig_bampton_modes(one, 4, coupling=coupling) for one in both(cylinder)]
     expected, found = (one.frequencies[12:] for one in modes)
@@ -56,7 +57,6 @@ def test_static_solutions_are_those_of_the_factor(cylinder, monkeypatch):
     monkeypatch.setattr(two_level.conjugate_gradients, "__defaults__", (60,))  # 46 are needed
     expected, found = (one.prestress().displacement for one in both(cylinder))
     assert np.linalg.norm(found - expected) < SAME_DISPLACEMENT * np.linalg.norm(expected)
-    monkeypatch.setattr("pyngcore.GetNumThreads", lambda: 2)
     none = np.zeros((cylinder.nodes.size, 0))
     # 1e-8 is what these leave
     expected, found = (attachment_modes(one, none) for one in both(cylinder))

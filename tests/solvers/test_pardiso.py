@@ -87,3 +87,10 @@ def test_mkl_is_named_once_where_a_model_is_large(shaft, monkeypatch):
                 stiffness = shaft.stiffness.copy()  # whose factor is not known yet
                 free_modes(SolidRotor.from_matrices(shaft.mass, stiffness, shaft.nodes, "x"), 1)
         assert len([one for one in caught if "mkl" in str(one.message)]) == count
+
+
+def test_memory_is_that_of_the_container(monkeypatch, tmp_path):
+    for name, text in (("max", "5000\n"), ("current", "3000\n")):
+        (tmp_path / name).write_text(text)
+    monkeypatch.setattr(factor, "_GROUP", (tmp_path / "max", tmp_path / "current"))
+    assert factor.available_memory() == 2000.0
