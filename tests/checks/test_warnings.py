@@ -177,7 +177,7 @@ ELSEWHERE = {
     "bearings/controlled_support.py:table_of": "speeds are left out",
     "linear/own_frequency.py:own_motions": "do not settle at their own frequency",
     "linear/model/linear_model.py:warn_beyond": "keeps its ends for motions of",
-    "linear/over.py:motions_over": "do not converge for all motions",
+    "linear/over.py:warn_of": "do not converge for all motions",
 }
 TEXTS = {place: text for place, (_, _, text) in PLACES.items()} | ELSEWHERE
 # places that several kinds of bodies reach
