@@ -3,10 +3,7 @@
 import exudyn as exu
 import numpy as np
 import pytest
-from exudyn.itemInterface import (
-    LoadCoordinate,
-    MarkerNodeCoordinate,
-)
+from exudyn.itemInterface import LoadCoordinate, MarkerNodeCoordinate
 from models import centered_disc
 from run_scenes import scene, solve
 from scipy.spatial.transform import Rotation

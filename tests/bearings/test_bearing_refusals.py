@@ -12,6 +12,7 @@ from test_annular_seal import seal
 from test_dampers_and_stops import damper, stop
 from test_film import SPEED, STILL, film
 from test_journal_bearing import bearing as short
+from test_magnetic_bearing import AXIAL, DELAYED, MAGNETS, PD, PID, on_supports, pair, rigid
 from test_magnetic_bearing import bearing as magnets
 from test_rolling_bearing import bearing as balls
 from test_series import floating
@@ -38,8 +39,21 @@ def pads(count=3, preload=0.0, cavitation="reynolds", pivot=0.5, nodes=60, inert
     return er.TiltingPadBearing(interface="left", film=around, **given)
 
 
-def series():
-    return er.SeriesSupport(interface="left", inner=pads(), mass=1.0, outer=short())
+def series(**parts):
+    good = {"inner": Support("left", 1.0), "outer": Support("left", 1.0), "mass": 1.0}
+    return er.SeriesSupport(interface="left", **(good | parts))
+
+
+def table(size=2, **axes):
+    return Support.from_table("left", stiffness=np.ones((3, size, size)), **axes)
+
+
+def columns(**given):
+    return Support.from_columns("left", given)
+
+
+def heavy(controller=DELAYED):
+    return magnets(actuator=MAGNETS, controller=controller, load=[0.0, -4e3])
 
 
 def tilting_point():
@@ -57,12 +71,36 @@ def early(module, limit, call):
 REFUSED = [
     (lambda: Support.from_columns("left", 3), "source: needs a path, a DataFrame or a"),
     (lambda: Support("left", 1.0, frame="rotor", mass=2.0), "mass: is for supports that"),
+    (lambda: Support("left", ((0.0, 1e5), (-1e5, 0.0))), "may be a matrix or a table"),
+    (lambda: Support("left", ([0.0, 1.0], [1.0])), "its table need 2 matrices"),
+    (lambda: Support("left", np.eye(4)), "needs a number or a matrix of"),
+    (lambda: Support("left", [[1.0, 2.0], [3.0]]), "stiffness: needs"),
+    (lambda: table(), "needs speeds, frequencies"),
+    (lambda: table(speeds=[2.0, 1.0, 3.0]), "ascending"),
+    (lambda: table(frequencies=[-1.0, 0.0, 1.0]), "needs values ≥ 0"),
+    (lambda: table(speeds=[1.0, 2.0, 3.0], frequencies=[1.0, 2.0]), "need 3 × 2 matrices"),
+    (lambda: table(4, speeds=[1.0, 2.0, 3.0]), "2, 3 or 6 rows"),
+    (lambda: columns(speed=[1.0], stiffness=[2.0]), "neither speed"),
+    (lambda: columns(kxx=[1.0]), "a column 'speed'"),
+    (lambda: columns(**{"speed [1/min]": [1.0], "kxx": [1.0]}), "needs rad/s, rpm or Hz"),
+    (lambda: columns(speed=["fast"], kxx=[1.0]), "needs numbers"),
+    (lambda: columns(speed=[1.0, 1.0], frequency=[1.0, 1.0], kxx=[1.0] * 2), "one row for each"),
+    (lambda: columns(speed=[1.0, 2.0], kxx=[1.0, np.nan]), "needs finite"),
     (tilting_point, "'left': tilt_stiffness would act on nothing"),
     (lambda: seal(clearance=-1e-4), "clearance: needs a finite number"),
     (lambda: seal(clearance=0.1), "clearance: needs the radial clearance, far below"),
     (lambda: seal(pressure_drop=0.0), "pressure_drop: needs"),
     (lambda: seal(inlet_loss=-0.1), "inlet_loss: needs"),
     (lambda: magnets(sensor="b").table(1.0, 1.0), "'left': measures at 'b', and a table"),
+    (lambda: replace(PID, delay=-1e-5), "delay: needs"),
+    (lambda: replace(MAGNETS, gap=-1e-4), "gap: needs"),
+    (lambda: replace(MAGNETS, current_limit=1.5), "current_limit: needs"),
+    (lambda: heavy().equilibrium(0.0), "carries 2250 N, not 4000 N"),
+    (lambda: heavy(controller=PD).equilibrium(0.0), "not 4000 N; give a larger current_limit, or"),
+    (lambda: er.stability(rigid(), 0.0, supports=pair(sensor="top")), "as that of its sensor, 't"),
+    (lambda: on_supports(rigid(), pair(sensor="top")), "as that of its sensor, 'top'"),
+    (lambda: er.sensitivity(rigid(), 1.0, supports=[AXIAL]), "needs a MagneticBearing"),
+    (lambda: er.sensitivity(rigid(), [0.0, 2.0], supports=pair()), "needs values above zero"),
     (lambda: damper(clearance=-1e-4), "clearance: needs a finite number"),
     (lambda: damper(clearance=0.1), "far below the radius"),
     (lambda: damper(orbit=1.0), "orbit: needs"),
@@ -87,9 +125,35 @@ REFUSED = [
     (lambda: short().table(100.0, [0.0, 1.0]), "frequencies: needs values above"),
     (lambda: floating(DOWN).ring(0.0), "at 0 rad/s its films carry nothing"),
     (lambda: floating([0.0, -1e22]).ring(1e3), "no speed of the ring at which its films carry"),
-    (lambda: series().linearised(), "has states of its own"),
+    (lambda: series(inner=Support("right", 1.0)), "at 'right'"),
+    (lambda: series(outer=Support("left", damping=1.0, frame="rotor")), "stands still"),
+    (lambda: series(outer=Support("left", np.eye(3))), "across the axis alone"),
+    (lambda: series(mass=0.0), "mass: needs"),
+    (lambda: series(inner=pads()).linearised(), "has states of its own"),
     (lambda: journal(1e12).linearised().matrices(1.0), "load: 1e+12 N at 1 rad/s presses"),
     (lambda: early(reynolds, "_ITERATIONS", lambda: film().state(PLACE, STILL, 1.0)), "settle"),
+    (lambda: er.grooved_pads(-1e-4), "clearance: needs a finite number [m] > 0"),
+    (lambda: er.grooved_pads(1e-4, preload=0.5), "preload: needs grooves"),
+    (lambda: er.grooved_pads(1e-4, [0.0, 0.1], 0.2), "grooves: need ascending"),
+    (lambda: er.grooved_pads(1e-4, [0.0]), "groove_width: a single groove without width"),
+    (lambda: film(preload=1.0), "preload: needs a finite number ≥ 0 and < 1"),
+    (lambda: er.OilFilm(0.05, 0.05, 0.02, []), "pads: needs one at least"),
+    (
+        lambda: er.OilFilm(0.05, 0.05, 0.02, [er.Pad(0, 4, 1e-4), er.Pad(3, 1, 1e-4)]),
+        "pads: overlap",
+    ),
+    (lambda: er.OilFilm(0.05, 0.05, 0.02, [er.Pad(0, 4, 1e-4, [1e-3, 0])]), "pads: their centers"),
+    (lambda: film(axial_nodes=1), "axial_nodes: needs 0"),
+    (lambda: er.OilFilm(0.05, 0.05, 0.02, er.grooved_pads(0.05)), "pads: need clearances far"),
+    (lambda: film().state([1.1e-4, 0.0], STILL, 1.0), "displacement: [0.00011, 0.0"),
+    (lambda: film().equilibrium(1.0, [0.0, 0.0]), "load: needs a force other than 0"),
+    (lambda: film().equilibrium(0.0, [1e3, 0.0]), "speed: needs a number other than 0"),
+    (lambda: film().equilibrium(10.0, [1e9, 0.0]), "load: 1e+09 N at 10 rad/s presses"),
+    (lambda: film(grooves=[0.0], width=340.0).equilibrium(SPEED, [1e3, 0.0]), "into a groove"),
+    (
+        lambda: er.OilFilm(0.05, 0.05, 0.1, er.grooved_pads(1e-120)).state(STILL, STILL, 1.0),
+        "singul",
+    ),
     (lambda: pads(0), "needs pads with gaps between"),
     (lambda: pads(pivot=1.0), "pivot: needs"),
     (lambda: pads(inertia=0.0), "pad_inertia: needs"),

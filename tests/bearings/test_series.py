@@ -3,6 +3,7 @@
 import exudyn as exu
 import numpy as np
 import pytest
+from test_tables import rotor
 
 from exudyn_rotor import (
     FloatingRingBearing,
@@ -27,13 +28,6 @@ NAMES = ("left", "right")
 INNER = [[2e7, 1e6], [-1e6, 3e7]], [[2e3, 0.0], [0.0, 1e3]]
 OUTER = [[6e6, 0.0], [0.0, 4e6]], 500.0
 RING = 0.8
-
-
-def rotor():
-    """Two masses of 2 kg on a rigid rod."""
-    rod = 1e12 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    made = SolidRotor.from_matrices(2.0 * np.eye(6), rod, [[0, 0, -0.1], [0, 0, 0.1]], "z")
-    return made.with_interface("left", [0]).with_interface("right", [1])
 
 
 def in_series():
@@ -151,21 +145,6 @@ def test_at_the_limit_of_stability_one_film_whirls_with_half_the_speed(clearance
     expected = inner * speed + outer * supports[0].ring(speed).speed
     assert limit.onset.tolist() == [True]
     assert whirl == pytest.approx(expected, rel=0.1)
-
-
-BAD = {
-    "at 'right'": {"inner": Support("right", 1.0)},
-    "stands still": {"outer": Support("left", damping=1.0, frame="rotor")},
-    "across the axis alone": {"outer": Support("left", np.eye(3))},
-    "mass": {"mass": 0.0},
-}
-
-
-@pytest.mark.parametrize("message", BAD)
-def test_parts_that_do_not_fit_are_refused(message):
-    good = {"inner": Support("left", 1.0), "outer": Support("left", 1.0), "mass": 1.0}
-    with pytest.raises(ValueError, match=message):
-        SeriesSupport(interface="left", **good | BAD[message])
 
 
 def test_scenes_ask_for_the_ring_as_a_body():

@@ -1,5 +1,7 @@
 """Evaluation by API RP 684: against closed forms of the Jeffcott rotor and the printed rules."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from matplotlib import pyplot
@@ -154,8 +156,6 @@ def test_bearings_share_the_mass_by_their_levers(axis):
     rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
     np.testing.assert_allclose(bearing_masses(rotor, ["left", "right"]), [1.0, 4.0])
     np.testing.assert_allclose(bearing_masses(rotor, ["right", "left"]), [4.0, 1.0])
-    with pytest.raises(ValueError, match="bearings: needs two interfaces"):
-        bearing_masses(rotor, ["left"])
 
 
 # ------------------------------------------------------------------ stability of level I
@@ -169,8 +169,6 @@ def test_anticipated_cross_coupling_of_the_printed_formula():
     assert found == pytest.approx(printed * 1e3, rel=1e-12)
     blades = anticipated_cross_coupling(power, rpm * RPM, 0.4, 0.015, machine="axial")
     assert blades == pytest.approx(found / (2.0 * ratio), rel=1e-12)
-    with pytest.raises(ValueError, match="density_ratio: axial stages have none"):
-        anticipated_cross_coupling(1e6, 100.0, 0.4, 0.01, density_ratio=1.1, machine="axial")
 
 
 def level_one(coupling, damping, axis="z", **given):
@@ -284,7 +282,7 @@ def test_a_flank_from_rest_is_a_line():
     assert found.half_power[0, 0] == pytest.approx(10.0 / 0.9 * np.sqrt(0.5) * found.sizes[0])
 
 
-SOFT = Support("disc", 1.0)
+SOFT, stage = Support("disc", 1.0), partial(anticipated_cross_coupling, 1e6, 100.0, 0.4, 0.01)
 STIFF = SolidRotor.from_matrices(
     np.eye(3), np.diag([1e9, 1e9, 1e4]), [[0, 0, 0]], "z", interfaces={"disc": [0]}
 ).reduce(1)
@@ -297,6 +295,15 @@ STIFF = SolidRotor.from_matrices(
         (lambda: level_one([1.0, 2.0], 20.0), "cross_coupling: needs a positive number"),
         (lambda: level_one(5.0, 20.0, critical_speed_ratio=0.0), "critical_speed_ratio: needs"),
         (lambda: stability_level_one(STIFF, 9.0, 5.0, "disc", supports=SOFT), "no lateral mode"),
+        (
+            lambda: stability_level_one(STIFF, 9.0, 5.0, "disc", supports=()),
+            "needs the bearings of",
+        ),
+        (lambda: bearing_masses(STIFF, ["disc"]), "bearings: needs two interfaces"),
+        (
+            lambda: stage(density_ratio=1.1, machine="axial"),
+            "density_ratio: axial stages have none",
+        ),
         (lambda: standard_unbalances("conical", "a", 5.0, 1.0), "'conical' takes 2 place"),
         (lambda: standard_unbalances("conical", ["a", "a"], [5.0, 5.0], 1.0), "got 'a' twice"),
         (

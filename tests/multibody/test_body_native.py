@@ -7,10 +7,7 @@ matplotlib.use("Agg")
 import numpy as np
 import pytest
 from exudyn.interactive import ShowImage
-from exudyn.itemInterface import (
-    LoadCoordinate,
-    MarkerNodeCoordinate,
-)
+from exudyn.itemInterface import LoadCoordinate, MarkerNodeCoordinate
 from models import STEEL, block_beam
 
 from exudyn_rotor import SolidRotor, add_rotor

@@ -109,19 +109,22 @@ def test_explicit_solvers_ask_for_locking_by_mass_and_then_agree(full, motion):
     def added(**options):
         mbs = exu.SystemContainer().AddSystem()
         body = er.add_rotor(mbs, pair if full else pair.reduce(6), **motion, **options)
+        torque = body.add_drive_torque_sensor()
         mbs.Assemble()
-        return mbs, body
+        return mbs, body, torque
 
-    mbs, body = added()
+    mbs, body, torque = added()
     with pytest.raises(Exception, match=r"rotor 'rotor'.*locking='mass'"):
         mbs.SolveDynamic(settings(20, 1e-3), solverType=SOLVERS.RK44)
     assert mbs.SolveStatic(settings(20, 1e-3))
-    mbs, body = added()
+    mbs, body, torque = added()
     mbs.SolveDynamic(settings(400, 4e-3))
-    other, explicit = added(locking="mass")
+    other, explicit, _ = added(locking="mass")
     other.SolveDynamic(settings(400, 4e-3), solverType=SOLVERS.RK44)
     expected = body.coordinates()[0]
     assert abs(explicit.coordinates()[0] - expected).max() < 2e-3 * abs(expected).max()
+    found, expected = (each.GetSensorValues(torque) for each in (other, mbs))
+    assert found == pytest.approx(expected, rel=2e-3, abs=1e-6)
 
 
 # ------------------------------------------------------------------ static solutions

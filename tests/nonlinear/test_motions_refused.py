@@ -8,20 +8,20 @@ import pytest
 import scipy.linalg as la
 from test_inter_shaft import PADS
 from test_limit_cycles import DOWN, films
-from test_magnetic_bearing import DELAYED
-from test_magnetic_bearing import bearing as magnetic
 from test_periodic_response import MASS, Cubic, point
-from test_rolling_bearings import BALLS
+from test_rolling_bearings import UPRIGHT
+from test_rolling_bearings import bearing as rolling
+from test_rolling_bearings import response as on_balls
 from test_scenes_and_trains import DAMPERS, ENDS, THRUST, UNBALANCE, block, rings
 from test_structural_damping import ETA, K, one_mass
 from test_structural_damping import MASS as DISC
-from train_models import bar
 
 import exudyn_rotor as er
 from exudyn_rotor.nonlinear import continuation
 from exudyn_rotor.nonlinear.rest import Unloaded
 
 STILL = er.PrescribedMotion(*[lambda t: [0.0, 0.0, 0.0]] * 3)
+PADDED = er.TiltingPadBearing(interface="seat", film=PADS)
 STOP = er.ClearanceStop(interface="seat", radius=0.05, clearance=2e-4, stiffness=5e6)
 DUFFING, SMALL = Cubic(interface="seat"), er.Unbalance("seat", 1e-6)
 
@@ -33,11 +33,6 @@ def on_point(*values, load=SMALL, **options):
 def on_dampers(**options):
     given = {"supports": [*DAMPERS, THRUST], "gravity": DOWN, "follow": False}
     return er.periodic_response(rings(), [200.0], UNBALANCE, **given, **options)
-
-
-def uneven():
-    supports = [Cubic(interface="a"), er.Support("b", np.diag([1e5, 2e5]))]
-    return er.periodic_response(bar(), [9.0], er.Unbalance("a", 1.0), supports=supports)
 
 
 def scene(*supports, based=(), sags=True, down=(DOWN,), **options):
@@ -62,13 +57,12 @@ def in_scene(*supports, load=UNBALANCE, given=None, **changes):
     return er.periodic_response(mbs, [200.0], load, body=body, follow=False, **(given or {}))
 
 
-def start(*supports, changes=None, **options):
-    """Return the state of a scene in the motion on dampers."""
-    return replace(on_dampers(), **(changes or {})).state(0, scene(*supports, **options)[1])
+def start(changes, **options):
+    return replace(on_dampers(), **changes).state(0, scene(**options)[1])
 
 
-def cycles(supports=None, down=DOWN):
-    onset = er.stability_threshold(rings(), 50.0, 3000.0, supports=films())
+def cycles(supports=None, down=DOWN, highest=3000.0):
+    onset = er.stability_threshold(rings(), 50.0, highest, supports=films())
     return er.limit_cycles(rings(), [80.0], onset, supports=supports or films(), gravity=down)
 
 
@@ -82,27 +76,22 @@ def cycles(supports=None, down=DOWN):
         (lambda: on_point(300.0, 400.0, supports=STOP), "at 300 and 400, .*give other values"),
         (lambda: on_point(9.0, load=er.Unbalance("top", 1.0)), "at: 'top': no such interface"),
         (lambda: on_point(9.0, body=3), "body: is only for an exudyn.MainSystem"),
-        (
-            lambda: on_point(9.0, supports=er.TiltingPadBearing(interface="seat", film=PADS)),
-            r"'seat' has .*pads have motions of their own; give .*linearised\(\)",
-        ),
-        (lambda: uneven(), "repeat every revolution; give a finer mesh"),
+        (lambda: on_point(9.0, supports=PADDED), r"motions of their own; give .*linearised\(\)"),
+        (lambda: on_balls(rolling("left"), [9.0], rotor=rings()), "tilting: all stand at 'left'"),
+        (lambda: on_balls(rolling(), [9.0], gravity=UPRIGHT), "without a load no element carries"),
+        (lambda: on_balls(er.Support("seat", 1e6), [9.0]), "none has a nonlinear law"),
+        (lambda: on_balls([rolling(), rolling(count=9)], [9.0]), "give one kind as it is"),
+        (lambda: on_balls(rolling(), [-9.0, 9.0]), "-9 is negative"),
         (lambda: on_dampers().at(120.0), "nothing was computed at 120; the nearest is 200"),
         (lambda: on_dampers().phasor(spin=0.5), "needs a multiple of 1/1, got 0.5; .*revolutions="),
         (lambda: in_scene(given={"supports": DUFFING}), "a scene has its own; leave these out"),
         (lambda: in_scene(*DAMPERS, translation=STILL), "'0' follows a prescribed translation"),
         (lambda: in_scene(DAMPERS[0], based=DAMPERS[1:]), "'right' stands on something else"),
-        (
-            lambda: in_scene(*DAMPERS, down=(DOWN, [0, 0, 0]), load=()),
-            "different gravity; give all",
-        ),
-        (lambda: start(based=DAMPERS), "'0' has 6 .* and 6 of a foundation"),
-        (lambda: start(magnetic("left", DELAYED)), "controllers or pads, .*steady_state"),
-        (lambda: start(changes={"coordinates": None}), "coordinates that turn"),
-        (
-            lambda: cycles([er.RollingBearing(interface=end, **BALLS) for end in ENDS]),
-            "need a round rotor without rolling bearings",
-        ),
+        (lambda: in_scene(down=(DOWN, [0, 0, 0]), load=()), "different gravity; give all the same"),
+        (lambda: start({}, based=DAMPERS), "'0' has 6 .* and 6 of a foundation"),
+        (lambda: start({"coordinates": None}), "coordinates that turn"),
+        (lambda: cycles([rolling(end) for end in ENDS]), "a round rotor without rolling bearings"),
+        (lambda: cycles(highest=100.0), "onset: the rotor does not turn unstable"),
         (lambda: cycles(down=[0.0, -20.0, 0.0]), r"no whirl begins; are the supports the same\?"),
         (lambda: cycles(down=[0.0, -1e5, 0.0]), "onset: no whirl of small size"),
     ],
@@ -125,13 +114,6 @@ def test_supports_over_a_parameter_of_the_user():
     k = found.values + DUFFING.k3 * r**2 - MASS * 90.0**2 + 90j * DUFFING.c
     np.testing.assert_allclose(np.abs(k) * r, 1e-5 * 90.0**2, rtol=1e-6)
     np.testing.assert_allclose(np.linalg.norm(found.orbit(1), axis=1), r[1], rtol=1e-9)
-
-
-def test_a_mass_in_a_clearance_circles_on_its_edge():
-    """At rest nothing holds it; k_c (r − c) = m r Ω² − U Ω² where the unbalance points inwards."""
-    r = on_point(300.0, load=er.Unbalance("seat", 2e-3), supports=STOP).amplitudes()[0]
-    push = STOP.stiffness * (r - STOP.clearance) - MASS * 300.0**2 * r
-    assert abs(push) == pytest.approx(2e-3 * 300.0**2, rel=1e-6)
 
 
 def test_weight_bends_a_turning_shaft_with_structural_damping_sideways():
@@ -185,12 +167,3 @@ def test_a_value_without_coefficients_costs_no_other():
     with pytest.warns(UserWarning, match="no steady motion was found at, .* 120"):
         found = on_point(100.0, 120.0, 150.0, supports=[DUFFING, spring])
     assert found.at(150.0).size
-
-
-def test_harmonics_that_are_not_found_are_told(monkeypatch):
-    """The motion with the first harmonics stays."""
-    monkeypatch.setattr(continuation, "_MOST_ITERATIONS", 1)
-    with pytest.warns(UserWarning, match="at 200 harmonics that are left out have"):
-        found = on_dampers(tolerance=1e-12)
-    monkeypatch.undo()
-    np.testing.assert_allclose(found.amplitudes(), on_dampers().amplitudes(), rtol=1e-3)

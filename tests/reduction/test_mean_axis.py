@@ -9,10 +9,7 @@ import scipy.linalg
 from exudyn.FEM import FEMinterface, HCBstaticModeSelection
 from models import disc_fem
 
-from exudyn_rotor import (
-    SolidRotor,
-    use_mean_axis_modes,
-)
+from exudyn_rotor import SolidRotor, use_mean_axis_modes
 from exudyn_rotor.reduction.component import rigid_columns
 
 OWN, TWIN = "CreateFFRFReducedOrderObject", "CreateFixedAxisFFRFReducedOrderObject"

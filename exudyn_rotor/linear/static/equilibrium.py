@@ -25,7 +25,7 @@ from exudyn_rotor.bearings.resting import (
 from exudyn_rotor.linear.equations import UnconvergedError, others
 from exudyn_rotor.linear.solve.forced import static_motion
 
-_MOST, _CONVERGED = 100, 1e-10  # of Newton's steps; of the largest force, of each place
+_MOST, _CONVERGED = 100, 1e-8  # of Newton's steps; of the largest force, of each place
 _LEAST = 1e-3  # of the largest place: a smaller one, as in a rigid bearing, is rounding of it
 _SLOW = 15  # steps from which they are halved: contacts that open and close by turns
 _RIGID = 1e-7  # compliance of a rigid bearing, over that of the rotor's highest mode
