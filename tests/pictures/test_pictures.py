@@ -51,6 +51,22 @@ def test_modes_are_those_of_the_campbell_diagram():
     assert "backward" in modes().table()
 
 
+@pytest.mark.parametrize("index", range(6))
+def test_a_drawn_mode_names_its_sense_and_covers_no_label(index):
+    ax = modes().plot(index)
+    ax.figure.canvas.draw()
+    sense = modes().labels[index].split(", ")[1]
+    wanted = sense if sense in ("forward", "backward") else "straight"
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == [wanted, "centre line"]
+    legend, whole = ax.get_legend().get_window_extent(), ax.figure.bbox
+    for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
+        box = axis.label.get_window_extent()
+        assert whole.x0 <= box.x0 and box.x1 <= whole.x1 and whole.y0 <= box.y0
+        ticks = [text.get_window_extent() for text in axis.get_ticklabels()]
+        assert not any(legend.overlaps(each) for each in [box, *ticks])
+    pyplot.close(ax.figure)
+
+
 @pytest.mark.parametrize("supports", [EQUAL, UNEQUAL])
 def test_orbits_are_those_of_the_response(supports):
     """Of the places that the unbalance response looks at, forward and backward, any supports."""
