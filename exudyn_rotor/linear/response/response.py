@@ -83,10 +83,6 @@ class Response(AtPlaces, ModelResult):
         """What the response was computed over, shape (s,) [rad/s]."""
         return getattr(self, self._over)
 
-    def rates(self, order: int) -> np.ndarray:
-        """Return the angular frequencies of a harmonic, shape (s,) [rad/s]."""
-        raise NotImplementedError
-
     @property
     def _rounding(self) -> np.ndarray:
         """Amplitudes up to which a displacement is rounding, (s,) [m]."""
