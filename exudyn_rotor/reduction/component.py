@@ -123,9 +123,13 @@ def free_modes(rotor: FiniteElementRotor, count: int) -> ModeBasis:
 
 
 def lowest_with_pairs(
-    stiffness: sp.csr_array, mass: sp.csr_array, inverse: eigen.Inverse, count: int
+    stiffness: sp.csr_array,
+    mass: sp.csr_array,
+    inverse: eigen.Inverse,
+    count: int,
+    warns: bool = True,
 ) -> eigen.Modes:
-    """Return the `count` lowest modes; with a warning where the next one is the last one's pair.
+    """Return the `count` lowest modes; it `warns` where the next one is the last one's pair.
 
     A round rotor bends in all planes alike; an uneven mesh splits the two frequencies by little.
     With one mode of a pair it is an asymmetric shaft.
@@ -137,12 +141,13 @@ def lowest_with_pairs(
     values, modes = eigen.lowest_modes(stiffness, mass, inverse, min(count + 1, available))
     frequencies = np.sqrt(np.maximum(values, 0.0))
     near = np.diff(frequencies) <= _APART * frequencies[1:]
-    if count < len(values) and near[count - 1] and not (count > 1 and near[count - 2]):
+    if warns and count < len(values) and near[count - 1] and not (count > 1 and near[count - 2]):
         first, second = frequencies[count - 1 : count + 1] / (2.0 * np.pi)
         warnings.warn(
-            f"count: mode {count} ({first:.4g} Hz) is one of a pair in two planes, and mode "
+            f"mode {count} ({first:.4g} Hz) is one of a pair in two planes, and mode "
             f"{count + 1} ({second:.4g} Hz) is left out: the rotor bends as an asymmetric shaft "
-            f"does, or in one plane alone; ask for {count + 1} modes",
+            f"does, or in one plane alone; ask for {count + 1} modes, of a SolidRotor by "
+            f"rotor.reduce({count + 1})",
             UserWarning,
             stacklevel=user_level(),
         )
