@@ -176,8 +176,8 @@ def sensitivity(
     >>> bearings = [MagneticBearing(interface=name, **parts) for name in ("left", "right")]
     >>> print(sensitivity(rotor, np.geomspace(10.0, 5e3, 50), supports=bearings).table())
     axis      peak |S|  peak [dB]  at [Hz]  zone
-    left, 1    1.66174    4.41125  153.016  A
-    left, 2    1.66174    4.41125  153.016  A
+    left, 1    1.66895    4.44887  160.631  A
+    left, 2    1.66895    4.44887  160.631  A
     right, 1   1.66174    4.41125  153.016  A
     right, 2   1.66174    4.41125  153.016  A
     """
