@@ -12,7 +12,7 @@ import csv
 import io
 import sys
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import fields
 from os import PathLike
 from typing import Any, TypeVar
 
@@ -40,11 +40,8 @@ def storable(cls: Class) -> Class:
     Raises
     ------
     TypeError
-        If the class is no dataclass of kind :class:`Result`, has a field of another type, or
-        another class of that name is registered.
+        If the class has a field of another type, or another class of that name is registered.
     """
-    if not is_dataclass(cls) or not issubclass(cls, Result):
-        raise TypeError(f"{cls.__name__}: only a dataclass with the base Result can be stored")
     for name, hint in field_types(cls).items():
         if hint not in FIELD_CHECKS:
             raise TypeError(f"{cls.__name__}.{name}: a {hint} cannot be stored")

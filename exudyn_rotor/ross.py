@@ -118,13 +118,12 @@ def _diameter(rotor: Any, node: int) -> float:
 
 def _on_a_band(add: Callable[..., SolidRotor], diameter: float) -> SolidRotor:
     """Return what `add(width=…)` gives on the narrowest band that has nodes enough."""
-    for share in _WIDTHS[:-1]:
+    for share in _WIDTHS:
         try:
             return add(width=share * diameter)
         except ValueError as error:
-            if not str(error).startswith("width:"):
+            if share == _WIDTHS[-1] or not str(error).startswith("width:"):
                 raise
-    return add(width=_WIDTHS[-1] * diameter)
 
 
 def _shaft(elements: list[Any], places: dict[int, float], element_size: float | None) -> SolidRotor:

@@ -29,7 +29,9 @@ def test_tables_tapers_layers_and_discs_without_inertia():
     given.disk_elements = [SimpleNamespace(n=3, m=2.0, Ip=0.0, Id=0.0)]
     table = {"kxx": [1e6, 3e6], "kyy": 2e6, "kxy": 1e5, "kyx": -1e5, "kzz": 5e5, "mxx": 3.0}
     given.bearing_elements[0] = bearing(0, frequency=[0.0, 100.0], **table)
+    given.bearing_elements[1] = bearing(6, kxx=1e6, mxx=4.0)
     rotor, supports = from_ross(given)
+    assert supports[1].mass == 4.0
     cone = np.pi / 12 * 0.25 * (0.04**2 + 0.04 * 0.05 + 0.05**2)
     steel = 7810.0 * (np.pi / 4 * 0.05**2 * 1.25 + cone)
     sleeve = 2700.0 * np.pi / 4 * (0.07**2 - 0.05**2) * 0.25
@@ -55,5 +57,13 @@ def test_what_has_no_counterpart_is_refused_or_told():
         from_ross(coupled)
     damped = example()
     damped.shaft_elements[0].beta = 1e-5
-    with pytest.warns(UserWarning, match="beta of shaft elements are left out"):
+    damped.disk_elements[0].m = -1.0
+    with (
+        pytest.warns(UserWarning, match="beta of shaft elements are left out"),
+        pytest.raises(ValueError, match="mass: needs a finite number"),
+    ):
         from_ross(damped)
+    thin = example(2)
+    thin.shaft_elements[1].idl = thin.shaft_elements[1].idr = 0.05 * (1.0 - 1e-5)
+    with pytest.raises(ValueError, match="rotor: Netgen cannot mesh its sections"):
+        from_ross(thin, element_size=0.05)

@@ -16,6 +16,7 @@ from exudyn_rotor.advice.recorded_run import RecordedRun
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.prestress.given_loads import HeldRotor
 from exudyn_rotor.prestress.static_solution import stress_stiffness
+from exudyn_rotor.solid.places import OF_RADIUS
 from exudyn_rotor.solvers.inertia_relief import inertia_relief
 from exudyn_rotor.theory.rotating_axes import axes_of
 
@@ -41,14 +42,17 @@ def axial_share(run: RecordedRun) -> float | None:
     forces = (e @ run.loads[order, :3]).T
     some = np.linspace(0, len(forces) - 1, _LOOKED_AT).astype(int)
     tensions = -np.cumsum(forces[np.unique(some)], axis=1)[:, :-1]
-    return max(_share(run, _stiffness(places[order], motions, each)) for each in tensions)
+    near = OF_RADIUS * max(one.radius for one in seats)
+    return max(_share(run, _stiffness(places[order], motions, each, near)) for each in tensions)
 
 
-def _stiffness(places: np.ndarray, motions: list[np.ndarray], tension: np.ndarray) -> np.ndarray:
-    """Return the stiffness (m, m) of tensions (p − 1,) between interfaces."""
+def _stiffness(
+    places: np.ndarray, motions: list[np.ndarray], tension: np.ndarray, near: float
+) -> np.ndarray:
+    """Return the stiffness (m, m) of tensions (p − 1,) between interfaces that are not `near`."""
     K = np.zeros((motions[0].shape[1],) * 2)
     for left, right, L, N in zip(motions[:-1], motions[1:], np.diff(places), tension, strict=True):
-        if L <= 0.0:
+        if near >= L:
             continue
         arm = np.array([1.0, L, 1.0, L])
         for across, about, sign in ((0, 4, 1.0), (1, 3, -1.0)):

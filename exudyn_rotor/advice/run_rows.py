@@ -30,6 +30,7 @@ _STEADY = 1e-9  # relative change of a constant speed
 _RESOLVED = 0.5  # ωh up to which the error of a step is that of its series
 _TOLD = 1e-6  # growth per radian that is more than rounding
 _RINGING = 1.5  # energy about the static stretch over that of a start without it, with a margin
+_ROUNDING = 1e-15  # of the rotor's size: motion of which nothing is known
 _STILL = 1e-5  # of the rotor's size: motion that counts as none
 
 Measure = Callable[[RecordedRun], float | None]
@@ -107,7 +108,7 @@ def _step(run: RecordedRun) -> float:
     moved, rate, acceleration = (
         _spread(run, rows) for rows in (record.q, record.q_t, record.q_tt[1:])
     )
-    if not moved:
+    if moved <= _ROUNDING * run.size * np.sqrt(run.invariants.mass):
         return 0.0
     worst = max((rate / moved) ** 2, acceleration / moved, _slow_in_space(run))
     return PERIOD_ERROR * step**2 * worst

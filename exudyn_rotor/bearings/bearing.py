@@ -189,14 +189,7 @@ class Bearing(LoadedBearing):
 
         By central differences in this class.
         """
-        motion, size = np.array([x, y, vx, vy]), max(hypot(x, y), _STILL)
-        steps = _DIFFERENCE * np.repeat([size, max(size * abs(speed), hypot(vx, vy), size)], 2)
-        ends = [
-            [self.law(*(motion + move), angle, speed) for move in (-each, each)]
-            for each in np.diag(steps)
-        ]
-        found = np.array([np.subtract(*pair) for pair in ends]).T / (2.0 * steps)
-        return found[:, :2], found[:, 2:]
+        return differences(self.law, x, y, vx, vy, angle, speed)
 
     def law_along(self, motion: np.ndarray, angles: np.ndarray, speed: float) -> Pair:
         """Return forces and their derivatives along motions (t, 4).
@@ -302,11 +295,12 @@ class Linearised:
         Without an equilibrium, at rest above all, that at the next of some other speeds: some ask
         for the directions that a bearing holds. What asks for its size calls `check_range` before.
         """
+        refused: Exception | None = None
         for tried in (speed, *self.bearing._tried):
             try:
                 return self._value(tried)
             except _FAILED as error:
-                refused = error
+                refused = refused or error  # that of the speed that was asked for
         raise refused
 
     def _value(self, speed: float) -> np.ndarray:
@@ -323,6 +317,25 @@ class Linearised:
             reason = "at 0 rad/s its film carries nothing" if speed == 0.0 else str(error)
             reason = reason if name in reason else f"{name}: {reason}"
             raise NoEquilibriumError(reason) from error
+
+
+def differences(
+    law: Callable[..., tuple[float, ...]],
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    angle: float,
+    speed: float,
+) -> Pair:
+    """Return less the derivatives of a law's n results by place and by velocity, each (n, 2)."""
+    motion, size = np.array([x, y, vx, vy]), max(hypot(x, y), _STILL)
+    steps = _DIFFERENCE * np.repeat([size, max(size * abs(speed), hypot(vx, vy), size)], 2)
+    ends = [
+        [law(*(motion + move), angle, speed) for move in (-each, each)] for each in np.diag(steps)
+    ]
+    found = np.array([np.subtract(*pair) for pair in ends]).T / (2.0 * steps)
+    return found[:, :2], found[:, 2:]
 
 
 def bearing_of(support: object) -> Bearing | None:

@@ -211,9 +211,6 @@ class RollingBearing(Bearing):
             )
         return place
 
-    def _rest(self, speed: float, load: np.ndarray) -> np.ndarray:
-        return self.equilibrium(speed, load)
-
     def _matrices(self, speed: float, load: np.ndarray) -> Pair:
         """Return the mean stiffness over an element's passage, and the damping."""
         return _mean_stiffness(self, *load.tolist()).copy(), self.damping * np.eye(2)

@@ -34,6 +34,7 @@ def motions_over(
     method: str = "auto",
     tolerance: float = 1e-6,
     least_stable: bool = False,
+    warns: bool = True,
     progress: bool = False,
     label: str = "",
 ) -> Motions:
@@ -41,22 +42,37 @@ def motions_over(
 
     Where a spin that nothing holds is `held`, it follows θ = Ωt and is no motion. The `method`,
     `tolerance` and `least_stable` are those of :func:`motions_of`; the bar of progress has the
-    `label`.
+    `label`. Where not all motions are shown, it `warns` of none, and :func:`warn_of` does.
     """
     with tqdm(total=len(speeds), desc=label or None, disable=not progress) as bar:
         given = {"held": held, "least_stable": least_stable, "told": bar.update}
-        found = motions_in(model, model.at_all(speeds), method, tolerance, **given)
-    if found.lost:
-        speeds = ", ".join(f"{speed:.4g}" for speed in found.lost[:5])
+        found = motions_in(model, model.at_all(speeds), method, tolerance, warns=False, **given)
+    if warns:
+        warn_of(model, found, found)
+    return found
+
+
+def warn_of(model: LinearModel, found: Motions, shown: Motions) -> None:
+    """Warn of motions that were not `found` or are beyond the tables, of those that are `shown`.
+
+    One that was `found` at no speed counts as shown up to the highest frequency of these.
+    """
+    never = np.any(np.all(np.isnan(found.values), axis=0))
+    highest = np.nanmax(np.abs(shown.values.imag), initial=0.0) if never else -1.0
+    missing = shown.speeds[np.isnan(shown.values).any(axis=1)]
+    lost = [speed for speed, least in found.lost if least <= highest or speed in missing]
+    if lost:
+        speeds = ", ".join(f"{speed:.4g}" for speed in lost[:5])
         warnings.warn(
             "the harmonics of an uneven rotor on uneven supports do not converge for all motions "
-            f"at {speeds}{' …' * (len(found.lost) > 5)} rad/s, which are NaN there: at a speed "
+            f"at {speeds}{' …' * (len(lost) > 5)} rad/s, which are NaN there: at a speed "
             "that is small beside the difference of the frequencies in the rotor's two planes "
             "they are too many",
             UserWarning,
             stacklevel=user_level(),
         )
-    return found
+    if model.over_frequency:
+        model.warn_beyond(met(model, shown))
 
 
 def motions_in(
@@ -78,12 +94,13 @@ def motions_in(
         neutral = neutral[:, : neutral.shape[1] - model.free_spins.shape[1]]
     if model.over_frequency:
         found = own_motions(model, stack)
-        if warns:
-            model.warn_beyond(met(model, found))
     else:
         stack = stack if basis is None else stack.projected(basis)
         found = motions_of(stack, method, tolerance, **given)
-    return found if basis is None else found.in_all(basis, neutral)
+    found = found if basis is None else found.in_all(basis, neutral)
+    if warns and model.over_frequency:
+        model.warn_beyond(met(model, found))
+    return found
 
 
 def forced_over(

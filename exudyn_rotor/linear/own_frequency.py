@@ -42,9 +42,7 @@ def own_motions(model: LinearModel, stack: PeriodicSystem) -> Motions:
 
 def met(model: LinearModel, found: Motions) -> np.ndarray:
     """Return the frequencies > 0 [rad/s] of motions that move a support with tables over it."""
-    basis = np.eye(model.size) if model.moving_basis is None else model.moving_basis
-    assembly, used = model.assembly(1.0), []
-    shapes = np.einsum("ck,shkm->scm", basis, found.vectors)
+    assembly, used, shapes = model.assembly(1.0), [], found.main
     for element, U in zip(assembly.elements, assembly.motions, strict=True):
         if element.table_frequencies.size:
             acted = np.any(element.matrices(float(found.speeds[found.known[0]]))[0], axis=0)

@@ -158,7 +158,7 @@ def add_rotor(
     The static solver keeps the initial velocities, so the rotor spins in it, its angle stands
     still. With a constant spin and translation ``'none'`` its solution is the steady state in the
     rotating frame, where nothing that stands still in space acts across the axis: no gravity there,
-    and supports that are alike in all directions; :func:`exudyn_rotor.check_run` says so. Else
+    and supports that are alike in all directions. Else the solution is wrong, without a word, and
     :func:`exudyn_rotor.steady_state` gives the motion instead. For θ(t) a static solution has no
     meaning but at its initial speed.
 

@@ -56,8 +56,6 @@ def constraint_rows(
     mbs: exudyn.MainSystem, solver: exudyn.MainSolverStatic, size: int
 ) -> np.ndarray:
     """Return the constraints' Jacobian by the `size` coordinates, shape (c, size)."""
-    if not solver.GetAEsize():
-        return np.zeros((0, size))
     # cleared by hand: Exudyn's own way evaluates forces, which this state may lie out of range of
     total = size + solver.GetAEsize()
     solver.SetSystemJacobian(np.zeros((total, total)))

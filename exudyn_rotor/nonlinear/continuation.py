@@ -123,10 +123,7 @@ class Family:
                 by = self._by_parameters(point, left)
             both = np.zeros((len(left) + 1, 2), dtype=complex)
             both[:-1, 0], both[-1, 1] = left, 1.0
-            try:
-                step, t = np.linalg.solve(np.vstack([np.hstack([J, by]), flat]), both).T
-            except np.linalg.LinAlgError:
-                break
+            step, t = np.linalg.solve(np.vstack([np.hstack([J, by]), flat]), both).T
             moved, parameters = self._parts(step, point)
             length = self._length(moved, parameters, point.c)
             if not np.isfinite(length) or (length > 2.0 * last and count > 2) or length > 10.0:
@@ -184,7 +181,7 @@ class Family:
             try:
                 sense = 1.0 if point.tangent is None else np.sign(point.tangent[1][-1])
                 point = self.at_value(self.widened(point, more), point.value, sense or 1.0)[0]
-            except UnconvergedError:
+            except FAILS:
                 return point
 
     def widened(self, point: Point, reach: tuple[int, int]) -> Point:
@@ -276,8 +273,6 @@ class Family:
         n = point.balance.orders[:, 1]
         size = np.linalg.norm(point.c, axis=1)
         g = int(np.gcd.reduce(n[size > _NEW * size.max()]))
-        if g < 2:
-            return None
         left, J = self._system(point)
         t = np.r_[point.tangent[0].conj().ravel() / self._scale(point.c), point.tangent[1]]
         matrix = np.vstack([np.hstack([J, self._by_parameters(point, left)]), t])
@@ -293,7 +288,7 @@ class Family:
             start = replace(point, c=point.c + step * phi, kind="computed")
             try:
                 return self.refined(self.corrected(start, row)[0]), g
-            except UnconvergedError:
+            except FAILS:
                 continue
         return None
 
@@ -341,6 +336,7 @@ class Family:
                 found = self.refined(self.at_value(near, value, np.sign(b - a))[0])
                 found = self.measure(replace(found, kind="value"))
             except FAILS:
+                self.lost.append(f"{value:g}")
                 continue
             yield found
 

@@ -143,10 +143,7 @@ def limit_cycles(
 
 def _hopf(problem: Problem, frequency: float, speed: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the mean place (1, d) and φ (d,) of (1) at a limit of stability."""
-    try:
-        mean = problem.at_rest(speed)
-    except UnconvergedError as error:
-        raise ValueError(f"onset: no equilibrium at {speed:g} rad/s ({error})") from error
+    mean = problem.at_rest(speed)
     balance = problem.balance(speed, (1, 0), whirl=frequency)
     J = balance.linearised(padded(mean, (0, 0), (1, 0)))[1]
     d = mean.size

@@ -155,7 +155,7 @@ class PeriodicResponse(AtPlaces):
         found = np.flatnonzero(near & wanted)
         if not found.size:
             known = np.unique(self.values[wanted])
-            nearest = known[np.argmin(np.abs(known - value))] if known.size else "none"
+            nearest = f"{known[np.argmin(np.abs(known - value))]:g}" if known.size else "none"
             raise ValueError(f"value: nothing was computed at {value:g}; the nearest is {nearest}")
         return found
 
@@ -178,7 +178,10 @@ class PeriodicResponse(AtPlaces):
         turns = checks.number(spin, "spin") * self.revolutions
         order = checks.count(passing, "passing"), round(turns)
         if abs(turns - order[1]) > _SAME:
-            raise ValueError(f"spin: needs a multiple of 1/{self.revolutions}, got {spin:g}")
+            raise ValueError(
+                f"spin: needs a multiple of 1/{self.revolutions}, got {spin:g}; revolutions=… of "
+                "periodic_response takes longer periods"
+            )
         column = self.motion[:, self._at(place), :, DIRECTIONS.index(direction)]
         return column[:, (self.orders == order).all(axis=1)].sum(axis=1)
 

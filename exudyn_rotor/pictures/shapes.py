@@ -13,7 +13,7 @@ from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, rounded
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.over import motions_over
+from exudyn_rotor.linear.over import motions_over, warn_of
 from exudyn_rotor.linear.response.loads import Unbalance, unbalance_load
 from exudyn_rotor.linear.solve.forced import forced_motions
 from exudyn_rotor.pictures.motion_shapes import MotionShapes
@@ -68,11 +68,12 @@ def mode_shapes(
     tolerance = checks.tolerance(tolerance)
     model = _with_mesh(target, supports, stiffening, axes)
     warn_of_omissions(model, what="mode_shapes finds modes")
-    motions = motions_over(model, [speed], tolerance=tolerance)
+    motions = motions_over(model, [speed], tolerance=tolerance, warns=False)
     named = Content.of(model).named(motions)
     lost = np.isnan(motions.values)
     named = named.columns(np.lexsort((rounded(named.inertial), lost))[:, : np.sum(~lost)])
     named = named.columns(np.arange(min(count, named.inertial.shape[1]))[None])
+    warn_of(model, motions, named.motions)
     values, vectors = named.motions.values[0], named.motions.vectors[0]
     vectors = np.where(values.imag < 0.0, vectors[::-1].conj(), vectors)
     by_order = dict(zip(motions.orders.tolist(), vectors, strict=True))

@@ -121,10 +121,11 @@ class HeldRotor:
         if np.any(np.abs(rigid.T @ total.ravel()) > _UNBALANCED * np.maximum(size, 1e-300)):
             e, force = rotor.axis.direction, total.sum(axis=0)
             moment = np.cross(rotor.nodes - rotor.axis.point, total).sum(axis=0)
+            across = (np.linalg.norm(each - e * (e @ each)) for each in (force, moment))
             raise ValueError(
                 f"loads: nothing takes up {e @ force:.4g} N along the axis, "
-                f"{np.linalg.norm(force - e * (e @ force)):.4g} N across it, and a torque of "
-                f"{e @ moment:.4g} N m; give the other loads, or supports=[Support(…)] that hold "
+                "{:.4g} N and {:.4g} N m across it, and a torque of ".format(*across)
+                + f"{e @ moment:.4g} N m; give the other loads, or supports=[Support(…)] that hold "
                 "it (a 3 × 3 stiffness acts along the axis, too)"
             )
 

@@ -140,8 +140,10 @@ def lowest_with_pairs(
         return np.zeros(0), np.zeros((mass.shape[0], 0))
     values, modes = eigen.lowest_modes(stiffness, mass, inverse, min(count + 1, available))
     frequencies = np.sqrt(np.maximum(values, 0.0))
-    near = np.diff(frequencies) <= _APART * frequencies[1:]
-    if warns and count < len(values) and near[count - 1] and not (count > 1 and near[count - 2]):
+    apart = np.diff(frequencies)
+    # where both neighbours of the last mode are near, its pair is the nearer one
+    nearer = count < len(values) and (count == 1 or apart[count - 1] < apart[count - 2])
+    if warns and nearer and apart[count - 1] <= _APART * frequencies[count]:
         first, second = frequencies[count - 1 : count + 1] / (2.0 * np.pi)
         warnings.warn(
             f"mode {count} ({first:.4g} Hz) is one of a pair in two planes, and mode "

@@ -156,8 +156,6 @@ class SparseCholesky:
 
 
 def _dense(matrix: sp.csr_array) -> Solve:
-    if matrix.shape[0] == 0:
-        return np.copy
     try:
         factor = la.cho_factor(matrix.toarray(), lower=True)
     except la.LinAlgError as error:

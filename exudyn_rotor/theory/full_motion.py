@@ -246,11 +246,9 @@ class FullMotion(Motion):
         """Return ``−factor_q ∂f/∂q − factor_v ∂f/∂q̇`` of :meth:`varying_forces`, for Newton.
 
         Without what is not sparse and small beside mass and stiffness in a time step: low-rank
-        stiffening, and how gravity turns.
+        stiffening, and how gravity turns. At constant speed the constant matrices have all of it.
         """
         matrix = sp.csr_array((self.size, self.size))
-        if self.formulation.is_constant_speed:
-            return matrix
         terms, sparse, now = self.spin_terms, self.sparse_terms, self.at(t, q, q_t)
         omega = now.omega
         stiffness, damping = sparse.stiffness(omega, now.omega_t), sparse.damping(omega)

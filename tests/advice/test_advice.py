@@ -1,26 +1,19 @@
 """Advice before and after a run, against responses, frequencies and runs computed otherwise."""
 
 import warnings
+from dataclasses import replace
 
 import exudyn as exu
 import numpy as np
 import pytest
 from models import centered_disc
+from point_rotors import random_rotor
 from run_scenes import scene
 
-from exudyn_rotor import (
-    AssumptionWarning,
-    HarmonicForce,
-    Support,
-    harmonic_response,
-    keep_modes,
-    propose,
-    recommended_settings,
-    unbalance_response,
-)
+import exudyn_rotor as er
 
 STIFFNESS, DAMPING = 2e7, 3e4
-SUPPORTS = [Support(name, STIFFNESS, damping=DAMPING) for name in ("left", "right")]
+SUPPORTS = [er.Support(name, STIFFNESS, damping=DAMPING) for name in ("left", "right")]
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +35,7 @@ def plain(solid):
 @pytest.fixture(autouse=True)
 def _quiet_where_not_asked():
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", AssumptionWarning)
+        warnings.simplefilter("ignore", er.AssumptionWarning)
         yield
 
 
@@ -59,22 +52,22 @@ def _difference(ours, theirs, rows=2):
 def test_proposed_modes_meet_the_accuracy(reduced, high, axial):
     """Unbalance and harmonic responses over the whole range, at points of their own."""
     along = np.diag([1.0, 1.0, axial])
-    supports = [Support(n, STIFFNESS * along, DAMPING * along) for n in ("left", "right")]
+    supports = [er.Support(n, STIFFNESS * along, DAMPING * along) for n in ("left", "right")]
     rows = 3 if axial else 2
     speeds, frequencies = np.linspace(20.0, high, 30), np.linspace(0.0, 2000.0, 41)
     given = {"supports": supports, "accuracy": None}
 
     def responses(rotor):
-        found = [unbalance_response(rotor, speeds, **given)]
+        found = [er.unbalance_response(rotor, speeds, **given)]
         for place, force in (("left", [1, 0]), ("right", [0, 1]), ("left", [1, -1j])):
-            load = [HarmonicForce(place, force)]
-            found.append(harmonic_response(rotor, frequencies, load, speed=high, **given))
+            load = [er.HarmonicForce(place, force)]
+            found.append(er.harmonic_response(rotor, frequencies, load, speed=high, **given))
         return found
 
     whole = responses(reduced)
     for accuracy in (1e-2, 1e-3):
         options = {"load_frequencies": [2000.0], "supports": supports, "accuracy": accuracy}
-        proposal = propose(reduced, speeds=(0.0, high), **options)
+        proposal = er.propose(reduced, speeds=(0.0, high), **options)
         assert proposal.count < proposal.total
         few = responses(proposal.truncated(reduced))
         errors = [_difference(*pair, rows) for pair in zip(few, whole, strict=True)]
@@ -93,7 +86,7 @@ def _steady_orbit(rotor, proposal, stiffness, finer=1):
     turn = 2 * np.pi / proposal.speeds[1]
     steps = int(np.ceil(turn / proposal.step))
     turns = int(np.ceil(1.0 / turn))
-    settings = recommended_settings(turns * turn, turn / (steps * finer), accuracy=1e-9)
+    settings = er.recommended_settings(turns * turn, turn / (steps * finer), accuracy=1e-9)
     settings.timeIntegration.verboseMode, settings.solution.file.write = 0, False
     settings.solution.sensors.writePeriod = turn / steps
     mbs.SolveDynamic(settings)
@@ -104,8 +97,8 @@ def _steady_orbit(rotor, proposal, stiffness, finer=1):
 def test_steady_orbit_at_the_proposed_step_meets_the_accuracy(plain, speed, accuracy):
     """Against steps a quarter as long, which err by a 16th; 400 rad/s is near a critical speed."""
     stiffness = [2e6, 4e6, 2e6]
-    supports = [Support(n, np.diag(stiffness), 500.0 * np.eye(3)) for n in ("left", "right")]
-    proposal = propose(plain, speeds=speed, supports=supports, accuracy=accuracy)
+    supports = [er.Support(n, np.diag(stiffness), 500.0 * np.eye(3)) for n in ("left", "right")]
+    proposal = er.propose(plain, speeds=speed, supports=supports, accuracy=accuracy)
     exact = _steady_orbit(plain, proposal, stiffness, finer=4)
     size = np.linalg.norm(exact, axis=1).max()
     error = np.linalg.norm(_steady_orbit(plain, proposal, stiffness) - exact, axis=1).max() / size
@@ -120,22 +113,24 @@ def test_steady_orbit_at_the_proposed_step_meets_the_accuracy(plain, speed, accu
     [
         (SUPPORTS, {"speeds": 100.0}, ("none", 100.0)),
         (SUPPORTS, {"speeds": (50.0, 100.0)}, ("in-plane", "free")),
-        ([Support("left", 1e7 * np.eye(3))], {"speeds": (0.0, 100.0)}, ("free", "free")),
-        ([Support("left", 1e7 * np.ones((3, 3)))], {"speeds": (0.0, 9.0)}, ("free", "free")),
+        ([er.Support("left", 1e7 * np.eye(3))], {"speeds": (0.0, 100.0)}, ("free", "free")),
+        ([er.Support("left", 1e7 * np.ones((3, 3)))], {"speeds": (0.0, 9.0)}, ("free", "free")),
         ([], {"speeds": (0.0, 100.0)}, ("in-plane", "free")),
     ],
 )
 def test_formulation_follows_from_what_is_known(plain, supports, options, expected):
-    proposal = propose(plain, supports=supports, **options)
+    proposal = er.propose(plain, supports=supports, **options)
     assert (proposal.translation, proposal.spin) == expected
 
 
 def test_proposal_prints_what_add_rotor_takes(reduced):
-    proposal = propose(reduced, speeds=300.0, supports=SUPPORTS)
+    proposal = er.propose(reduced, speeds=300.0, supports=SUPPORTS)
     assert set(proposal.options()) == {"translation", "spin", "stiffening"}
     text = str(proposal)
     assert f"{proposal.count} of 20" in text
     assert all(reason in text for reason in proposal.reasons)
+    with pytest.raises(ValueError, match=r"needs 0 ≤ low ≤ high .* got 2.0, 1.0"):
+        replace(proposal, speeds=(2.0, 1.0))
     with pytest.raises(ValueError, match="chose from 20"):
         proposal.truncated(proposal.truncated(reduced))
 
@@ -143,6 +138,10 @@ def test_proposal_prints_what_add_rotor_takes(reduced):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
+        (
+            {"speeds": 1.0, "reduced": random_rotor(1).reduce(0)},
+            "reduced: has no interfaces, .* rotor.with_interface",
+        ),
         ({"speeds": []}, "speeds: "),
         ({"speeds": -1.0}, "speeds: "),
         ({"speeds": np.nan}, "speeds: "),
@@ -151,22 +150,22 @@ def test_proposal_prints_what_add_rotor_takes(reduced):
         ({"speeds": 1.0, "load_frequencies": [np.inf]}, "load_frequencies: "),
         ({"speeds": 1.0, "load_frequencies": []}, "load_frequencies: "),
         ({"speeds": 1.0, "accuracy": 0.0}, "accuracy: "),
-        ({"speeds": 1.0, "supports": [Support("middle")]}, "no such interface"),
+        ({"speeds": 1.0, "supports": [er.Support("middle")]}, "no such interface"),
     ],
 )
 def test_bad_requests_are_refused(plain, options, message):
     with pytest.raises(ValueError, match=message):
-        propose(plain, **options)
+        er.propose(**{"reduced": plain} | options)
 
 
 @pytest.mark.parametrize("indices", [[20], [-1], [1, 1], [0.5], [[1]], [True], "ab"])
 def test_bad_indices_are_refused(reduced, indices):
     with pytest.raises((TypeError, ValueError), match="indices: "):
-        keep_modes(reduced, indices)
+        er.keep_modes(reduced, indices)
 
 
 def test_grounded_rotor_has_no_moving_frame(solid):
     held = solid.clamped(["left"]).reduce(5)
-    assert propose(held, speeds=100.0).translation == "none"
+    assert er.propose(held, speeds=100.0).translation == "none"
     with pytest.raises(ValueError, match="cannot be free"):
-        propose(held, speeds=(0.0, 100.0))
+        er.propose(held, speeds=(0.0, 100.0))

@@ -5,15 +5,7 @@ import numpy as np
 import pytest
 from point_rotors import ring_rotor
 
-from exudyn_rotor import (
-    StartState,
-    Support,
-    add_rotor,
-    add_supports,
-    check_run,
-    recommended_settings,
-    stability,
-)
+import exudyn_rotor as er
 from exudyn_rotor.advice.candidate import Candidate
 from exudyn_rotor.advice.request import Request
 from exudyn_rotor.advice.step_size import choose_step
@@ -25,16 +17,16 @@ FREQUENCY = np.sqrt(STIFFNESS / MASS)
 def run(rotor, support, step):
     """Return the growth over two beats of two whirls in the rotor frame [1/s], and its check."""
     mbs = exudyn.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor, spin=SPEED, translation="none")
-    add_supports(body, support)
+    body = er.add_rotor(mbs, rotor, spin=SPEED, translation="none")
+    er.add_supports(body, support)
     body.start_recording()
     sensor = body.add_interface_sensor("all", exudyn.OutputVariableType.Displacement)
     mbs.Assemble()
     start = np.zeros(len(mbs.systemData.GetODE2Coordinates()))
     moved = np.linalg.pinv(body.motion.invariants.S) @ [1e-4 * MASS, 0.0, 0.0]
     start[body.layout.unknowns[body.motion.modes]] = moved
-    body.start_from(StartState(start, 0.0 * start, 0.0, SPEED))
-    settings = recommended_settings(2.0 * BEAT, step, accuracy=1e-9)
+    body.start_from(er.StartState(start, 0.0 * start, 0.0, SPEED))
+    settings = er.recommended_settings(2.0 * BEAT, step, accuracy=1e-9)
     settings.timeIntegration.generalizedAlpha.spectralRadius = 0.9  # Exudyn's
     settings.timeIntegration.verboseMode = 0
     settings.solution.file.write = False
@@ -43,7 +35,7 @@ def run(rotor, support, step):
     squares = np.sum(mbs.GetSensorStoredData(sensor)[:, 1:3] ** 2, axis=1)
     first, second = np.array_split(squares, 2)
     growth = 0.5 * np.log(second.mean() / first.mean()) / BEAT
-    return growth, check_run(body, warn=False)["growth"]
+    return growth, er.check_run(body, warn=False)["growth"]
 
 
 def test_growth_of_close_whirls_is_right_at_the_proposed_step():
@@ -56,8 +48,8 @@ def test_growth_of_close_whirls_is_right_at_the_proposed_step():
     stiffness = STIFFNESS * np.array([[0.96, 0.02, 0.0], [-0.02, 1.04, 0.0], [0.0, 0.0, 25.0]])
     damping = np.diag([0.01 * STIFFNESS / FREQUENCY] * 2 + [50.0])
     tilting = {"tilt_stiffness": np.diag([9e3, 1.2e4, 1e5]), "tilt_damping": 3.0 * np.eye(3)}
-    support = Support("all", stiffness, damping, **tilting)
-    growth = stability(rotor, [SPEED], supports=support).growth[0]
+    support = er.Support("all", stiffness, damping, **tilting)
+    growth = er.stability(rotor, [SPEED], supports=support).growth[0]
     request = Request.of(SPEED, None, 0.1)
     step = choose_step(Candidate.of(rotor, support), request).size
     found, row = run(rotor, support, request.step)  # right for periods

@@ -3,12 +3,14 @@
 import warnings
 from functools import cache
 
+import exudyn as exu
 import numpy as np
 import pytest
 from models import STEEL, block_beam, disc_rotor
 from netgen.occ import Cylinder, OCCGeometry, Z
 from ngsolve import Mesh
 
+import exudyn_rotor as er
 from exudyn_rotor import SolidRotor, campbell, critical_speeds, stability
 from exudyn_rotor.theory.stiffening import estimated_error, stiffening
 from validation.stiffening import nonlinear
@@ -60,6 +62,19 @@ def test_a_blade_warns_and_a_stiff_shaft_does_not():
         campbell(stiff, [0.0, 800.0])
         chosen = campbell(thin, [0.0, 150.0], stiffening="tilt")
     assert chosen.stiffening == "tilt"
+
+
+def test_advice_before_and_after_a_run_has_the_estimate():
+    """At a speed whose centrifugal energy is nothing beside the elastic one."""
+    thin = without_elements(blade()).with_interface("tip", [0, 1, 2]).reduce(4)
+    with pytest.warns(er.AssumptionWarning, match="soften falsely: .* with prestress=True"):
+        er.propose(thin, speeds=150.0)
+    mbs = exu.SystemContainer().AddSystem()
+    held = {"translation": "none", "spin": 1.0}
+    body = er.add_rotor(mbs, thin, modal_coordinates=[1e-3, 0.0, 0.0, 0.0], **held)
+    mbs.Assemble()
+    found = er.check_run(body, warn=False)["stiffening"].value
+    assert found == pytest.approx(estimated_error(thin.invariants, 1.0), rel=1e-3)
 
 
 def test_level_is_full_where_there_are_elements_and_results_name_it():

@@ -125,16 +125,3 @@ def test_a_run_at_rest_starts_in_the_equilibrium_and_stays(clearance, options, a
     settings.solution.file.write = False
     mbs.SolveDynamic(settings)
     np.testing.assert_allclose(place(), expected, atol=1e-6 * np.abs(expected).max())
-
-
-def test_refused_input():
-    for changes, match in (
-        ({"clearance": -0.007}, "clearance: needs a finite number .m. > -0.006"),
-        ({"count": 2}, "count: needs"),
-        ({"element_radius": 0.02}, "8 elements of 0.02 m do not fit"),
-        ({"elements": "needles"}, "elements: 'needles' is unknown"),
-    ):
-        with pytest.raises(ValueError, match=match):
-            bearing(**changes)
-    with pytest.raises(ValueError, match="without one no element carries"):
-        bearing().equilibrium(1.0, [0.0, 0.0])

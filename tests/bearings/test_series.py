@@ -153,21 +153,6 @@ def test_at_the_limit_of_stability_one_film_whirls_with_half_the_speed(clearance
     assert whirl == pytest.approx(expected, rel=0.1)
 
 
-BAD = {
-    "at 'right'": {"inner": Support("right", 1.0)},
-    "stands still": {"outer": Support("left", damping=1.0, frame="rotor")},
-    "across the axis alone": {"outer": Support("left", np.eye(3))},
-    "mass": {"mass": 0.0},
-}
-
-
-@pytest.mark.parametrize("message", BAD)
-def test_parts_that_do_not_fit_are_refused(message):
-    good = {"inner": Support("left", 1.0), "outer": Support("left", 1.0), "mass": 1.0}
-    with pytest.raises(ValueError, match=message):
-        SeriesSupport(interface="left", **good | BAD[message])
-
-
 def test_scenes_ask_for_the_ring_as_a_body():
     body = add_rotor(exu.SystemContainer().AddSystem(), rotor().reduce(0), spin=50.0)
     with pytest.raises(ValueError, match="has a ring, which is a body"):

@@ -12,26 +12,7 @@ from models import STEEL, block_beam, disc_rotor
 from point_rotors import ring_rotor
 
 import exudyn_rotor
-from exudyn_rotor import (
-    AnnularSeal,
-    AssumptionWarning,
-    ClearanceStop,
-    ConnectionWarning,
-    Formulation,
-    RollingBearing,
-    SolidRotor,
-    StressField,
-    Support,
-    add_rotor,
-    add_supports,
-    check_run,
-    periodic_response,
-    propose,
-    recommended_settings,
-    select_modes,
-    steady_state,
-    stress_history,
-)
+import exudyn_rotor as er
 
 LAMINAR = {
     "radius": 0.1, "length": 0.05, "clearance": 3e-4, "pressure_drop": 1.2e6, "density": 1000.0,
@@ -42,25 +23,25 @@ PACKAGE = Path(exudyn_rotor.__file__).parent
 
 @pytest.fixture(scope="module")
 def beam():
-    return SolidRotor.from_ngsolve(block_beam(), STEEL, "z", order=2)
+    return er.SolidRotor.from_ngsolve(block_beam(), STEEL, "z", order=2)
 
 
 def small_rotor_in_millimetres(beam):
     """A shaft of 6 mm × 30 mm, which would be of 6.7e6 kg."""
     corners = np.array([[x, y, z] for x in (-3.0, 3.0) for y in (-3.0, 3.0) for z in (0.0, 30.0)])
     mass = 7850.0 * np.pi * 3.0**2 * 30.0 / 8.0
-    SolidRotor.from_matrices(mass * np.eye(24), np.zeros((24, 24)), corners, "z")
+    er.SolidRotor.from_matrices(mass * np.eye(24), np.zeros((24, 24)), corners, "z")
 
 
 def mass_on_balls(speed, tolerance=1e-2, **bearing):
-    mass = SolidRotor.from_matrices(20.0 * np.eye(3), np.zeros((3, 3)), [[0.0, 0.0, 0.0]], "z")
-    balls = RollingBearing(
+    mass = er.SolidRotor.from_matrices(20.0 * np.eye(3), np.zeros((3, 3)), [[0.0, 0.0, 0.0]], "z")
+    balls = er.RollingBearing(
         interface="seat", count=8, pitch_radius=0.0326, element_radius=0.006, stiffness=7e9,
         **bearing,
     )  # fmt: skip
     given = {"supports": balls, "gravity": [0.0, -9.81, 0.0], "tolerance": tolerance}
     rotor = mass.with_interface("seat", [0]).reduce(0)
-    periodic_response(rotor, [speed], follow=False, **given)
+    er.periodic_response(rotor, [speed], follow=False, **given)
 
 
 def unstable_motion_on_rolling_bearings(_):
@@ -72,47 +53,47 @@ def ring():
 
 
 def proposal_beyond_the_formulation(_):
-    propose(disc_rotor().reduce(2), speeds=1e4)
+    er.propose(disc_rotor().reduce(2), speeds=1e4)
 
 
 def run_beyond_its_assumptions(beam):
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, ring().reduce(0), spin=10.0, modal_coordinates=[0.1, 0.0])
+    body = er.add_rotor(mbs, ring().reduce(0), spin=10.0, modal_coordinates=[0.1, 0.0])
     mbs.Assemble()
-    check_run(body)
+    er.check_run(body)
 
 
 def native_stress_of_a_prestressed_rotor(beam):
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, beam.reduce(1, prestress=True, stress=True), spin=10.0)
+    body = er.add_rotor(mbs, beam.reduce(1, prestress=True, stress=True), spin=10.0)
     body.add_node_sensor(0, exu.OutputVariableType.StressLocal)
 
 
 def stress_at_speed_without_prestress(beam):
     reduced = beam.reduce(1, stress=True, prestress=False)
-    field = StressField.of(reduced, select_modes(reduced, Formulation("none", 10.0)))
-    stress_history(field, [0.0], np.zeros((1, field.modes.shape[2])), 10.0)
+    field = er.StressField.of(reduced, er.select_modes(reduced, er.Formulation("none", 10.0)))
+    er.stress_history(field, [0.0], np.zeros((1, field.modes.shape[2])), 10.0)
 
 
 def scene_of_a_full_lossy_rotor(_):
     rotor = ring_rotor(0.1, 0.1, 2.0).with_damping(loss=0.01)
-    add_rotor(exu.SystemContainer().AddSystem(), rotor, spin=4.0)
+    er.add_rotor(exu.SystemContainer().AddSystem(), rotor, spin=4.0)
 
 
 def steady_motion_on_a_stop_that_opens(_):
     rotor = ring_rotor(0.1, 0.1, 20.0).add_point_mass([0.1, 0.0, -0.1], 0.01)
     rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor, spin=300.0, translation="none", gravity=[0.0, -9.81, 0.0])
-    stop = ClearanceStop(interface="left", radius=0.05, clearance=1e-5, stiffness=3e7)
-    add_supports(body, [*(Support(name, 1e6, 3e3) for name in ("left", "right")), stop])
+    body = er.add_rotor(mbs, rotor, spin=300.0, translation="none", gravity=[0.0, -9.81, 0.0])
+    stop = er.ClearanceStop(interface="left", radius=0.05, clearance=1e-5, stiffness=3e7)
+    er.add_supports(body, [*(er.Support(name, 1e6, 3e3) for name in ("left", "right")), stop])
     mbs.Assemble()
-    steady_state(body)
+    er.steady_state(body)
 
 
 def torque_on_a_tilt_of_the_node(beam, source=None):
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, source or ring_rotor(0.1, 0.1, 2.0).reduce(0))
+    body = er.add_rotor(mbs, source or ring_rotor(0.1, 0.1, 2.0).reduce(0))
     tilt = MarkerNodeCoordinate(nodeNumber=body.nodes["rigid"], coordinate=3)
     mbs.AddLoad(LoadCoordinate(markerNumber=mbs.AddMarker(tilt), load=1.0))
     mbs.Assemble()
@@ -128,9 +109,9 @@ def asked_for_connections(beam, source=None):
 
 def run_of_a_full_body_with_a_dense_solver(_):
     mbs = exu.SystemContainer().AddSystem()
-    add_rotor(mbs, disc_rotor(1), spin=1.0, translation="none")
+    er.add_rotor(mbs, disc_rotor(1), spin=1.0, translation="none")
     mbs.Assemble()
-    settings = recommended_settings(1e-4, 1e-4)
+    settings = er.recommended_settings(1e-4, 1e-4)
     settings.timeIntegration.verboseMode = 0
     mbs.SolveDynamic(settings)
 
@@ -142,13 +123,13 @@ def full_body_asked_for_connections(beam):
 def curved_elements(_):
     mesh = block_beam(0.1)
     mesh.Curve(2)
-    SolidRotor.from_ngsolve(mesh, STEEL, "z")
+    er.SolidRotor.from_ngsolve(mesh, STEEL, "z")
 
 
 # place of every ``warnings.warn`` (file:function): what makes it fire, kind, part of its text
 PLACES = {
     "bearings/annular_seal.py:__post_init__": (
-        lambda _: AnnularSeal(interface="a", **LAMINAR),
+        lambda _: er.AnnularSeal(interface="a", **LAMINAR),
         UserWarning, "may be laminar"),
     "multibody/rotor/rotor_body.py:_warn_of_static_stress": (
         native_stress_of_a_prestressed_rotor, UserWarning, "stress of the modes alone"),
@@ -157,7 +138,7 @@ PLACES = {
     "strength/field.py:warn_without_static": (
         stress_at_speed_without_prestress, UserWarning, "without the static centrifugal stress"),
     "advice/proposal.py:propose": (
-        proposal_beyond_the_formulation, AssumptionWarning, "flexible modes given lie in the band"),
+        proposal_beyond_the_formulation, er.AssumptionWarning, "flexible modes given lie in the"),
     "solid/model.py:check_model_units": (
         small_rotor_in_millimetres, UserWarning, "few rotors are that heavy; lengths in mm"),
     "solid/ngsolve_model.py:_prepare_mesh": (
@@ -167,13 +148,13 @@ PLACES = {
     "multibody/add_rotor.py:add_rotor": (
         scene_of_a_full_lossy_rotor, UserWarning, "A scene runs without it"),
     "multibody/rotor/rotor_body.py:check_connections": (
-        asked_for_connections, ConnectionWarning, "does not tilt"),
+        asked_for_connections, er.ConnectionWarning, "does not tilt"),
     "multibody/rotor/assembly.py:watch": (
         run_of_a_full_body_with_a_dense_solver, UserWarning, "EigenSparse"),
     "multibody/rotor/assembly.py:warn_of_lost_connections": (
-        torque_on_a_tilt_of_the_node, ConnectionWarning, "does not tilt"),
+        torque_on_a_tilt_of_the_node, er.ConnectionWarning, "does not tilt"),
     "advice/run_check.py:check_run": (
-        run_beyond_its_assumptions, AssumptionWarning, "tilt .* exceeds"),
+        run_beyond_its_assumptions, er.AssumptionWarning, "tilt .* exceeds"),
     "linear/response/steady_state.py:steady_state": (
         steady_motion_on_a_stop_that_opens, UserWarning, "is left to higher harmonics"),
 }  # fmt: skip
@@ -197,13 +178,13 @@ ELSEWHERE = {
     "bearings/controlled_support.py:table_of": "speeds are left out",
     "linear/own_frequency.py:own_motions": "do not settle at their own frequency",
     "linear/model/linear_model.py:warn_beyond": "keeps its ends for motions of",
-    "linear/over.py:motions_over": "do not converge for all motions",
+    "linear/over.py:warn_of": "do not converge for all motions",
 }
 TEXTS = {place: text for place, (_, _, text) in PLACES.items()} | ELSEWHERE
 # places that several kinds of bodies reach
 TRIGGERS = PLACES | {
     "multibody/rotor/rotor_body.py:check_connections, full": (
-        full_body_asked_for_connections, ConnectionWarning, "does not tilt"),
+        full_body_asked_for_connections, er.ConnectionWarning, "does not tilt"),
 }  # fmt: skip
 
 

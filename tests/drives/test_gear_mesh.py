@@ -86,23 +86,3 @@ def test_forces_are_what_energy_and_loss_say(backlash):
         tolerance = 4e-16 * law.energy(x) / h + 1e-6 * abs(power)
         assert growth + law.loss(x, x_t) == pytest.approx(power, abs=tolerance)
         assert law.loss(x, x_t) >= 0.0
-
-
-@pytest.mark.parametrize(
-    ("changes", "match"),
-    [
-        ({"radii": [0.1, -0.1]}, "radii: needs a finite number"),
-        ({"flank": 2}, "flank: needs 1 or -1"),
-        ({"teeth": [20, 33]}, "teeth: 20 to 33 is not the ratio of the radii"),
-        ({"teeth": [20]}, "teeth: needs two whole numbers"),
-        ({"variation": [0.1]}, "variation: needs the numbers of teeth"),
-        ({"variation": [0.6, 0.5], "teeth": [5, 8]}, "variation: needs amplitudes whose sum"),
-        ({"backlash": -1e-4}, "backlash: needs a finite number"),
-        ({"helix_angle": 1.6}, "helix_angle: needs"),
-    ],
-)
-def test_bad_input_is_refused(changes, match):
-    with pytest.raises(ValueError, match=match):
-        mesh(**changes)
-    with pytest.raises(ValueError, match="teeth: the mesh frequency needs"):
-        mesh().mesh_frequency(1.0)

@@ -1,14 +1,18 @@
-"""Gears and couplings between spins that are both prescribed."""
+"""Gears and couplings between spins that are both prescribed; what drives and gears refuse."""
 
 import exudyn as exu
 import numpy as np
 import pytest
 from rings import rings, run
 from scipy.spatial.transform import Rotation
+from test_gear_mesh import mesh
 
 from exudyn_rotor import (
+    DirectCurrentMotor,
+    Drag,
     FlexibleCoupling,
     GearMesh,
+    TorqueCurve,
     add_rotor,
     connect_rotors,
 )
@@ -52,3 +56,40 @@ def test_speeds_that_would_wind_up_are_refused(name, turn):
     sensor = connect_rotors(*arguments).add_sensor()
     run(mbs, 0.1, 10)
     np.testing.assert_allclose(mbs.GetSensorStoredData(sensor)[:, 2], 0.0, atol=1e-12)  # energy [J]
+
+
+GEARS, COUPLING = (connection for connection, _ in CONNECTIONS.values())
+
+
+def placed(connection, apart, axis):
+    connection.check_places(np.array(apart), np.array(axis))
+
+
+REFUSED = [
+    (lambda: DirectCurrentMotor(stall_torque=5.0, no_load_speed=0.0), "number .* that is not zero"),
+    (lambda: TorqueCurve(([1.0], [2.0], [3.0])), "curve: needs a table"),
+    (Drag, "drag: needs constant, linear or quadratic above zero"),
+    (lambda: mesh(radii=[0.1, -0.1]), "radii: needs a finite number"),
+    (lambda: mesh(flank=2), "flank: needs 1 or -1"),
+    (lambda: mesh(teeth=[20, 33]), "teeth: 20 to 33 is not the ratio of the radii"),
+    (lambda: mesh(teeth=[20]), "teeth: needs two whole numbers"),
+    (lambda: mesh(variation=[0.1]), "variation: needs the numbers of teeth"),
+    (lambda: mesh(variation=[0.6, 0.5], teeth=[5, 8]), "variation: needs amplitudes whose sum"),
+    (lambda: mesh(backlash=-1e-4), "backlash: needs a finite number"),
+    (lambda: mesh(helix_angle=1.6), "helix_angle: needs"),
+    (lambda: mesh().mesh_frequency(1.0), "teeth: the mesh frequency needs"),
+    (lambda: placed(COUPLING, [0, 0, 0.1], [0, 0, 1]), "its interface is 0.1 m from that of the"),
+    (
+        lambda: placed(COUPLING, [0, 0, 0], [0.1, 0, 1]),
+        "on one axis, and the second is 0.1 rad off",
+    ),
+    (lambda: placed(GEARS, [0.1, 0, 0], [0.1, 0, 1]), "other: gears need parallel axes"),
+    (lambda: placed(GEARS, [0.1, 0, 0.1], [0, 0, 1]), "other: its gear is 0.1 m along the axis"),
+    (lambda: placed(GEARS, [0.1, 0, 0], [0, 0, 1]), r"0.1 m .* the gears need 0.0957\d* m"),
+]
+
+
+@pytest.mark.parametrize(("call", "words"), REFUSED)
+def test_what_is_refused_is_told(call, words):
+    with pytest.raises(ValueError, match=words):
+        call()

@@ -80,8 +80,3 @@ def test_a_rotor_that_is_overdamped_has_a_limit_but_no_decrement():
     assert np.isinf(result.log_decrement[0])
     assert result.threshold == pytest.approx(1e3 * 100.0, rel=1e-6)  # c ω
     assert "inf" in result.table()
-
-
-def test_without_bearings_there_is_no_level_one(rotor):
-    with pytest.raises(ValueError, match="supports: needs the bearings of the rotor, got none"):
-        stability_level_one(rotor, 300.0, 2e4, "disc", supports=())

@@ -66,6 +66,7 @@ def test_bad_foundations_are_refused():
     for error, match, arguments in (
         (ValueError, "mass: needs a symmetric", ([[1.0, 2.0], [0.0, 1.0]], unit, unit, points)),
         (ValueError, "mass: needs a positive definite", (0.0 * unit, unit, unit, points)),
+        (ValueError, "mass: needs one coordinate or more", (unit[:0, :0], unit, unit, points)),
         (ValueError, "stiffness: needs a symmetric", (unit, unit, [[1.0, 2.0], [0, 1]], points)),
         (ValueError, "the ground holds every", (unit, unit, np.diag([1.0, 0.0]), points)),
         (ValueError, "the ground holds every", (unit, unit, np.ones((2, 2)), points)),
@@ -78,13 +79,16 @@ def test_bad_foundations_are_refused():
     ):  # fmt: skip
         with pytest.raises(error, match=match):
             Foundation(*arguments)
-    with pytest.raises(ValueError, match="frequencies: needs a finite number"):
-        Foundation.from_modes([-1.0], 0.01, {"left": [[1.0], [0.0], [0.0]]})
-    with pytest.raises(ValueError, match="damping_ratios: needs a finite number ≥ 0 and ≤ 1"):
-        Foundation.from_modes([1.0], 2.0, {"left": [[1.0], [0.0], [0.0]]})
-    with pytest.raises((TypeError, ValueError), match="masses: needs"):
-        Foundation.from_modes([1.0], 0.02, {"left": [[1.0], [0.0], [0.0]]}, masses=[[1.0], 2.0])
-    with pytest.raises(ValueError, match="stiffness: needs a finite number"):
-        Mount("left", -1.0)
-    with pytest.raises(ValueError, match="'left' is no interface of the solid"):
-        Foundation.from_solid(replace(rings(), interfaces={}), POINTS)
+    one, holed = {"left": np.eye(3)[:, :1]}, replace(rings(), interfaces={})
+    for call, match in (
+        (lambda: Foundation.from_modes([-1.0], 0.01, one), "frequencies: needs a finite number"),
+        (lambda: Foundation.from_modes([1.0], 2.0, one), "damping_ratios: needs .* ≥ 0 and ≤ 1"),
+        (lambda: Foundation.from_modes([1.0], 0.0, one, masses=[[1.0], 2.0]), "masses: needs"),
+        (lambda: Mount("left", -1.0), "stiffness: needs a finite number"),
+        (lambda: Foundation.from_solid(holed, POINTS), "'left' is no interface of the solid"),
+        (lambda: Foundation.from_solid(rings().with_damping(loss=0.1), POINTS), "is for steady"),
+        (lambda: Foundation.rigid(1.0, [1] * 3, [0] * 3, [Mount("left", 1.0)], {}), "needs places"),
+        (lambda: Foundation(unit, unit, unit, points).motion("top", [0] * 3), "only for: left"),
+    ):
+        with pytest.raises((TypeError, ValueError), match=match):
+            call()

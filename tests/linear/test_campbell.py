@@ -1,9 +1,11 @@
 """Campbell diagrams against closed forms, and what they do where a value cannot be computed."""
 
 import time
+import warnings
 
 import numpy as np
 import pytest
+from asymmetric import asymmetric_shaft
 from models import centered_disc
 from point_rotors import ring_rotor
 
@@ -76,6 +78,25 @@ def test_speeds_without_values_are_nan_with_one_warning():
     assert np.all(np.isfinite(found.growth[:2]))
     assert found.table(1).splitlines()[3].split()[2:6] == ["-"] * 4
     assert found.plot().get_legend() is not None
+
+
+def test_a_mode_that_is_not_found_at_one_speed_is_missing_there_alone():
+    """At 1 rad/s three of the lowest six need more harmonics than are taken."""
+    uneven = np.diag([3e5, 3e6, 1e7])
+    rotor, supports = asymmetric_shaft(), [Support(n, uneven, 50.0) for n in ("left", "right")]
+    later = campbell(rotor, [20.0, 100.0], supports=supports, modes=6, accuracy=None)
+    with pytest.warns(UserWarning, match="do not converge for all motions at 1 rad/s, which are"):
+        found = campbell(rotor, [1.0, 20.0, 100.0], supports=supports, modes=6, accuracy=None)
+    wanted = later.frequencies_inertial
+    np.testing.assert_allclose(found.frequencies_inertial[1:], wanted, rtol=1e-6, atol=1e-9)
+    assert np.all(found.continued)
+    first = found.frequencies_inertial[0]
+    np.testing.assert_allclose(first[:3], wanted[0, [0, 3, 5]], atol=1e-6, rtol=1e-3)
+    assert np.all(np.isnan(first[3:]))
+    with warnings.catch_warnings():  # where none that is shown is missing nothing is told
+        warnings.simplefilter("error")
+        few = campbell(rotor, [2.0, 20.0], supports=supports, modes=2, accuracy=None)
+    assert np.all(np.isfinite(few.growth))
 
 
 def test_lines_follow_their_modes_through_a_crossing():

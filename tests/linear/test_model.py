@@ -136,9 +136,3 @@ def test_model_shows_itself_in_a_few_lines():
     assert len(text.splitlines()) == 5
     assert len(text) < 500
     assert "on a foundation" in text
-
-
-def test_periodic_equations_have_no_single_matrices():
-    model = linear_model(flat(), supports=held(UNEVEN))
-    with pytest.raises(ValueError, match="repeat every revolution"):
-        model.matrices(100.0)

@@ -1,7 +1,10 @@
 """Several rotors in linear analyses: against closed forms and one rotor of their parts."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from test_inter_shaft import SHORT
 from train_models import (
     FIRST,
     GROUND,
@@ -16,12 +19,15 @@ from train_models import (
 )
 
 from exudyn_rotor import (
+    GearMesh,
     Link,
     RotorTrain,
     Support,
     campbell,
     critical_speeds,
     linear_model,
+    static_response,
+    unbalance_response,
 )
 
 
@@ -66,14 +72,19 @@ def test_bad_trains_are_refused():
     for rotors, speeds, more, words in refused:
         with pytest.raises((TypeError, ValueError), match=words):
             RotorTrain(rotors, speeds, **more)
-    with pytest.raises(ValueError, match="'rotor:interface', got 'Aa'"):
-        Link("Aa", "B:a", spring)
-    with pytest.raises(ValueError, match="is at 'a'"):
-        Link("A:b", "B:a", spring)
-    with pytest.raises(ValueError, match="same rotor"):
-        Link("A:a", "A:b", spring)
-    with pytest.raises(ValueError, match="'D' is unknown"):
-        two_discs(1.7).relative_to("D")
+    mesh = GearMesh(radii=[0.1, 0.2], stiffness=3e6, backlash=1e-5)
+    for call, words in (
+        (lambda: Link("Aa", "B:a", spring), "'rotor:interface', got 'Aa'"),
+        (lambda: Link("A:b", "B:a", spring), "is at 'a'"),
+        (lambda: Link("A:a", "A:b", spring), "same rotor"),
+        (lambda: Link("A:a", "B:a", mesh), "with backlash, .* give one without"),
+        (lambda: Link("A:a", "B:a", replace(SHORT, load=[0.0, -9.0]).linearised()), "as a table"),
+        (lambda: two_discs(1.7).relative_to("D"), "'D' is unknown"),
+        (lambda: unbalance_response(two_discs(1.7), [9.0], at=3), "3: of several rotors, name an"),
+        (lambda: static_response(two_discs(1.7), gravity=[9, 0, 0], stress=True), "one rotor"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            call()
 
 
 def test_what_does_not_repeat_is_refused():

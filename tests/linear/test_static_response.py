@@ -246,21 +246,6 @@ def test_films_carry_what_their_equilibrium_says():
         er.static_response(rotor, gravity=DOWN, supports=films("0", "16"))
 
 
-def test_what_is_refused_is_named():
-    rotor = beam()
-    springs = [er.Support(name, 1e7) for name in ("0", "16")]
-    for loads, supports, message in (
-        ({"8": [0.0, 0.0, 5.0]}, springs, "translation along axis.*no support holds"),
-        ({"8": [0.0, 5.0, 0.0]}, springs[:1], "no support holds"),
-        ({"8": [1.0, 2.0]}, springs, "needs 3 or 6 numbers"),
-        ({"no": [1.0, 2.0, 3.0]}, springs, "no such interface"),
-    ):
-        with pytest.raises(ValueError, match=message):
-            er.static_response(rotor, loads, supports=supports)
-    with pytest.raises(TypeError, match="loads: needs a dictionary"):
-        er.static_response(rotor, [1.0, 2.0, 3.0], supports=springs)
-
-
 def test_a_basis_without_static_flexibility_is_told():
     rotor = block()
     supports = [er.Support(n, 1e10 * np.eye(3)) for n in ("left", "right")]

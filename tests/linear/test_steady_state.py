@@ -117,6 +117,8 @@ def test_run_from_the_steady_state_stays_on_it(reduced, translation):
         mbs.Assemble()
         steady = steady_state(body)
         body.start_from(steady.state())
+        again = steady_state(body).interface_motion("right", 0.3)  # the scene is in this state
+        assert again == pytest.approx(steady.interface_motion("right", 0.3), rel=1e-6, abs=1e-12)
         mbs.Assemble()  # the nodes keep it
         end = turns * 2 * np.pi / speed
         simulated(mbs, end, end / steps)

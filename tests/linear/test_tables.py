@@ -1,5 +1,6 @@
 """Supports with coefficients over speed and frequency, against models that carry the states."""
 
+import warnings
 from dataclasses import replace
 from functools import partial
 
@@ -28,6 +29,7 @@ from exudyn_rotor import (
     grooved_pads,
     harmonic_response,
     linear_model,
+    mode_shapes,
     periodic_response,
     stability_map,
     stability_threshold,
@@ -241,6 +243,21 @@ def test_what_has_several_frequencies_at_once_refuses_them():
         periodic_response(rotor(), [5.0], Unbalance("left", 1e-3), supports=[*given, stop])
     with pytest.warns(UserWarning, match="holds 1 to 2 rad/s, and keeps its ends for motions of 5"):
         unbalance_response(rotor(), [5.0], Unbalance("left", 1e-3), supports=given)
+
+
+@pytest.mark.parametrize("shown", [campbell, mode_shapes])
+def test_motions_beyond_a_table_are_told_where_they_are_shown(shown):
+    """√(k/m) is 71 rad/s of one end and 141 rad/s of the other."""
+    given = [
+        Support.from_table(name, frequencies=[1.0, 100.0], stiffness=[k * np.eye(2)] * 2)
+        for name, k in zip(NAMES, (1e4, 4e4), strict=True)
+    ]
+    speed = [5.0] if shown is campbell else 5.0
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        shown(rotor(), speed, supports=given, modes=3)
+    with pytest.warns(UserWarning, match="keeps its ends for motions of 141.42 to 141.42 rad/s"):
+        shown(rotor(), speed, supports=given, modes=5)
 
 
 def test_a_motion_in_a_jump_is_nan_and_costs_no_other():

@@ -125,13 +125,6 @@ def test_balance_grade(grade, speed_rpm, specific):
 STIFFNESS, DAMPING = (2e5, 3e5), (500.0, 400.0)
 
 
-def test_balanced_rotor_without_unbalance_is_an_error():
-    with pytest.raises(ValueError, match="the rotor itself is balanced"):
-        unbalance_response(rings(), [100.0], supports=held())
-    with pytest.raises(ValueError, match="own=False"):
-        unbalance_response(rings(point_mass=0.1), [100.0], supports=held(), own=False)
-
-
 @pytest.mark.parametrize(
     ("changes", "message"),
     [

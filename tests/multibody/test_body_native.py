@@ -7,10 +7,7 @@ matplotlib.use("Agg")
 import numpy as np
 import pytest
 from exudyn.interactive import ShowImage
-from exudyn.itemInterface import (
-    LoadCoordinate,
-    MarkerNodeCoordinate,
-)
+from exudyn.itemInterface import LoadCoordinate, MarkerNodeCoordinate
 from models import STEEL, block_beam
 
 from exudyn_rotor import SolidRotor, add_rotor
@@ -61,7 +58,7 @@ def one_rotor(reduced, **options):
     return SC, mbs, add_rotor(mbs, reduced, **options)
 
 
-def test_loads_on_coordinates(reduced):
+def test_loads_on_coordinates(reduced, tmp_path):
     """A modal force f moves its mode of unit mass by f (1 − cos ωt) / ω², a torque the spin."""
     _, mbs, body = one_rotor(reduced, locking="mass")
     mode = len(body.selection.labels) - 1
@@ -69,7 +66,7 @@ def test_loads_on_coordinates(reduced):
     for node, index, load in ((body.nodes["modes"], mode, 50.0), (body.nodes["rigid"], 5, 0.2)):
         marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=index))
         mbs.AddLoad(LoadCoordinate(markerNumber=marker, load=load))
-    spin = body.add_spin_sensor()
+    spin = body.add_spin_sensor(fileName=tmp_path / "spin.txt", writeToFile=True)
     mbs.Assemble()
     mbs.SolveDynamic(settings(400), solverType=exu.DynamicSolverType.RK44)
     q = body.coordinates()[0]
@@ -77,6 +74,8 @@ def test_loads_on_coordinates(reduced):
         50.0 * (1 - np.cos(frequency * 1e-3)) / frequency**2, rel=1e-3
     )
     inertia = body.motion.invariants.Theta
+    written = np.loadtxt(tmp_path / "spin.txt", delimiter=",")
+    np.testing.assert_allclose(written, mbs.GetSensorStoredData(spin), rtol=1e-9)
     assert mbs.GetSensorValues(spin) == pytest.approx(
         [0.5e-6 * 0.2 / inertia, 1e-3 * 0.2 / inertia], rel=1e-3
     )

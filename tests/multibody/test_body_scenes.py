@@ -8,10 +8,7 @@ from exudyn.itemInterface import SensorMarker
 from models import centered_disc
 from scipy.spatial.transform import Rotation
 
-from exudyn_rotor import (
-    SolidRotor,
-    add_rotor,
-)
+import exudyn_rotor as er
 
 TO_X = Rotation.from_euler("y", np.pi / 2).as_matrix()
 TO_Y = Rotation.from_euler("x", -np.pi / 2).as_matrix()
@@ -40,7 +37,7 @@ def reduced(solid, modes):
 def turned_rotor(solid, modes, rotation):
     """Return the reduced rotor with its mesh turned."""
     blocks = sp.block_diag([rotation] * solid.node_count, format="csr")
-    turned = SolidRotor.from_matrices(
+    turned = er.SolidRotor.from_matrices(
         solid.mass,
         blocks @ (solid.stiffness @ blocks.T),
         solid.nodes @ rotation.T,
@@ -70,7 +67,7 @@ def add_scene(mbs, reduced, placed, options, name="rotor"):
     """
     mesh_to_space = placed @ options.get("mesh", UNIT).T
     options = {key: value for key, value in options.items() if key != "mesh"}
-    body = add_rotor(
+    body = er.add_rotor(
         mbs,
         reduced,
         name=name,

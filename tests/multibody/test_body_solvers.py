@@ -5,17 +5,12 @@ import numpy as np
 import pytest
 from models import centered_disc
 
-from exudyn_rotor import (
-    PrescribedMotion,
-    SolidRotor,
-    add_rotor,
-    check_run,
-)
+import exudyn_rotor as er
 
 SOLVERS = exu.DynamicSolverType
 IMPLICIT = (SOLVERS.GeneralizedAlpha, SOLVERS.TrapezoidalIndex2)
-RUN_UP = PrescribedMotion.run_up(100.0, 400.0, 8e-3)
-SHAKE = PrescribedMotion(
+RUN_UP = er.PrescribedMotion.run_up(100.0, 400.0, 8e-3)
+SHAKE = er.PrescribedMotion(
     lambda t: np.array([1e-5 * (1 - np.cos(600.0 * t)), 0.0, 2e-5 * np.sin(300.0 * t)]),
     lambda t: np.array([6e-3 * np.sin(600.0 * t), 0.0, 6e-3 * np.cos(300.0 * t)]),
     lambda t: np.array([3.6 * np.cos(600.0 * t), 0.0, -1.8 * np.sin(300.0 * t)]),
@@ -46,7 +41,7 @@ def settings(steps, end_time):
 def scene(reduced, **options):
     """Return a rotor on two bearings in gravity, with a torque at its right end."""
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, reduced, **({"gravity": GRAVITY} | options))
+    body = er.add_rotor(mbs, reduced, **({"gravity": GRAVITY} | options))
     ground = mbs.CreateGround()
     for name, interface in reduced.interfaces.items():
         mbs.CreateCartesianSpringDamper(
@@ -98,7 +93,7 @@ def test_check_of_an_explicit_run_finds_nothing_lost(reduced):
     body.start_recording()
     mbs.Assemble()
     mbs.SolveDynamic(settings(400, 4e-3), solverType=SOLVERS.RK44)
-    check = check_run(body, warn=False)
+    check = er.check_run(body, warn=False)
     assert check["unresisted load"].ok
 
 
@@ -106,27 +101,30 @@ def test_check_of_an_explicit_run_finds_nothing_lost(reduced):
 @pytest.mark.parametrize("full", [False, True])
 def test_explicit_solvers_ask_for_locking_by_mass_and_then_agree(full, motion):
     """An error names the argument, other solvers go on, and the run with it is right."""
-    pair = SolidRotor.from_matrices(
+    pair = er.SolidRotor.from_matrices(
         np.eye(6), 1e6 * np.eye(6), [[0.1, 0.0, 0.0], [-0.1, 0.0, 0.0]], "z"
     )
     motion = {"spin": 300.0, "translation": "none"} | motion
 
     def added(**options):
         mbs = exu.SystemContainer().AddSystem()
-        body = add_rotor(mbs, pair if full else pair.reduce(6), **motion, **options)
+        body = er.add_rotor(mbs, pair if full else pair.reduce(6), **motion, **options)
+        torque = body.add_drive_torque_sensor()
         mbs.Assemble()
-        return mbs, body
+        return mbs, body, torque
 
-    mbs, body = added()
+    mbs, body, torque = added()
     with pytest.raises(Exception, match=r"rotor 'rotor'.*locking='mass'"):
         mbs.SolveDynamic(settings(20, 1e-3), solverType=SOLVERS.RK44)
     assert mbs.SolveStatic(settings(20, 1e-3))
-    mbs, body = added()
+    mbs, body, torque = added()
     mbs.SolveDynamic(settings(400, 4e-3))
-    other, explicit = added(locking="mass")
+    other, explicit, _ = added(locking="mass")
     other.SolveDynamic(settings(400, 4e-3), solverType=SOLVERS.RK44)
     expected = body.coordinates()[0]
     assert abs(explicit.coordinates()[0] - expected).max() < 2e-3 * abs(expected).max()
+    found, expected = (each.GetSensorValues(torque) for each in (other, mbs))
+    assert found == pytest.approx(expected, rel=2e-3, abs=1e-6)
 
 
 # ------------------------------------------------------------------ static solutions

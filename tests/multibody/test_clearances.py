@@ -7,22 +7,7 @@ from exudyn.itemInterface import LoadForceVector
 from exudyn.utilities import InertiaCuboid
 from point_rotors import ring_rotor
 
-from exudyn_rotor import (
-    AnnularSeal,
-    JournalBearing,
-    MagneticBearing,
-    OilFilm,
-    PIDController,
-    SaturatingActuator,
-    ShortJournalBearing,
-    SqueezeFilmDamper,
-    Support,
-    TiltingPadBearing,
-    add_rotor,
-    add_supports,
-    grooved_pads,
-    recommended_settings,
-)
+import exudyn_rotor as er
 
 CLEARANCE, SPEED = 1e-4, 300.0
 TO_X = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
@@ -30,31 +15,31 @@ SHORT = {"radius": 0.05, "length": 0.03, "clearance": CLEARANCE, "viscosity": 0.
 
 
 def film(preload=0.0, grooves=(0.0, np.pi)):
-    pads = grooved_pads(CLEARANCE, grooves, 0.3, preload)
-    return OilFilm(0.05, 0.05, 0.02, pads, nodes=36, axial_nodes=0)
+    pads = er.grooved_pads(CLEARANCE, grooves, 0.3, preload)
+    return er.OilFilm(0.05, 0.05, 0.02, pads, nodes=36, axial_nodes=0)
 
 
 KINDS = {
-    "short journal": ShortJournalBearing(interface="left", **SHORT),
-    "film": JournalBearing(interface="left", film=film()),
-    "lemon bore": JournalBearing(interface="left", film=film(0.5)),
-    "upright lemon bore": JournalBearing(  # half of the clearance along x, 0.87 along y
+    "short journal": er.ShortJournalBearing(interface="left", **SHORT),
+    "film": er.JournalBearing(interface="left", film=film()),
+    "lemon bore": er.JournalBearing(interface="left", film=film(0.5)),
+    "upright lemon bore": er.JournalBearing(  # half of the clearance along x, 0.87 along y
         interface="left", film=film(0.5, (0.5 * np.pi, 1.5 * np.pi))
     ),
-    "squeeze film": SqueezeFilmDamper(interface="left", centring_stiffness=1e6, **SHORT),
-    "seal": AnnularSeal(
+    "squeeze film": er.SqueezeFilmDamper(interface="left", centring_stiffness=1e6, **SHORT),
+    "seal": er.AnnularSeal(
         interface="left", radius=0.1, length=0.04, clearance=CLEARANCE, pressure_drop=1e6,
         density=1000.0, viscosity=1e-3,
     ),
-    "tilting pads": TiltingPadBearing(
+    "tilting pads": er.TiltingPadBearing(
         interface="left", film=film(0.3, np.radians([30.0, 150.0, 270.0])), pad_inertia=1e-4
     ),
-    "magnets": MagneticBearing(
+    "magnets": er.MagneticBearing(
         interface="left",
-        actuator=SaturatingActuator(
+        actuator=er.SaturatingActuator(
             constant=1e-5, bias_current=2.0, gap=CLEARANCE, current_limit=3.0
         ),
-        controller=PIDController(
+        controller=er.PIDController(
             proportional=3e5, derivative=50.0, filter_frequency=6e4, amplifier_frequency=3e4
         ),
     ),
@@ -71,9 +56,9 @@ def scene(bearings, load=0.0, base=None, **options):
     rotor = ring_rotor(0.1, 0.15, 20.0)
     rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor, **(options or {"spin": SPEED}))
-    held = Support("right", 1e7, 1e3)
-    added = add_supports(body, [*bearings, held], base and base(mbs))
+    body = er.add_rotor(mbs, rotor, **(options or {"spin": SPEED}))
+    held = er.Support("right", 1e7, 1e3)
+    added = er.add_supports(body, [*bearings, held], base and base(mbs))
     if load:
         mbs.AddLoad(LoadForceVector(markerNumber=body.marker("left"), loadVector=[0.0, load, 0.0]))
     mbs.Assemble()
@@ -93,7 +78,7 @@ def start(mbs, body, rate=0.0, place=0.0):
 
 
 def run(mbs, end_time=4e-3, step=1e-4, change=None, **how):
-    settings = recommended_settings(end_time=end_time, step=step)
+    settings = er.recommended_settings(end_time=end_time, step=step)
     settings.solution.file.write = False
     if change is not None:
         change(settings.timeIntegration)

@@ -17,15 +17,7 @@ from point_rotors import SKEW_AXIS
 from rings import rings, run
 from scipy.spatial.transform import Rotation
 
-from exudyn_rotor import (
-    DirectCurrentMotor,
-    Drag,
-    StartState,
-    Support,
-    add_drive,
-    add_rotor,
-    add_supports,
-)
+import exudyn_rotor as er
 from exudyn_rotor.bearings.bearing import LoadedBearing
 
 ENDS = ("left", "right")
@@ -74,7 +66,7 @@ def rotor_in_a_scene(**options):
         options[name] = TURN @ axes @ options.get(name, np.zeros(3))
     if "spin" not in options:
         options["initial_speed"] = SPEED
-    body = add_rotor(mbs, reduced, rotation=TURN, **options)
+    body = er.add_rotor(mbs, reduced, rotation=TURN, **options)
     return mbs, body, axes, TURN @ axes
 
 
@@ -84,7 +76,7 @@ def start(mbs, body, place=0.0, tilts=True):
     q, q_t = mbs.systemData.GetODE2Coordinates(), mbs.systemData.GetODE2Coordinates_t()
     q[:3] += place
     q_t[6:8] += tilts * np.array([0.3, -0.2])
-    body.start_from(StartState(q, q_t, 0.0, SPEED))
+    body.start_from(er.StartState(q, q_t, 0.0, SPEED))
 
 
 def remainder(m, energy, lost, fed, first=0):
@@ -103,9 +95,9 @@ def left_over(kind, step, steps):
     mbs, body, _, axes = rotor_in_a_scene(
         initial_velocity=move, gravity=[0.0, -kind.weight / MASS, 0.0]
     )
-    added = add_supports(body, [kind.make(name) for name in ENDS])
-    add_drive(body, DirectCurrentMotor(stall_torque=5.0, no_load_speed=100.0))
-    add_drive(body, Drag(linear=0.01))
+    added = er.add_supports(body, [kind.make(name) for name in ENDS])
+    er.add_drive(body, er.DirectCurrentMotor(stall_torque=5.0, no_load_speed=100.0))
+    er.add_drive(body, er.Drag(linear=0.01))
     read = watched(mbs, body, added, axes)
     start(mbs, body, axes[:, :2] @ kind.start, not kind.weight)
     run(mbs, step * steps, steps, accuracy=1e-8)
@@ -126,7 +118,7 @@ def test_balance_errs_by_the_square_of_the_step(name):
 
 def driven(kind, step, steps):
     mbs, body, _, axes = rotor_in_a_scene(spin=SPEED, initial_velocity=[0.02, 0.05, 0.01])
-    added = add_supports(body, [kind.make(name) for name in ENDS])
+    added = er.add_supports(body, [kind.make(name) for name in ENDS])
     drive, read = body.add_drive_torque_sensor(), watched(mbs, body, added, axes)
     start(mbs, body)
     run(mbs, step * steps, steps, accuracy=1e-8)
@@ -138,7 +130,7 @@ def driven(kind, step, steps):
 
 
 @pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
-@pytest.mark.parametrize("name", ["linear", "tilt-springs"])
+@pytest.mark.parametrize("name", ["linear", "tilt-springs", "squeeze-film"])
 def test_drive_of_a_constant_speed_makes_up_for_supports(name):
     """Uneven springs against tilts take from it and give back."""
     kind = KINDS[name]
@@ -147,7 +139,7 @@ def test_drive_of_a_constant_speed_makes_up_for_supports(name):
 
 
 def test_every_bearing_has_its_balance():
-    found, kinds = {Support}, [LoadedBearing]
+    found, kinds = {er.Support}, [LoadedBearing]
     while kinds:
         kind = kinds.pop()
         kinds += kind.__subclasses__()

@@ -95,18 +95,3 @@ def test_speeds_err_by_the_change_of_the_moment_of_inertia(rings):
     speeds = [body.recorded().speed for body in bodies.values()]
     off = np.abs(speeds[1] - speeds[0]).max() / np.abs(speeds[0]).max()
     assert 0.05 * share < off < 2.0 * share
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ({"spin_coupling": "frozen", "spin": 10.0}, "needs spin='free'"),
-        # wrong by 2 % of the motion under a torque of 50 N m
-        ({"spin_coupling": "frozen", "translation": "none"}, "translation='free' or"),
-        ({"spin_coupling": "half"}, "spin_coupling"),
-    ],
-)
-def test_what_cannot_be_frozen_is_refused(rings, arguments, message):
-    mbs = exudyn.SystemContainer().AddSystem()
-    with pytest.raises(ValueError, match=message):
-        add_rotor(mbs, rings, **arguments)

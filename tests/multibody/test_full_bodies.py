@@ -7,14 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from exudyn_rotor import (
-    PrescribedMotion,
-    SolidRotor,
-    SpinAxis,
-    add_rotor,
-    add_supports,
-    recommended_settings,
-)
+import exudyn_rotor as er
 from exudyn_rotor.multibody.full import add_full
 from exudyn_rotor.solvers.factor import TooLittleMemoryError
 
@@ -22,8 +15,8 @@ STEP, STEPS, NEWTON = 1e-4, 20, 1e-10
 GRAVITY = [1.0, -9.81, 3.0]
 SKEW = np.array([1.0, 2.0, 2.0]) / 3.0
 KINDS = exudyn.OutputVariableType
-RUN_UP = PrescribedMotion.run_up(100.0, 300.0, 1e-3)
-SHAKEN = PrescribedMotion(
+RUN_UP = er.PrescribedMotion.run_up(100.0, 300.0, 1e-3)
+SHAKEN = er.PrescribedMotion(
     lambda t: np.array([1e-3 * np.sin(200.0 * t), 0.0, 5e-4 * np.sin(300.0 * t)]),
     lambda t: np.array([0.2 * np.cos(200.0 * t), 0.0, 0.15 * np.cos(300.0 * t)]),
     lambda t: np.array([-40.0 * np.sin(200.0 * t), 0.0, -45.0 * np.sin(300.0 * t)]),
@@ -37,7 +30,7 @@ def bar():
     solid.faces.Min(occ.Z).name, solid.faces.Max(occ.Z).name = "left", "right"
     mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.3))
     rubber = {"youngsModulus": 2.1e9, "poissonsRatio": 0.3, "density": 7850.0}
-    rotor = SolidRotor.from_ngsolve(mesh, rubber, "z", order=1)
+    rotor = er.SolidRotor.from_ngsolve(mesh, rubber, "z", order=1)
     return rotor.add_point_mass([0.03, 0.025, 0.3], 0.5)
 
 
@@ -47,8 +40,9 @@ def turned(rotor, direction, point=(0.0, 0.0, 0.0)):
     B = np.kron(np.eye(rotor.node_count), R)
     sets = {name: (face.nodes, face.weights) for name, face in rotor.interfaces.items()}
     stiffness = B @ rotor.stiffness.toarray() @ B.T
-    axis = SpinAxis(direction, R @ np.array(point))
-    return SolidRotor.from_matrices(rotor.mass, stiffness, rotor.nodes @ R.T, axis, interfaces=sets)
+    axis = er.SpinAxis(direction, R @ np.array(point))
+    nodes = rotor.nodes @ R.T
+    return er.SolidRotor.from_matrices(rotor.mass, stiffness, nodes, axis, interfaces=sets)
 
 
 def on_axis(bar, axis):
@@ -65,8 +59,8 @@ def on_axis(bar, axis):
 def run(rotor, source, supports=(), **options):
     """Run a rotor on two springs and supports; return body and histories: ends, drive, energy."""
     mbs = exudyn.SystemContainer().AddSystem()
-    body = add_rotor(mbs, source, gravity=GRAVITY, **options)
-    add_supports(body, supports)
+    body = er.add_rotor(mbs, source, gravity=GRAVITY, **options)
+    er.add_supports(body, supports)
     place = options.get("rotation", np.eye(3))
     sensors = []
     for name in ("left", "right"):
@@ -89,7 +83,7 @@ def run(rotor, source, supports=(), **options):
 
 def tight_settings(body, step, steps=STEPS):
     """Settings with a tight tolerance of Newton's method, which store sensors at every step."""
-    settings = recommended_settings(steps * step, step, body=body)
+    settings = er.recommended_settings(steps * step, step, body=body)
     settings.timeIntegration.newton.relativeTolerance = NEWTON
     settings.timeIntegration.newton.absoluteTolerance = 1e-3 * NEWTON
     settings.timeIntegration.verboseMode = 0
@@ -158,7 +152,7 @@ def test_full_and_reduced_with_all_modes_agree(bar, name, axis, level):
 def scene(source, **options):
     """Return an empty scene with the rotor at 10 rad/s, held in space."""
     mbs = exudyn.SystemContainer().AddSystem()
-    return mbs, add_rotor(mbs, source, **({"spin": 10.0, "translation": "none"} | options))
+    return mbs, er.add_rotor(mbs, source, **({"spin": 10.0, "translation": "none"} | options))
 
 
 def test_markers_and_sensors_at_mesh_nodes_move_with_them(bar):
@@ -166,12 +160,18 @@ def test_markers_and_sensors_at_mesh_nodes_move_with_them(bar):
     corner = int(bar.interfaces["right"].nodes[0])
     marker = body.add_marker([corner], kind="position")
     sensor = body.add_node_sensor(corner, KINDS.DisplacementLocal)
+    place = body.add_node_sensor(corner, KINDS.Position)
     mbs.CreateForce(itemNumber=marker, loadVector=[0.0, 0.0, 50.0])
     mbs.Assemble()
-    mbs.SolveDynamic(recommended_settings(1e-3, 1e-4, body=body))
+    mbs.SolveDynamic(er.recommended_settings(1e-3, 1e-4, body=body))
     moved = body.displacement()[corner]
     assert moved[2] > 1e-9
     np.testing.assert_allclose(mbs.GetSensorValues(sensor), moved, rtol=1e-9)
+    state = mbs.systemData.GetODE2Coordinates()
+    mbs.systemData.SetODE2Coordinates(state, exudyn.ConfigurationType.Visualization)
+    (drawn,) = add_full.surface_drawing(body, *body.nodes.values())(mbs, 0)
+    points = np.reshape(drawn["points"], (-1, 3))
+    assert np.linalg.norm(points - mbs.GetSensorValues(place), axis=1).min() < 1e-12
 
 
 def test_stress_is_that_of_the_rotation(bar):
@@ -194,7 +194,7 @@ def test_too_little_memory_is_said_before_anything_is_added(bar, monkeypatch):
     monkeypatch.setattr(add_full, "available_memory", lambda: 1e5)
     mbs = exudyn.SystemContainer().AddSystem()
     with pytest.raises(TooLittleMemoryError, match=r"60 displacements needs .*rotor\.reduce"):
-        add_rotor(mbs, bar, spin=10.0)
+        er.add_rotor(mbs, bar, spin=10.0)
     assert mbs.systemData.NumberOfNodes() == 0
     monkeypatch.setattr(add_full, "available_memory", lambda: 1e9)
-    add_rotor(mbs, bar, spin=10.0)
+    er.add_rotor(mbs, bar, spin=10.0)

@@ -6,10 +6,7 @@ import pytest
 from point_rotors import ring_rotor
 from scipy.spatial.transform import Rotation
 
-from exudyn_rotor import (
-    PrescribedMotion,
-    add_rotor,
-)
+import exudyn_rotor as er
 
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
 DISPLACEMENT = exu.OutputVariableType.Displacement
@@ -17,7 +14,7 @@ STARTS = {
     "free": {"initial_angle": 2.0},
     "in-plane": {"initial_angle": 2.0, "translation": "in-plane"},
     "none": {"initial_angle": 2.0, "translation": "none"},
-    "run-up": {"spin": PrescribedMotion.run_up(0.0, 20.0, 0.1, angle=2.0)},
+    "run-up": {"spin": er.PrescribedMotion.run_up(0.0, 20.0, 0.1, angle=2.0)},
 }
 
 
@@ -37,7 +34,7 @@ def test_rotor_starts_on_its_axis(start, full):
     rotor = rotor if full else rotor.reduce(0)
     mbs = exu.SystemContainer().AddSystem()
     placed = {"rotation": SKEW, "position": [0.3, -0.1, 0.2]} | STARTS[start]
-    body = add_rotor(mbs, rotor, **placed)
+    body = er.add_rotor(mbs, rotor, **placed)
     sensor = body.add_interface_sensor("all", DISPLACEMENT)
     mbs.Assemble()
     assert np.abs(mbs.GetSensorValues(sensor)).max() < 1e-12 * off

@@ -30,10 +30,11 @@ def s():
     free = er.add_rotor(mbs, few, name="free", markers={"left": "rigid"})
     bare = er.add_rotor(mbs, few.without_shapes(), name="bare")
     full = er.add_rotor(mbs, solid, name="full", spin=60.0)
-    lost = er.add_rotor(other, few, name="lost", spin=60.0)
-    other.Reset()
-    beside = er.add_rotor(other, few, name="beside", spin=60.0)
+    gone = exu.SystemContainer().AddSystem()
+    lost = er.add_rotor(gone, few, name="lost", spin=60.0)
+    gone.DeleteObject(lost.objects["physics"])
     block = er.add_foundation(other, BLOCK)
+    beside = er.add_rotor(other, few, name="beside", spin=60.0)
     other.Assemble()
     ground = mbs.CreateGround(referencePosition=[1.0, 0.0, 0.0])
     far = mbs.AddMarker(MarkerBodyRigid(bodyNumber=ground))
@@ -62,6 +63,11 @@ CALLS = [
     (add(translation="none", initial_velocity=[1.0, 0.0, 0.0]), "no such motion, 1 m/s of"),
     (add(spin=60.0, initial_speed=60.0), "spin given twice: .* leave these out"),
     (add("solid", stiffening="full"), "needs the static .* prestress=True"),
+    (add(spin_coupling="frozen", spin=10.0), "needs spin='free'"),
+    # wrong by 2 % of the motion under a torque of 50 N m
+    (add(spin_coupling="frozen", translation="none"), "translation='free' or"),
+    (add(spin_coupling="half"), "spin_coupling: .*'half'"),
+    (add(stiffening="full"), "needs the static .* prestress=True"),
     (add(color=[0.0, 0.0, 2.0, 1.0]), r"color: needs 4 numbers from 0 to 1 .* got \[0.0, 0.0, 2"),
     (add(name="held"), "already has a marker 'held:left'"),
     (lambda s: er.add_drive(s.held, er.Drag(linear=1.0)), "'held' has a prescribed spin, which"),

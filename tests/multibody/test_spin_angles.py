@@ -6,11 +6,7 @@ import pytest
 from point_rotors import random_arrays
 from scipy.spatial.transform import Rotation
 
-from exudyn_rotor import (
-    SolidRotor,
-    add_rotor,
-    recommended_settings,
-)
+import exudyn_rotor as er
 
 KINDS = exu.OutputVariableType
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
@@ -22,13 +18,13 @@ SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
 @pytest.fixture
 def skew_scene():
     arrays = random_arrays(3)
-    solid = SolidRotor.from_matrices(
+    solid = er.SolidRotor.from_matrices(
         **arrays | {"stiffness": 3e5 * arrays["stiffness"]},
         axis=[1.0, 2.0, 2.0],
         interfaces={"a": [0, 1, 2, 3]},
     )
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, solid.reduce(3), rotation=SKEW, initial_speed=20.0)
+    body = er.add_rotor(mbs, solid.reduce(3), rotation=SKEW, initial_speed=20.0)
     return solid, mbs, body
 
 
@@ -66,13 +62,13 @@ def test_force_at_an_added_marker_has_its_lever(skew_scene):
     ):
         solid, _, _ = skew_scene
         mbs = exu.SystemContainer().AddSystem()
-        body = add_rotor(mbs, solid.reduce(3), spin=0.0, translation="none")
+        body = er.add_rotor(mbs, solid.reduce(3), spin=0.0, translation="none")
         marker = body.add_marker(where, offset, kind=kind) if where else body.marker("a")
         mbs.CreateForce(itemNumber=marker, loadVector=force.tolist())
         if not where:
             mbs.CreateTorque(itemNumber=marker, loadVector=np.cross(OFFSET, force).tolist())
         mbs.Assemble()
-        settings = recommended_settings(end_time=1e-3, step=1e-4)
+        settings = er.recommended_settings(end_time=1e-3, step=1e-4)
         settings.solution.file.write = False
         settings.timeIntegration.verboseMode = 0
         mbs.SolveDynamic(settings)

@@ -7,14 +7,7 @@ from apart import distance
 from point_rotors import ring_rotor
 from scipy.spatial.transform import Rotation
 
-from exudyn_rotor import (
-    SolidRotor,
-    Support,
-    add_rotor,
-    add_supports,
-    linear_model,
-    recommended_settings,
-)
+import exudyn_rotor as er
 from exudyn_rotor.reduction.selection import without_spin
 
 SPEED = 200.0
@@ -27,28 +20,28 @@ COUPLED[:, :3, :3], COUPLED[:, 3:5, 3:5] = (
 )
 COUPLED[:, :3, 3:5] = 0.1 * COUPLED[:, :3, :2]
 COUPLED[:, 3:5, :3] = 0.05 * COUPLED[:, :2, :3]
-HELD = Support("right", np.diag([1e6, 2e6, 5e5]), 150.0)
+HELD = er.Support("right", np.diag([1e6, 2e6, 5e5]), 150.0)
 KINDS = {
-    "number": Support("left", 1e6, 200.0),
-    "2 x 2": Support("left", [[2e6, 0.0], [0.0, 1e6]], [[300.0, 0.0], [0.0, 100.0]]),
-    "cross-coupled": Support("left", [[2e6, 5e5], [-5e5, 2e6]], 400.0),
-    "3 x 3": Support("left", FULL, DAMPING),
-    "tilt": Support("left", 1e6, 0.0, [[4e3, 1e3], [-5e2, 2e3]]),
-    "tilt, damped": Support("left", 1e6, 0.0, [[4e3, 1e3], [-5e2, 2e3]], [[9.0, 2.0], [1.0, 5.0]]),
-    "tilts alone": Support("left", tilt_stiffness=3e3, tilt_damping=4.0),
-    "about the axis": Support("left", 1e6, 0.0, np.diag([3e3, 2e3, 4e3]), np.diag([3, 2, 1e-5])),
-    "rotor frame": Support("left", FULL, DAMPING, frame="rotor"),
-    "rotor frame, tilts": Support(
+    "number": er.Support("left", 1e6, 200.0),
+    "2 x 2": er.Support("left", [[2e6, 0.0], [0.0, 1e6]], [[300.0, 0.0], [0.0, 100.0]]),
+    "cross-coupled": er.Support("left", [[2e6, 5e5], [-5e5, 2e6]], 400.0),
+    "3 x 3": er.Support("left", FULL, DAMPING),
+    "tilt": er.Support("left", 1e6, 0.0, [[4e3, 1e3], [-5e2, 2e3]]),
+    "tilt, damped": er.Support("left", 1e6, 0.0, [[4e3, 1e3], [-5e2, 2e3]], [[9, 2], [1, 5]]),
+    "tilts alone": er.Support("left", tilt_stiffness=3e3, tilt_damping=4.0),
+    "about the axis": er.Support("left", 1e6, 0.0, np.diag([3e3, 2e3, 4e3]), np.diag([3, 2, 1e-5])),
+    "rotor frame": er.Support("left", FULL, DAMPING, frame="rotor"),
+    "rotor frame, tilts": er.Support(
         "left", 0.0, 0.0, np.diag([3e3, 2e3, 4e3]), np.diag([3.0, 2.0, 1.0]), frame="rotor"
     ),
-    "table": Support(
+    "table": er.Support(
         "left", ([0.0, 150.0, 300.0], [FULL, 2.0 * FULL, 3.0 * FULL.T]), ([9.0, 300.0], [3e2, 5e2])
     ),
-    "6 x 6": Support("left", *COUPLED),
-    "tilt table": Support(
+    "6 x 6": er.Support("left", *COUPLED),
+    "tilt table": er.Support(
         "left", 1e6, 0.0, ([0.0, 300.0], [1e3, 5e3]), ([0.0, 300.0], [[[9, 2], [1, 5]]] * 2)
     ),
-    "function": Support("left", lambda speed: 1e6 + 1e3 * speed, lambda speed: 1.5 * speed),
+    "function": er.Support("left", lambda speed: 1e6 + 1e3 * speed, lambda speed: 1.5 * speed),
 }  # fmt: skip
 WITH_A_HELD_SPIN = ("about the axis", "rotor frame, tilts")
 
@@ -58,7 +51,7 @@ def rings(turn=None, heavy=1e-3, modes=2):
     Q = np.eye(3) if turn is None else turn
     upright = ring_rotor(0.1, 0.15, 5.0)
     whole = np.kron(np.eye(10), Q)
-    rotor = SolidRotor.from_matrices(
+    rotor = er.SolidRotor.from_matrices(
         upright.mass, whole @ upright.stiffness @ whole.T, upright.nodes @ Q.T, Q[:, 2]
     )
     rotor = rotor.add_point_mass(Q @ [0.1, 0.0, 0.15], heavy) if heavy else rotor
@@ -68,8 +61,8 @@ def rings(turn=None, heavy=1e-3, modes=2):
 
 def on_supports(reduced, supports, rotation=None, base=None, **options):
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, reduced, rotation=rotation, **options)
-    added = add_supports(body, supports, base)
+    body = er.add_rotor(mbs, reduced, rotation=rotation, **options)
+    added = er.add_supports(body, supports, base)
     mbs.Assemble()
     return mbs, body, added
 
@@ -79,8 +72,8 @@ def compared(kind, turn=None, rotation=None, **options):
     reduced, supports = rings(turn), [KINDS[kind], HELD]
     held = {"spin": SPEED} if kind in WITH_A_HELD_SPIN else {}
     mbs, body, _ = on_supports(reduced, supports, rotation, **(options or held))
-    in_list = linear_model(without_spin(reduced) if held else reduced, supports=supports)
-    return distance(linear_model(mbs, body=body), in_list, SPEED)
+    in_list = er.linear_model(without_spin(reduced) if held else reduced, supports=supports)
+    return distance(er.linear_model(mbs, body=body), in_list, SPEED)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -98,11 +91,13 @@ RISING = ([0.0, 100.0], [[[2e5, 3e4], [0.0, 1e5]], [[8e5, 0.0], [-6e4, 3e5]]])
 def run_up(supports, torque=200.0, end_time=0.02):
     """Run the rotor up from rest by a torque: 80 rad/s at the end where nothing brakes it."""
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rings(), translation="free", gravity=[0.0, -9.81, 0.0], markers="rigid")
-    added = add_supports(body, supports)
+    body = er.add_rotor(
+        mbs, rings(), translation="free", gravity=[0.0, -9.81, 0.0], markers="rigid"
+    )
+    added = er.add_supports(body, supports)
     mbs.CreateTorque(itemNumber=body.marker("left"), loadVector=[0.0, 0.0, torque])
     mbs.Assemble()
-    settings = recommended_settings(end_time=end_time, step=1e-4)
+    settings = er.recommended_settings(end_time=end_time, step=1e-4)
     settings.solution.file.write = False
     mbs.SolveDynamic(settings)
     return mbs, body, added
@@ -110,7 +105,7 @@ def run_up(supports, torque=200.0, end_time=0.02):
 
 def test_a_table_follows_a_free_spin():
     """The connector's force at the end is that of the table at the speed of the end."""
-    table = Support("left", RISING, 50.0)
+    table = er.Support("left", RISING, 50.0)
     _, body, added = run_up([table, HELD])
     _, q_t, _ = body.coordinates()
     speed = q_t[3]
@@ -122,3 +117,32 @@ def test_a_table_follows_a_free_spin():
     np.testing.assert_allclose(force, -stiffness @ u - 50.0 * v, rtol=1e-6)
     assert body.uses_python
     assert "left by Python function; right by Exudyn" in body.report()
+
+
+@pytest.mark.parametrize("driven", [{"spin": SPEED}, {"initial_speed": SPEED}])
+def test_a_film_takes_the_rotor_that_carries_it_along(driven):
+    """Its torque in the middle is 2πμR³LΩ/c, whether the journal's spin is prescribed or free."""
+    mbs, reduced, start = exu.SystemContainer().AddSystem(), rings(heavy=0.0), 50.0
+    film = {"radius": 0.02, "length": 0.02, "clearance": 1e-4, "viscosity": 0.01}
+    inner = er.add_rotor(mbs, reduced, name="inner", **driven)
+    outer = er.add_rotor(mbs, reduced, name="outer", initial_speed=start)
+    for body in (inner, outer):
+        er.add_supports(
+            body, [er.Support(end, 1e6 * np.eye(3), 100.0) for end in ("left", "right")]
+        )
+    er.add_supports(inner, er.ShortJournalBearing(interface="left", **film), outer.marker("left"))
+    mbs.Assemble()
+    settings = er.recommended_settings(end_time=0.05, step=1e-3)
+    settings.solution.file.write = False
+    mbs.SolveDynamic(settings)
+    torque = 2.0 * np.pi * 0.01 * 0.02**3 * 0.02 / 1e-4 * (SPEED - start)
+    speed = outer.coordinates()[1][3]  # after the translations
+    assert reduced.invariants.Theta * (speed - start) == pytest.approx(torque * 0.05, rel=2e-3)
+
+
+def test_a_support_that_was_deleted_is_named():
+    mbs, body, added = on_supports(rings(), [er.Support("left", 1e6, 50.0), HELD], spin=SPEED)
+    mbs.DeleteObject(added[0].objects[0], suppressWarnings=True)
+    mbs.Assemble()
+    with pytest.raises(ValueError, match=r"'rotor' under its numbers: left by .* build the scene"):
+        er.linear_model(mbs, body=body)

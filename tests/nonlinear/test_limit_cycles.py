@@ -56,10 +56,3 @@ def test_whirl_begins_at_the_linear_limit_and_is_that_of_a_run():
     path = mbs.GetSensorStoredData(sensor)
     moved = found.displacement(int(point), path[:, 0], "left")
     assert np.abs(path[:, 1:3] - moved).max() < 2e-3 * found.amplitudes("left")[point]
-
-
-def test_without_an_onset_it_says_so():
-    rotor, supports = rings(), films()
-    onset = stability_threshold(rotor, 50.0, 100.0, supports=supports)
-    with pytest.raises(ValueError, match="does not turn unstable"):
-        limit_cycles(rotor, [80.0], onset, supports=supports, gravity=DOWN)

@@ -130,22 +130,6 @@ def test_a_run_from_it_stays_on_it(founded):
     assert away < 1e-2 * np.ptp(moved, axis=0).max()
 
 
-def test_what_nothing_holds_is_told():
-    tilting = ring_rotor(0.1, 0.2, 8.0).with_interface("left", range(5)).reduce(0)
-    for call, match in (
-        (lambda: response(bearing("left"), [100.0], rotor=tilting), "against tilting: all stand"),
-        (
-            lambda: response(bearing(clearance=1e-6), [30.0], 0.0, UPRIGHT),
-            "without a load no element",
-        ),
-        (lambda: response(Support("seat", 1e6), [30.0]), "none has a nonlinear law"),
-        (lambda: response([bearing(), bearing(count=9)], [30.0]), "one kind as it is"),
-        (lambda: response(bearing(), [-10.0, 10.0]), "-10 is negative"),
-    ):
-        with pytest.raises(ValueError, match=match):
-            call()
-
-
 def test_lacking_harmonics_are_told(monkeypatch):
     monkeypatch.setattr(continuation, "_MOST_UNKNOWNS", 40)
     with pytest.warns(UserWarning, match="at 0 harmonics that are left out have"):

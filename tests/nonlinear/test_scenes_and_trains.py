@@ -37,9 +37,9 @@ DAMPERS = dampers(0.003, 1e6)
 THRUST = Support("left", np.diag([0.0, 0.0, 1e6]), np.diag([0.0, 0.0, 100.0]))
 
 
-def rings():
+def rings(modes=0):
     solid = ring_rotor(0.1, 0.15, 20.0).with_interface("left", range(5))
-    return solid.with_interface("right", range(5, 10)).reduce(0)
+    return solid.with_interface("right", range(5, 10)).reduce(modes)
 
 
 def block():

@@ -1,5 +1,6 @@
 """Shapes of modes and responses, their files; spectra and orbits of runs."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -17,10 +18,12 @@ from exudyn_rotor import (
     Unbalance,
     campbell,
     mode_shapes,
+    plot_orbit,
     response_shapes,
     spectra,
     unbalance_response,
 )
+from exudyn_rotor.plotting import draw_surface, keep_apart
 
 SPEED = 300.0
 EQUAL = [Support(name, 2e7, damping=200.0) for name in ("left", "right")]
@@ -173,3 +176,42 @@ def test_cascade_and_spectrogram_are_drawn():
     assert axes[0].get_xlim()[1] > 50.0
     assert len(axes[0].collections[0].get_paths()) == len(found.times)
     pyplot.close(figure)
+
+
+TIME = np.linspace(0.0, 1.0, 101)
+POINT = SolidRotor.from_matrices(np.eye(3), np.zeros((3, 3)), np.zeros((1, 3)), "z")
+POINT = POINT.with_interface("left", [0]).reduce(0)
+
+
+def responses(speed, target=POINT):
+    heavy, spring = Unbalance("left", 1e-4), Support("left", 1e4)
+    return response_shapes(target, speed, heavy, supports=spring)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: modes().animate("mode.mp4"), "path: needs the ending .gif, got 'mode.mp4'"),
+        (lambda: replace(modes(), motion=0.0 * modes().motion).plot(1), "shape 1, .* no motion"),
+        (lambda: responses([0.0, 1.0]), "speeds: needs spin speeds above zero"),
+        (lambda: responses(1.0, POINT.without_shapes()), "target: its linear model has no mesh"),
+        (lambda: responses(100.0), "response_shapes: there is no steady motion"),
+        (lambda: spectra(TIME, TIME[:5], 1.0, length=0.5), r"motion: needs the shape \(101,\) or"),
+        (lambda: spectra(TIME, TIME, 1.0, length=5.0), "length: a window of 5 s has 500 steps"),
+        (lambda: spectra(TIME**2, TIME, 1.0, length=5.0), "time: needs two instants or more"),
+        (lambda: plot_orbit(np.zeros((3, 2)), [0.0, 1.0, 0.5]), "angle: needs a spin angle that"),
+        (lambda: draw_surface(np.zeros((3, 3)), [], TIME[:3], "x"), "triangles: there are none"),
+    ],
+)
+def test_what_cannot_be_drawn_is_told(call, words):
+    with pytest.raises((ValueError, RuntimeError), match=words):
+        call()
+
+
+def test_labels_that_would_overlap_are_moved_up():
+    ax = pyplot.figure().add_subplot()
+    labels = [ax.annotate("peak", (0.5, 0.5), (0, 4), textcoords="offset points") for _ in range(3)]
+    keep_apart(labels)
+    heights = [label.get_window_extent().y0 for label in labels]
+    assert np.all(np.diff(heights) >= labels[0].get_window_extent().height)
+    pyplot.close(ax.figure)

@@ -1,15 +1,12 @@
 """Level 'full' of centrifugal stiffening: exact rotations, blades, all analyses, storage."""
 
-import exudyn as exu
 import numpy as np
 import pytest
 from models import disc_rotor
 
 from exudyn_rotor import (
-    ConstantSpeed,
     ReducedRotor,
     SolidRotor,
-    add_rotor,
 )
 from exudyn_rotor.theory.stiffening import stiffening
 
@@ -60,13 +57,3 @@ def test_reduced_rotor_without_prestress_is_told_what_to_do(rotor):
     for field in (plain.static_displacement, plain.static_stress):
         with pytest.raises(ValueError, match="without the static centrifugal field"):
             field(1.0)
-
-
-# ------------------------------------------------------------------ a scene
-
-
-def test_body_of_this_level_needs_the_prestress(rotor):
-    mbs = exu.SystemContainer().AddSystem()
-    plain = rotor.reduce(2, prestress=False)
-    with pytest.raises(ValueError, match="prestress=True"):
-        add_rotor(mbs, plain, spin=ConstantSpeed(300.0), stiffening="full")

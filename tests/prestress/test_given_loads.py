@@ -165,6 +165,7 @@ GUIDED = [*BUILT_IN, er.Support("right", np.diag([STIFF, STIFF, 0.0]), tilt_stif
         ({"right": [0.0, 0.0, -0.2 * EULER]}, BUILT_IN, 0.25),
         ({"right": [0.0, 0.0, -3.0 * EULER]}, GUIDED, 4.0),
         ({"right": [0.0, 0.0, EULER]}, PINNED, np.inf),
+        ({"right": [0.0, 0.0, 0.0]}, PINNED, np.inf),
     ],
 )
 def test_loads_above_eulers_are_refused_with_the_factor(loads, supports, shares):
@@ -179,6 +180,19 @@ def test_loads_above_eulers_are_refused_with_the_factor(loads, supports, shares)
     more = {name: 1.01 * factor * np.array(load) for name, load in loads.items()}
     with pytest.raises(ValueError, match=r"loads: the rotor buckles at 0\.9901 of them"):
         shaft().prestress(loads=more, supports=supports)
+
+
+def test_loads_of_nodes_are_those_of_an_array_and_of_interfaces():
+    end = np.flatnonzero(np.isclose(shaft().nodes[:, 2], LENGTH))
+    forces = np.zeros((shaft().node_count, 3))
+    forces[end, 2] = BOTH["right"][2] / len(end)
+    of_nodes = {node: forces[node] for node in end.tolist()}
+    listed = (of_nodes, forces, {"right": BOTH["right"]})
+    given = [shaft().prestress(loads=loads, supports=PINNED) for loads in listed]
+    assert abs(given[0].by_loads - given[1].by_loads).max() == 0.0
+    assert given[0].buckling_factor == pytest.approx(given[2].buckling_factor, rel=1e-3)
+    with pytest.raises(ValueError, match=r"nothing takes up 5 N .*, 0 N and 0.05 N m across it"):
+        shaft().prestress(loads={int(np.argmax(shaft().nodes[:, 0])): [0.0, 0.0, 5.0]})
 
 
 def test_supports_that_let_the_rotor_buckle_have_no_deflection():
@@ -202,10 +216,11 @@ def test_supports_that_let_the_rotor_buckle_have_no_deflection():
         ({"no": [0, 0, 1.0]}, PINNED, "'no' is unknown"),
         ({"right": [0, 1.0]}, PINNED, "needs 3 or 6 numbers"),
         ({"right": [0, 0, 5.0]}, [er.Support("left", lambda w: w * np.eye(3))], "varies"),
+        ({"right": [0, 0, 5.0]}, [3], "supports: needs objects of kind Support, got 3"),
     ],
 )
 def test_what_has_no_static_stress_is_refused(loads, supports, message):
-    with pytest.raises(ValueError, match=message):
+    with pytest.raises((TypeError, ValueError), match=message):
         shaft().prestress(loads=loads, supports=supports)
 
 

@@ -8,6 +8,7 @@ from models import STEEL, block_beam, disc_rotor
 from netgen.occ import Cylinder, OCCGeometry, Pnt, Z
 
 from exudyn_rotor import Prestress, SolidRotor, SpinAxis
+from exudyn_rotor.prestress.carrying import estimated_stiffness
 from exudyn_rotor.solid.elements import von_mises
 from exudyn_rotor.theory.axis import rotations
 
@@ -156,3 +157,14 @@ def softened(disc: SolidRotor) -> Prestress:
 def test_prestress_of_another_state_is_refused(disc, beam, carrying, message):
     with pytest.raises(ValueError, match=message):
         carrying(disc, beam)
+
+
+@pytest.mark.parametrize("places", [np.arange(51.0), np.arange(51.0) // 2.0])
+def test_points_that_no_truss_holds_have_no_estimate(places):
+    """In a row, where bars hold nothing across it; and of which two are at one place."""
+    path = np.diag([1.0, *[2.0] * 49, 1.0]) - np.eye(51, k=1) - np.eye(51, k=-1)
+    nodes = np.outer(places, [0.0, 0.0, 1.0])
+    row = SolidRotor.from_matrices(np.eye(153), np.kron(path, np.eye(3)), nodes, "z")
+    assert estimated_stiffness(row) is None
+    with pytest.raises(ValueError, match="prestress: this rotor has no elements"):
+        row.prestress()

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from exudyn_rotor import __main__
 from exudyn_rotor.demo import run_demo
 
 
@@ -23,3 +24,10 @@ def test_variants_agree_with_the_3d_body(demo):
     assert virtual.deviation(reference).max() < 1e-9 * amplitude
     assert free.deviation(reference).max() < 1e-3 * amplitude
     assert none.deviation(reference).max() < 5e-3 * amplitude
+
+
+def test_the_command_line_runs_it(monkeypatch):
+    calls = []
+    monkeypatch.setattr(__main__, "run_demo", lambda output, quick: calls.append((output, quick)))
+    __main__.main(["demo", "--quick"])
+    assert calls == [("exudyn-rotor-demo", True)]

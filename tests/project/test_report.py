@@ -63,8 +63,9 @@ def test_rotors_and_models_are_described(written):
     ring = ring_rotor(0.1, 0.2, 10.0).with_interface("mid", range(10))
     supports = [Support("mid", np.diag([4e5, 8e5]), 200.0)]
     reduced = ring.reduce(2)
-    text = written([{"Rotor": [ring, reduced]}, supports, linear_model(reduced, supports=supports)])
-    assert Page(text).headings[1:] == ["Rotor", "Support", "Linear model"]
+    model, ax = linear_model(reduced, supports=supports), pyplot.figure().add_subplot()
+    text = written([{"Rotor": [ring, reduced]}, supports, model, ax])
+    assert Page(text).headings[1:] == ["Rotor", "Support", "Linear model", "Picture"]
     assert text.count("Support(") == 2
     assert "mass" in text
 

@@ -62,6 +62,8 @@ def test_every_kind_of_field_comes_back(tmp_path):
     assert (back.name, back.names, back.number, back.flag) == ("Läufer", ("a", "b"), 0.1, True)
     assert type(back.flag) is bool
     assert back.absent is None
+    with pytest.raises(ValueError, match="pairs: needs values ≥ 0"):
+        everything(pairs=-np.ones((1, 2)))
     everything().save(tmp_path / "empty.npz")
     assert Everything.load(tmp_path / "empty.npz").names == ()
 

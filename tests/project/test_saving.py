@@ -1,13 +1,17 @@
 """Saving is atomic, keeps mode and links of a file, and touches nothing else."""
 
 import os
+import sys
+from dataclasses import make_dataclass
 
 import numpy as np
 import pytest
 from matplotlib import pyplot
 from matplotlib.figure import Figure
+from small_results import STORED
 
-from exudyn_rotor import plotting
+from exudyn_rotor import Result, StabilityMap, plotting
+from exudyn_rotor.results import storable
 from exudyn_rotor.storage import read_arrays, write_arrays
 
 
@@ -57,3 +61,30 @@ def test_pictures_of_several_axes(tmp_path):
     for wrong in (np.array([]), np.array([1.0]), [axes]):
         with pytest.raises(TypeError, match="drawn: needs Axes"):
             plotting.save(wrong, tmp_path / "a")
+
+
+def other(name, *fields):
+    return storable(make_dataclass(name, fields, bases=(Result,), frozen=True, eq=False))
+
+
+REFUSED = [  # what is called in a folder with a file a.npz, and what it says
+    (lambda: write_arrays(".", "thing", {}), r"path: needs the name of a file, '\.' is a folder"),
+    (lambda: write_arrays("/dev/null", "thing", {}), "'/dev/null' is a device"),
+    (lambda: write_arrays("a.npz", "thing", {}), "path: the file 'a.npz' is read-only"),
+    (lambda: StabilityMap.load("a.npz"), "a.npz: holds a Spectra, not a StabilityMap"),
+    (lambda: Result().save("b.npz"), "a Result cannot be stored; its class needs the decorator"),
+    (lambda: Result().columns(), "columns: a Result has none"),
+    (lambda: STORED["Spectra"].to_dataframe(), "to_dataframe: needs pandas, which is not inst"),
+    (lambda: other("Other", ("x", dict)), "Other.x: a .*dict.* cannot be stored"),
+    (lambda: other("Spectra"), "a result class of the name Spectra is registered already"),
+]
+
+
+@pytest.mark.parametrize(("call", "words"), REFUSED)
+def test_what_cannot_be_stored_is_told(call, words, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    STORED["Spectra"].save("a.npz")
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    with pytest.raises((TypeError, ValueError, OSError, ImportError), match=words):
+        call()

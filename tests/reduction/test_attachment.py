@@ -7,18 +7,13 @@ import scipy.linalg as la
 from models import STEEL, block_beam, centered_disc
 from run_scenes import scene, solve
 
-from exudyn_rotor import (
-    ReducedRotor,
-    SolidRotor,
-    check_run,
-    keep_modes,
-)
+import exudyn_rotor as er
 from exudyn_rotor.theory.axis import rotations, translations
 
 
 @pytest.fixture(scope="module")
 def beam():
-    return SolidRotor.from_ngsolve(block_beam(0.1), STEEL, "z", order=1)
+    return er.SolidRotor.from_ngsolve(block_beam(0.1), STEEL, "z", order=1)
 
 
 @pytest.fixture(scope="module")
@@ -31,14 +26,14 @@ def lopsided(rotor):
     return rotor.add_point_mass([0.15, 0, 0.215], 0.005)
 
 
-def flexibility(reduced: ReducedRotor) -> np.ndarray:
+def flexibility(reduced: er.ReducedRotor) -> np.ndarray:
     """Return the flexibility of the flexible modes at the interfaces, (6n, 6n)."""
     flexible = slice(len(reduced.rigid), None)
     motion = np.vstack([one.motion[:, flexible] for one in reduced.interfaces.values()])
     return (motion / reduced.frequencies[flexible] ** 2) @ motion.T
 
 
-def exact_flexibility(rotor: SolidRotor) -> np.ndarray:
+def exact_flexibility(rotor: er.SolidRotor) -> np.ndarray:
     """Return the same of all flexible modes, by dense eigenvectors."""
     values, modes = la.eigh(rotor.stiffness.toarray(), rotor.mass.toarray())
     operators = [one.mean_motion(rotor.node_count) for one in rotor.interfaces.values()]
@@ -56,7 +51,7 @@ def test_flexibility_is_complete_with_attachment_modes(beam, count):
 
 def test_truncation_and_files_keep_them(rotor, tmp_path):
     reduced = rotor.reduce(6)
-    fewer = keep_modes(reduced, [0, 1])
+    fewer = er.keep_modes(reduced, [0, 1])
     assert fewer.with_attachments is reduced.with_attachments
     for each in (reduced, fewer):  # the columns of the rotor in the basis with attachments
         found = each.with_attachments.invariants.in_basis(each.in_attached)
@@ -67,7 +62,7 @@ def test_truncation_and_files_keep_them(rotor, tmp_path):
             expected = each.interfaces[name].motion
             np.testing.assert_allclose(interface.motion @ each.in_attached, expected, atol=1e-8)
     reduced.save(tmp_path / "rotor.npz")
-    loaded = ReducedRotor.load(tmp_path / "rotor.npz")
+    loaded = er.ReducedRotor.load(tmp_path / "rotor.npz")
     np.testing.assert_array_equal(loaded.in_attached, reduced.in_attached)
     loaded = loaded.with_attachments
     given = reduced.with_attachments
@@ -79,7 +74,7 @@ def test_truncation_and_files_keep_them(rotor, tmp_path):
 # ------------------------------------------------------------------ advice
 
 
-def spring_forces(reduced: ReducedRotor, **options):
+def spring_forces(reduced: er.ReducedRotor, **options):
     """Return the body after a run under its weight and unbalance at 200 rad/s.
 
     And the displacements of both interfaces (s, 6), and the forces and moments (s, 12) of springs
@@ -105,7 +100,7 @@ def spring_forces(reduced: ReducedRotor, **options):
     return body, moved.reshape(101, 6), loads.reshape(101, 12)
 
 
-def static_motion(rotor: SolidRotor, speed: float) -> np.ndarray:
+def static_motion(rotor: er.SolidRotor, speed: float) -> np.ndarray:
     """Return the motion (12,) of both interfaces by the static centrifugal displacement."""
     static = rotor.reduce(0, prestress=True).static_displacement(speed).reshape(-1)
     rigid = np.hstack(
@@ -123,7 +118,7 @@ def whole(lopsided):
     return flexibility(lopsided.reduce(0).with_attachments), static_motion(lopsided, 200.0)
 
 
-def modal_stretch(reduced: ReducedRotor, speed: float) -> np.ndarray:
+def modal_stretch(reduced: er.ReducedRotor, speed: float) -> np.ndarray:
     """Return the share of it that the flexible modes show."""
     modes = np.arange(reduced.size) >= len(reduced.rigid_kinds)
     origin = reduced.axis.project(reduced.center_of_mass) - reduced.center_of_mass
@@ -153,7 +148,7 @@ def test_estimate_after_a_run_is_what_the_springs_would_bend(lopsided, whole, co
     missing, stretch = whole[0] - flexibility(reduced), whole[1] - modal_stretch(reduced, 200.0)
     bent = (loads @ missing + stretch).reshape(-1, 2, 6)[1:, :, :3].reshape(100, 6)
     expected = np.linalg.norm(bent, axis=1).max() / np.linalg.norm(moved, axis=1).max()
-    row = check_run(body, warn=False)["residual"]
+    row = er.check_run(body, warn=False)["residual"]
     assert row.value == pytest.approx(expected, rel=1e-5)
     assert not row.ok
-    assert check_run(body, accuracy=min(1.01 * expected, 0.9), warn=False)["residual"].ok
+    assert er.check_run(body, accuracy=min(1.01 * expected, 0.9), warn=False)["residual"].ok

@@ -9,10 +9,7 @@ import scipy.linalg
 from exudyn.FEM import FEMinterface, HCBstaticModeSelection
 from models import disc_fem
 
-from exudyn_rotor import (
-    SolidRotor,
-    use_mean_axis_modes,
-)
+from exudyn_rotor import SolidRotor, use_mean_axis_modes
 from exudyn_rotor.reduction.component import rigid_columns
 
 OWN, TWIN = "CreateFFRFReducedOrderObject", "CreateFixedAxisFFRFReducedOrderObject"
@@ -119,3 +116,13 @@ def test_exudyns_body_agrees_in_the_mean_axis_frame_only(held):
     # 2e-3, as the other tests of the swapped call: second order in the tilt, and O(h²) of the turn
     assert away[1] < 2e-3
     assert away[0] > 10.0 * away[1]
+
+
+def test_stress_of_modes_goes_with_them(solid):
+    rigid = rigid_of(solid)
+    fem = copy(disc_fem(), np.hstack([rigid, disc_fem().modeBasis["matrix"]]))
+    fem.postProcessingModes = {"matrix": np.arange(72.0)[None]}  # six columns of each mode
+    assert use_mean_axis_modes(fem) == tuple(range(6))
+    np.testing.assert_array_equal(fem.postProcessingModes["matrix"], [np.arange(36.0, 72.0)])
+    with pytest.raises(ValueError, match="are rigid motions alone"):
+        use_mean_axis_modes(copy(disc_fem(), rigid))

@@ -9,6 +9,7 @@ from models import STEEL, disc_rotor
 from netgen.occ import Cylinder, Dir, OCCGeometry, Pnt
 
 from exudyn_rotor import SolidRotor, Support, craig_bampton_modes, free_modes, static_response
+from exudyn_rotor.theory.axis import rotations, translations
 
 CUT = "one of a pair"
 
@@ -59,6 +60,24 @@ def test_pairs_of_a_disc_on_a_shaft_on_held_interfaces():
         )
         assert found
         assert set(found) <= set(ends)
+
+
+@pytest.mark.parametrize(
+    ("hertz", "expected"),
+    [
+        ([10.0, 10.01, 12.0, 12.01, 14.0, 16.0], [1, 3]),
+        ([10.0, 10.03, 10.13, 10.15, 14.0, 16.0], [1, 3]),  # pairs that are nearly alike
+        ([8.0, 10.0, 10.03, 10.13, 10.15, 16.0], [2, 4]),
+        ([8.0, 10.0, 10.02, 10.13, 12.0, 12.01], [2, 5]),  # beside a mode without a pair
+    ],
+)
+def test_of_near_neighbours_the_nearest_is_the_pair(hertz, expected):
+    nodes = np.array([[0.0, 0, 0], [1.0, 0, 0], [0.0, 1, 0], [0.0, 0, 1]])
+    rigid = np.hstack([translations(4), rotations(nodes, nodes[0])])
+    flexible = np.linalg.svd(rigid)[0][:, 6:]
+    stiffness = flexible @ np.diag((2.0 * np.pi * np.array(hertz)) ** 2) @ flexible.T
+    rotor = SolidRotor.from_matrices(np.eye(12), stiffness, nodes, "z")
+    assert cut(lambda number: free_modes(rotor, number), range(1, 6)) == expected
 
 
 def test_reduce_says_what_to_do(monkeypatch):

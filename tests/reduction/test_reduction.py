@@ -1,5 +1,6 @@
 """Reduction, selection of modes, and storage."""
 
+import pickle
 from collections.abc import Mapping
 from dataclasses import fields, replace
 
@@ -7,24 +8,18 @@ import numpy as np
 import pytest
 from point_rotors import SKEW_AXIS, random_rotor
 
-from exudyn_rotor import (
-    Formulation,
-    ReducedRotor,
-    SolidRotor,
-    SpinAxis,
-    free_modes,
-    select_modes,
-)
+import exudyn_rotor as er
 from exudyn_rotor.reduction.reduced_rotor import RIGID_KINDS, rigid_names
+from exudyn_rotor.reduction.selection import without_spin
 from exudyn_rotor.theory.axis import block_diagonal, rotations, translations
 
 RIGID = rigid_names(RIGID_KINDS)
 EXACT = 1e-12  # sums over six nodes with entries of order 1
-OFF_ORIGIN = SpinAxis(SKEW_AXIS, [0.3, -0.2, 0.5])
+OFF_ORIGIN = er.SpinAxis(SKEW_AXIS, [0.3, -0.2, 0.5])
 
 
 @pytest.fixture(scope="module")
-def rotor() -> SolidRotor:
+def rotor() -> er.SolidRotor:
     """Return a free random rotor whose centre of mass is off the axis."""
     return random_rotor(
         11, OFF_ORIGIN, interfaces={"left": [0, 1, 2], "right": [3, 4, 5]}, triangles=[[0, 1, 2]]
@@ -32,7 +27,7 @@ def rotor() -> SolidRotor:
 
 
 @pytest.fixture(scope="module")
-def reduced(rotor) -> ReducedRotor:
+def reduced(rotor) -> er.ReducedRotor:
     return rotor.reduce(5)
 
 
@@ -60,7 +55,7 @@ def test_invariants_are_about_the_center_of_mass(rotor, reduced):
 
 
 def test_dependent_columns_are_dropped_and_named(rotor):
-    modes = free_modes(rotor, 3).matrix
+    modes = er.free_modes(rotor, 3).matrix
     turned = rotations(rotor.nodes, np.zeros(3))[:, :1]
     columns = np.column_stack([modes, 2.0 * modes[:, 1], turned, modes[:, 0] - modes[:, 2]])
     reduced = rotor.reduce(columns)
@@ -74,19 +69,19 @@ def test_nodes_on_the_axis_have_no_spin():
     springs = np.zeros((9, 9))
     springs[2, 2] = springs[5, 5] = 10.0
     springs[2, 5] = springs[5, 2] = -10.0
-    rotor = SolidRotor.from_matrices(np.eye(9), springs, nodes, "z")
+    rotor = er.SolidRotor.from_matrices(np.eye(9), springs, nodes, "z")
     stretch = np.eye(9)[:, 5:6] - np.eye(9)[:, 2:3]
     reduced = rotor.reduce(stretch)
     assert "spin" in reduced.dropped
     with pytest.raises(ValueError, match="no moment of inertia about its axis"):
-        select_modes(reduced, Formulation("none", "free"))
-    assert "spin" not in select_modes(reduced, Formulation("none", 10.0)).labels
+        er.select_modes(reduced, er.Formulation("none", "free"))
+    assert "spin" not in er.select_modes(reduced, er.Formulation("none", 10.0)).labels
 
 
 # ------------------------------------------------------------------ selection
 
 
-def tau_rows(formulation: Formulation, axis: SpinAxis) -> np.ndarray:
+def tau_rows(formulation: er.Formulation, axis: er.SpinAxis) -> np.ndarray:
     """Return the mesh directions in which the frame's translation is unknown."""
     first, second = axis.plane.T
     return np.array([first, second, axis.direction])[: formulation.translation_count]
@@ -96,8 +91,8 @@ def tau_rows(formulation: Formulation, axis: SpinAxis) -> np.ndarray:
 @pytest.mark.parametrize("spin", ["free", 10.0])
 def test_selection_leaves_out_what_its_frame_holds(rotor, reduced, translation, spin):
     """Mean translations (``S = 0``), and the mean rotation about the axis, ``e·I⁻¹ Σ M y × ψ``."""
-    formulation = Formulation(translation, spin)
-    selection = select_modes(reduced, formulation)
+    formulation = er.Formulation(translation, spin)
+    selection = er.select_modes(reduced, formulation)
     shape = reduced.shapes.matrix @ selection.T
     scale = np.sqrt(rotor.total_mass)
 
@@ -126,16 +121,16 @@ def test_selection_leaves_out_what_its_frame_holds(rotor, reduced, translation, 
 @pytest.mark.parametrize(
     ("formulation", "rigid"),
     [
-        (Formulation("free"), RIGID[4:]),
-        (Formulation("in-plane"), (RIGID[2], *RIGID[4:])),
-        (Formulation("none"), (*RIGID[:3], *RIGID[4:])),
-        (Formulation("none", 5.0), (*RIGID[:3], *RIGID[4:])),
-        (Formulation("none", 5.0, drive="elastic"), RIGID),
-        (Formulation("free", 5.0, drive="elastic"), RIGID[3:]),
+        (er.Formulation("free"), RIGID[4:]),
+        (er.Formulation("in-plane"), (RIGID[2], *RIGID[4:])),
+        (er.Formulation("none"), (*RIGID[:3], *RIGID[4:])),
+        (er.Formulation("none", 5.0), (*RIGID[:3], *RIGID[4:])),
+        (er.Formulation("none", 5.0, drive="elastic"), RIGID),
+        (er.Formulation("free", 5.0, drive="elastic"), RIGID[3:]),
     ],
 )
 def test_each_formulation_has_the_rigid_modes_that_its_frame_lacks(reduced, formulation, rigid):
-    selection = select_modes(reduced, formulation)
+    selection = er.select_modes(reduced, formulation)
     assert selection.labels[: len(rigid)] == rigid
     assert len(selection.labels) == len(rigid) + 5
     assert selection.invariants.size == len(selection.labels)
@@ -162,7 +157,7 @@ def all_arrays(value, prefix: str = "") -> dict[str, np.ndarray]:
 # ------------------------------------------------------------------ storage
 
 
-def assert_identical(actual: ReducedRotor, expected: ReducedRotor) -> None:
+def assert_identical(actual: er.ReducedRotor, expected: er.ReducedRotor) -> None:
     ours, theirs = all_arrays(actual), all_arrays(expected)
     assert ours.keys() == theirs.keys()
     for name, array in ours.items():
@@ -176,13 +171,26 @@ def assert_identical(actual: ReducedRotor, expected: ReducedRotor) -> None:
         assert interface.radius == expected.interfaces[name].radius
 
 
-def with_stress(reduced: ReducedRotor) -> ReducedRotor:
+def with_stress(reduced: er.ReducedRotor) -> er.ReducedRotor:
     stress = np.random.default_rng(5).normal(size=(6, 6, reduced.size))
     return replace(reduced, shapes=replace(reduced.shapes, stress=stress))
 
 
-@pytest.mark.parametrize("change", [lambda r: r, ReducedRotor.without_shapes, with_stress])
+@pytest.mark.parametrize("change", [lambda r: r, er.ReducedRotor.without_shapes, with_stress])
 def test_storage_is_lossless(reduced, tmp_path, change):
     changed = change(reduced)
     changed.save(tmp_path / "rotor.npz")
-    assert_identical(ReducedRotor.load(tmp_path / "rotor.npz"), changed)
+    assert_identical(er.ReducedRotor.load(tmp_path / "rotor.npz"), changed)
+
+
+def test_selections_and_copies_know_their_rotor(rotor, reduced):
+    selection = er.select_modes(reduced, er.Formulation("none", 10.0))
+    assert repr(selection).startswith("Selection(10 of the 11 columns of ReducedRotor(6 rigid + 5")
+    assert selection.is_of(pickle.loads(pickle.dumps(reduced)))
+    assert not selection.is_of(rotor.reduce(4))
+    held = without_spin(reduced)
+    assert without_spin(held) is held
+    # the static responses beside the modes stay, without the spin of both
+    finer = held.with_attachments.invariants
+    assert finer.size == reduced.with_attachments.size - 1
+    assert np.abs(held.axis.direction @ finer.mean_rotation).max() < EXACT

@@ -108,12 +108,13 @@ def test_disc_whirls_as_a_meshed_stiff_one(rigid_and_meshed, level):
         ({"inertia": (0.1, 0.1, 0.1)}, "polar and transverse"),
         ({"width": 0.001}, "on one line"),
         ({"name": "left"}, "exists already"),
+        ({"position": 0.3}, r"shares nodes with the disc at \[.*0\.3\] m; add one disc"),
     ],
 )
 def test_impossible_discs_are_refused(change, words):
     given = {"position": 0.15, "mass": 1.0, "inertia": (0.02, 0.02), "width": 0.06, **change}
     with pytest.raises(ValueError, match=words):
-        shaft().add_disc(**given)
+        shaft().add_disc(0.3, 1.0, (0.02, 0.02), 0.06).add_disc(**given)
 
 
 def test_summary_names_materials_and_discs():

@@ -49,3 +49,9 @@ def test_factors_add_up_before_and_after_reduction(cylinder):
             expected = getattr(other.invariants, name)
             found = getattr(one.invariants, name)
             np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected).max())
+
+
+def test_mass_damping_of_a_held_rotor_is_on_the_ground():
+    held = SolidRotor.from_matrices(2.0 * np.eye(9), 1e6 * np.eye(9), np.eye(3), "z")
+    damped = held.with_damping(mass=3.0, stiffness=1e-5)  # 3 · 2 + 10 N s/m
+    np.testing.assert_allclose(damped.damping.toarray(), 16.0 * np.eye(9))

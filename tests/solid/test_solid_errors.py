@@ -2,14 +2,16 @@
 
 from dataclasses import replace
 
+import ngsolve as ngs
 import numpy as np
 import pytest
 import scipy.sparse as sp
 from exudyn.FEM import FEMinterface
 from models import STEEL, block_beam, two_material_cylinder
+from netgen.geom2d import unit_square
 from point_rotors import free_stiffness
 
-from exudyn_rotor import Formulation, ModeBasis, craig_bampton_modes, keep_modes, select_modes
+import exudyn_rotor as er
 from exudyn_rotor.solid_rotor import SolidRotor
 
 
@@ -127,6 +129,29 @@ def test_materials_that_cannot_be(mesh, changes, message):
         SolidRotor.from_ngsolve(mesh, {"steel": {**STEEL, **changes}}, "z")
 
 
+def ngsolve_mesh(kind):
+    """Return a mesh that is flat, or made second order that often."""
+    if kind == "flat":
+        return ngs.Mesh(unit_square.GenerateMesh(maxh=0.5))
+    mesh = block_beam()
+    for _ in range(kind):
+        mesh.ngmesh.SecondOrder()
+    return mesh
+
+
+@pytest.mark.parametrize(
+    ("kind", "order", "message"),
+    [
+        ("flat", 1, "needs volume elements, and tetrahedra only; generate"),
+        (1, 1, "its elements are curved, .* use order=2"),
+        (2, 2, "points belong to no volume element .* generate the mesh anew"),
+    ],
+)
+def test_meshes_that_cannot_be(kind, order, message):
+    with pytest.raises(ValueError, match=message):
+        SolidRotor.from_ngsolve(ngsolve_mesh(kind), STEEL, "z", order=order)
+
+
 def test_a_mesh_in_millimetres_with_si_materials():
     with pytest.raises(ValueError, match=r"cannot be a rotor; lengths in mm, as Netgen.*Scale"):
         SolidRotor.from_ngsolve(block_beam(scale=1e3), STEEL, "z")
@@ -186,12 +211,13 @@ CALLS = [
     (lambda r: r.reduce(0), "basis is empty: ask for at least one component mode"),
     (lambda r: r.reduce(FEMinterface()), r"holds no modes; call fem\.ComputeEigenmodes"),
     (lambda r: r.reduce(1, stress=True), "no stress recovery; make it with from_ngsolve"),
-    (lambda r: ModeBasis(np.ones((6, 1)), ["a"], r.nodes), "matrix: needs 9 rows, got 6"),
+    (lambda r: er.ModeBasis(np.ones((6, 1)), ["a"], r.nodes), "matrix: needs 9 rows, got 6"),
+    (lambda r: er.Prestress(np.eye(9), r.nodes, initial_displacement=[np.eye(9)]), "K_uu, got 1"),
     (lambda r: replace(r.reduce(2), shapes=r.reduce(1).shapes), "one column for each of 2, got 1"),
-    (lambda r: craig_bampton_modes(r, 1), "'a' and 'b' share node 1, .* use coupling='RBE3'"),
-    (lambda r: keep_modes(r.reduce(2), []), "no rigid motions; keep at least one mode"),
+    (lambda r: er.craig_bampton_modes(r, 1), "'a' and 'b' share node 1, .* use coupling='RBE3'"),
+    (lambda r: er.keep_modes(r.reduce(2), []), "no rigid motions; keep at least one mode"),
     (
-        lambda r: select_modes(r.reduce(2), Formulation("free", "free")),
+        lambda r: er.select_modes(r.reduce(2), er.Formulation("free", "free")),
         "holds this rotor in its own",
     ),
 ]

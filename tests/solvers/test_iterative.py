@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from models import ALUMINIUM as LIGHT
-from models import STEEL, two_material_cylinder
+from models import STEEL, block_beam, two_material_cylinder
 from netgen.occ import Box, OCCGeometry
 from ngsolve import Mesh
 
@@ -31,21 +31,26 @@ def both(rotor):
     return rotor.with_solver("direct"), rotor.with_solver("iterative")
 
 
-@pytest.mark.parametrize("held", [False, True])
-def test_modes_are_those_of_the_factor(cylinder, held):
-    rotor = cylinder.clamped("left") if held else cylinder
-    expected, found = (free_modes(one, 7) for one in both(rotor))
+@pytest.mark.parametrize("case", ["free", "held", "few elements"])
+def test_modes_are_those_of_the_factor(cylinder, case):
+    few = SolidRotor.from_ngsolve(block_beam(maxh=0.3), STEEL, "z")
+    rotor = {"free": cylinder, "held": cylinder.clamped("left"), "few elements": few}[case]
+    expected, found = (free_modes(one, 12) for one in both(rotor))
     np.testing.assert_allclose(found.frequencies, expected.frequencies, rtol=SAME_FREQUENCY)
 
 
 @pytest.mark.parametrize("coupling", ["RBE2", "RBE3"])
 def test_craig_bampton_modes_are_those_of_the_factor(cylinder, coupling, monkeypatch):
+    monkeypatch.setattr("pyngcore.GetNumThreads", lambda: 2)
     monkeypatch.setattr(davidson, "_MOST_STEPS", 27)  # 25 are needed
     modes = [craig_bampton_modes(one, 4, coupling=coupling) for one in both(cylinder)]
     expected, found = (one.frequencies[12:] for one in modes)
     np.testing.assert_allclose(found, expected, rtol=SAME_FREQUENCY)
     expected, found = (one.matrix[:, :12] for one in modes)
     np.testing.assert_allclose(found, expected, atol=SAME_DISPLACEMENT * np.abs(expected).max())
+    monkeypatch.setattr(davidson, "_MOST_STEPS", 1)
+    with pytest.raises(ValueError, match=r"of 5 modes converged in 1 steps; use rotor\.with"):
+        craig_bampton_modes(both(cylinder)[1], 4, coupling=coupling)
 
 
 def test_static_solutions_are_those_of_the_factor(cylinder, monkeypatch):
@@ -95,7 +100,9 @@ def test_iteration_takes_over_where_a_factor_does_not_fit_or_is_slow(cylinder, m
 
 def test_iteration_needs_elements(cylinder):
     plain = SolidRotor.from_matrices(cylinder.mass, cylinder.stiffness.copy(), cylinder.nodes, "z")
-    with pytest.raises(ValueError, match="needs a model of second-order elements made by"):
-        free_modes(plain.with_solver("iterative"), 2)
+    linear = SolidRotor.from_ngsolve(block_beam(), STEEL, "z", order=1)
+    for one in (plain, linear):
+        with pytest.raises(ValueError, match="needs a model of second-order elements made by"):
+            free_modes(one.with_solver("iterative"), 2)
     with pytest.raises(ValueError, match="solver"):
         cylinder.with_solver("quick")

@@ -1,12 +1,14 @@
 """Lanczos iteration for the lowest modes."""
 
 from collections.abc import Callable
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from exudyn_rotor.solvers.modes import lanczos_modes
+from exudyn_rotor.solvers.inertia_relief import free_rigid_motions
+from exudyn_rotor.solvers.modes import check_modes, dense_modes, lanczos_modes
 
 SIZE = 400
 
@@ -35,8 +37,21 @@ def test_pairs_are_found_whole():
     np.testing.assert_allclose(modes.T @ (mass @ modes), np.eye(20), atol=1e-13)
 
 
-def test_more_modes_than_masses_are_refused():
-    masses = np.zeros(SIZE)
-    masses[:6] = 1.0
-    with pytest.raises(ValueError, match="not all nodes may have mass"):
-        lanczos_modes(*oscillators(np.full(SIZE, 10.0), masses), 7, 1e-10)
+FEW = np.where(np.arange(SIZE) < 6, 1.0, 0.0)
+INVERSE = SimpleNamespace(without_reactions=lambda forces: forces, precision=1e-16)
+MASS, SPRINGS = sp.eye_array(9, format="csr"), sp.diags_array(np.arange(1.0, 10.0), format="csr")
+REFUSED = [
+    (lambda: lanczos_modes(*oscillators(1.0 + FEW, FEW), 7, 1e-10), "not all nodes may have mass"),
+    (
+        lambda: dense_modes(-MASS, np.copy, 1),
+        "mass matrix is not positive definite .* nodes without",
+    ),
+    (lambda: check_modes(SPRINGS, MASS, INVERSE, np.ones(2), np.eye(9, 2)), "eigenmode 2 does not"),
+    (lambda: free_rigid_motions(np.eye(3), MASS, SPRINGS, 6), "claims 6 free .* holds supports"),
+]
+
+
+@pytest.mark.parametrize(("call", "message"), REFUSED)
+def test_what_has_no_modes_is_refused(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()

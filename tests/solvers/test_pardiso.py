@@ -41,7 +41,7 @@ def test_modes_of_a_large_residual_leave_smooth_forces(shaft):
     assert np.all(left < 1e-6 * np.linalg.norm(inertia, axis=0))
 
 
-def test_pardiso_solves_many_right_hand_sides():
+def test_pardiso_solves_many_right_hand_sides_and_says_what_fails(monkeypatch):
     pytest.importorskip("pypardiso")
     matrix = laplacian(22)
     assert matrix.shape[0] > factor.PARDISO_SIZE
@@ -51,6 +51,12 @@ def test_pardiso_solves_many_right_hand_sides():
     assert made.solve(matrix @ known) == pytest.approx(known, abs=1e-11)
     assert made.solve(matrix @ known[:, 0]) == pytest.approx(known[:, 0], abs=1e-11)
     assert made.solve(np.zeros((matrix.shape[0], 0))).shape == (matrix.shape[0], 0)
+    indefinite = sp.csr_array(matrix - sp.eye_array(matrix.shape[0]))
+    with pytest.raises(factor.NotPositiveDefiniteError, match="a pivot that is not positive"):
+        SparseCholesky(indefinite)
+    monkeypatch.setattr(factor, "_NO_MEMORY", (-4,))  # what this error has for its number
+    with pytest.raises(factor.TooLittleMemoryError, match="for 10648 coordinates; use a coarser"):
+        SparseCholesky(indefinite)
 
 
 def test_pardiso_gives_the_modes_of_ngsolve(shaft, monkeypatch):
@@ -81,3 +87,10 @@ def test_mkl_is_named_once_where_a_model_is_large(shaft, monkeypatch):
                 stiffness = shaft.stiffness.copy()  # whose factor is not known yet
                 free_modes(SolidRotor.from_matrices(shaft.mass, stiffness, shaft.nodes, "x"), 1)
         assert len([one for one in caught if "mkl" in str(one.message)]) == count
+
+
+def test_memory_is_that_of_the_container(monkeypatch, tmp_path):
+    for name, text in (("max", "5000\n"), ("current", "3000\n")):
+        (tmp_path / name).write_text(text)
+    monkeypatch.setattr(factor, "_GROUP", (tmp_path / "max", tmp_path / "current"))
+    assert factor.available_memory() == 2000.0

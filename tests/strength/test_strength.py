@@ -115,7 +115,7 @@ def test_stress_in_a_run_is_the_static_one_and_what_exudyn_s_own_sensor_adds(bea
     settings.solution.file.write, settings.solution.sensors.writePeriod = False, 1e-3 / 30
     mbs.SolveDynamic(settings)
     record, sensed = (mbs.GetSensorStoredData(sensor)[:, 1:] for sensor in (modes, native))
-    field = StressField.of(beam, body.selection)
+    field = StressField.of(beam, body)
     history = stress_history(field, np.arange(len(record)), record, 300.0, nodes=[node])
     expected = beam.static_stress(300.0)[node] + sensed - sensed[0]
     scale = np.abs(sensed - sensed[0]).max()
@@ -154,26 +154,20 @@ def test_stress_at_speed_without_the_static_part_warns():
 
 def test_bad_input_is_refused(beam):
     field, zeta = steady_state(beam, 300.0)
-    rows = np.stack([zeta, zeta])
-    with pytest.raises(ValueError, match=r"modal_coordinates: needs .* of shape \(2, 11\)"):
-        stress_history(field, [0.0, 1.0], rows[:, :-1], 300.0)
-    with pytest.raises(ValueError, match="modal_coordinates: needs finite numbers"):
-        stress_history(field, [0.0, 1.0], rows * np.nan, 300.0)
-    with pytest.raises(ValueError, match=r"speed: needs .* of shape \(2,\)"):
-        stress_history(field, [0.0, 1.0], rows, [1.0, 2.0, 3.0])
-    with pytest.raises(
-        ValueError, match=r"modal_coordinates: needs .* shape \(11,\), got .* the shape \(10,\)"
-    ):
-        field.at(zeta[:-1], 300.0)
-    with pytest.raises(TypeError, match="field: needs StressField, got ReducedRotor"):
-        stress_history(beam, [0.0, 1.0], rows, 300.0)
-    for wrong in (None, Formulation("none", 300.0)):
-        with pytest.raises(
-            TypeError, match=r"selection: needs Selection or RotorBody, got (None|Form)"
-        ):
-            StressField.of(beam, wrong)
-    with pytest.raises(TypeError, match="reduced: needs ReducedRotor, got StressField"):
-        StressField.of(field, select_modes(beam, Formulation("none", 300.0)))
+    rows, form = np.stack([zeta, zeta]), Formulation("none", 300.0)
     bare = SolidRotor.from_ngsolve(block_beam(), STEEL, "z").reduce(1)
-    with pytest.raises(ValueError, match="without stress modes"):
-        StressField.of(bare, select_modes(bare, Formulation("none", 1.0)))
+    own, chosen = select_modes(bare, form), select_modes(beam, form)
+    for call, match in (
+        (lambda: stress_history(field, [0, 1], rows[:, :-1], 1.0), r"needs .* of shape \(2, 11\)"),
+        (lambda: stress_history(field, [0, 1], rows * np.nan, 1.0), "modal_coordinates: needs fin"),
+        (lambda: stress_history(field, [0, 1], rows, [1.0] * 3), r"speed: needs .* shape \(2,\)"),
+        (lambda: field.at(zeta[:-1], 1.0), r"needs .* shape \(11,\), got .* the shape \(10,\)"),
+        (lambda: stress_history(beam, [0, 1], rows, 1.0), "field: needs StressField, got Reduced"),
+        (lambda: StressField.of(beam, None), "selection: needs Selection or RotorBody, got None"),
+        (lambda: StressField.of(beam, form), "selection: needs Selection or RotorBody, got Form"),
+        (lambda: StressField.of(beam, own), "selection: it is of another rotor"),
+        (lambda: StressField.of(field, chosen), "reduced: needs ReducedRotor, got StressField"),
+        (lambda: StressField.of(bare, own), "without stress modes"),
+    ):
+        with pytest.raises((TypeError, ValueError), match=match):
+            call()

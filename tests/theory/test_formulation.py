@@ -37,6 +37,7 @@ def test_run_up_has_the_rates_that_it_says():
         ({"spin": float("nan")}, "spin: .* got nan"),
         ({"spin": 1.0, "drive": "soft"}, "drive: 'soft' is unknown"),
         ({"drive": "elastic"}, "needs a prescribed spin"),
+        ({"spin": PrescribedMotion(max, max, max)}, "spin: its value needs to be a function of t"),
     ],
 )
 def test_wrong_formulations_are_refused(arguments, message):

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from point_rotors import SKEW_AXIS, random_arrays, random_invariants, ring_rotor
 
-from exudyn_rotor import Invariants
+from exudyn_rotor import Invariants, SpinAxis
 
 EXACT = 1e-12  # sums of some hundred products of order 1
 MATRICES = ("M", "K", "D", "G", "C")
@@ -106,3 +106,17 @@ def test_full_model_is_the_identity_basis(seed):
     for name in ("M", "K", "G", "C"):
         assert_close(getattr(full, name).toarray(), getattr(dense, name))
     assert full.D.nnz == 0
+
+
+@pytest.mark.parametrize(
+    ("basis", "direction", "words"),
+    [
+        (np.eye(18)[:, :2], [0.0, 0.0, 2.0], "direction: needs a unit vector"),
+        (np.zeros((18, 2)), SKEW_AXIS, "M: needs a positive definite mass matrix; columns of the"),
+    ],
+)
+def test_what_has_no_invariants_is_refused(basis, direction, words):
+    with pytest.raises(ValueError, match=words):
+        Invariants.of(**random_arrays(1), damping=None, basis=basis, direction=direction)
+    with pytest.raises(ValueError, match=r"spin axis: the direction .* has no length"):
+        SpinAxis(0.0 * np.array(direction))

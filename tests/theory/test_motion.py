@@ -4,11 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from point_rotors import SKEW_AXIS, random_invariants, random_spd
+import scipy.sparse as sp
+from point_rotors import SKEW_AXIS, random_arrays, random_invariants, random_spd
 from scipy.spatial.transform import Rotation
 
-from exudyn_rotor import Formulation, Motion, PrescribedMotion, SpinAxis
+from exudyn_rotor import Formulation, Invariants, Motion, PrescribedMotion, SpinAxis
 from exudyn_rotor.theory.formulation import ConstantSpeed
+from exudyn_rotor.theory.full_motion import FullMotion, full_stiffening
 from exudyn_rotor.theory.stiffening import stiffening
 
 AXIS = SpinAxis(SKEW_AXIS)
@@ -108,6 +110,20 @@ def test_stiffness_of_a_static_displacement(spin):
     assert torques[1] - torques[0] == pytest.approx(expected, rel=1e-10)
     with pytest.raises(ValueError, match="a free spin does not take the stiffness per ω⁴"):
         with_static_displacement(motion_of(Formulation("free"))[0])
+
+
+def test_stiffness_of_a_static_displacement_in_a_full_model():
+    arrays, omega = random_arrays(3, node_count=3), SWING.rate(0.7)
+    full = Invariants.of(
+        **arrays, damping=None, basis=sp.eye_array(9, format="csr"), direction=SKEW_AXIS
+    )
+    q, K4 = random_state(9, 1)[0], random_spd(np.random.default_rng(9), 9)
+    plain = full_stiffening(full, "none")
+    forces = [
+        FullMotion(full, Formulation("none", SWING), each).varying_forces(0.7, q, 0.0 * q)
+        for each in (plain, replace(plain, K4=sp.csr_array(K4)))
+    ]
+    np.testing.assert_allclose(forces[1] - forces[0], -(omega**4) * K4 @ q, rtol=1e-10)
 
 
 def blocks_of(formulation: Formulation, size: int) -> list:

@@ -161,7 +161,21 @@ def test_blocks_make_the_equations(rotor, translation, spin, coupling, level):
     assert_same(motion.forces(TIME, q, q_t), expected, 1e-12)
 
 
+def test_a_falling_origin_carries_the_weight(rotor):
+    """Loads of an origin that moves with the acceleration of gravity cancel the weights."""
+    fall = PrescribedMotion(
+        lambda t: 0.5 * GRAVITY * t**2, lambda t: GRAVITY * t, lambda t: GRAVITY
+    )
+    held, falling = (rotor.terms(Formulation(each, 1.3)) for each in ("none", fall))
+    carried = falling["f(ω)"].value + falling["f_g"].value
+    assert_same(carried, dense(held["f(ω)"].value), 1e-12)
+
+
 def test_asking_for_a_block(rotor):
+    if rotor.full:
+        motion = rotor.motion(Formulation("none"))
+        with pytest.raises(ValueError, match="motion: needs dense invariants"):
+            motion.mass_matrix(TIME, rotor.state[0][3:])
     terms = rotor.terms(Formulation("none", 1.3))
     assert terms[84] is terms["M_θζ"] is terms[74]
     assert str(terms).count("\n") == len(terms) - 1

@@ -59,7 +59,7 @@ def motion_errors(model: LinearModel, named: Named, *, held: bool = False) -> np
     rows = named.motions.known[points(len(named.motions.known))]
     given = named.rows(rows)
     speeds = given.motions.speeds
-    better = Content.of(richer).named(motions_over(richer, speeds, held=held))
+    better = Content.of(richer).named(motions_over(richer, speeds, held=held, warns=False))
     lift = replace(given.motions, vectors=lifted @ given.motions.vectors)
     chosen, same = matched(given._replace(motions=lift), better, richer.mass_matrix, _SPREAD)
     better = better.columns(chosen)

@@ -17,7 +17,7 @@ from exudyn_rotor.linear.modal import basis_error, whirl
 from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, Named, OfMotions, rounded
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.over import ModelResult, basis_column, motions_over, table_lines
+from exudyn_rotor.linear.over import ModelResult, basis_column, motions_over, table_lines, warn_of
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.results import numbers, storable
 from exudyn_rotor.theory.rotating_axes import FRAMES
@@ -386,7 +386,8 @@ def campbell(
         The rotor in a scene, or all of several, see :func:`linear_model`.
     modes : int, optional
         How many modes to keep: those with the lowest frequencies in the `frame` at the first
-        speed, followed from there, overdamped ones last. All by
+        speed, followed from there, overdamped ones last; of a mode that is NaN there, at the
+        first speed at which it is found. All by
         default; of a basis that cuts pairs of bending modes in halves, those below the first half.
     frame : {'inertial', 'rotor'}
         In which modes are chosen, stand in order in the result, and are drawn.
@@ -450,14 +451,16 @@ def campbell(
     if modes is not None and modes > model.size:
         raise ValueError(f"modes: {modes} is not between 1 and the {model.size} there are")
     warn_of_omissions(model, np.abs(values).max(), "campbell finds modes")
-    motions = motions_over(model, values, progress=progress, label="Campbell")
+    motions = motions_over(model, values, warns=False, progress=progress, label="Campbell")
     named = Content.of(model).named(motions)
     if model.free_motions:
         named = _resting(named)
     order, continued = whirl.track(named, model.mass_matrix)
-    first = named.rows(named.motions.known[:1])
-    kept = _ascending(first, frame)[0, : modes or _complete(first, model)]
-    named = named.columns(order[:, kept])
+    every = named.columns(order)
+    first = whirl.first_known(every)
+    kept = _ascending(first, frame)[:, : modes or _complete(first, model)]
+    named = every.columns(np.repeat(kept, len(values), axis=0))
+    warn_of(model, every.motions, named.motions)
     upwards = _ascending(named, frame)
     found = named.columns(upwards)
     growth, bounds = found.motions.values.real, found.motions.bounds[:, None]
@@ -478,7 +481,7 @@ def campbell(
         nodal_diameters=found.diameters,
         vectors=found.motions.main,
         order=np.argsort(upwards, axis=1),
-        continued=continued[:, kept],
+        continued=continued[:, kept[0]],
         free_motions=model.free_motions,
         stiffening=model.stiffening,
         basis_errors=errors,

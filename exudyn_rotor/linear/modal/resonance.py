@@ -43,6 +43,7 @@ SAME = 1e-7  # relative distance of speeds that are one
 _FINE, _DIGITS = 1e-6, 7  # of a place between two speeds, and digits of places that are one
 _AT_REST = 1e-8  # rad/s: a rotor runs, and its inertia is below the rounding of any stiffness
 _FREE = 1e-13  # share of the largest stiffness that is rounding
+_UNHELD = 1e-12  # rad²/s²: stiffness over inertia where nothing is held
 _NO_INERTIA = 1e-6  # share of the largest inertia
 _BRACKETS = 200  # speeds at which signs of eigenvalues are looked at; half of them for blocks
 _SLOW, _RATIO = 12, 2.0**0.25  # speeds on each side of the first of these, and their ratio
@@ -423,9 +424,9 @@ def _direct(stiffness: Stiffness, multiples: np.ndarray) -> list[Zero]:
     without any stay at rest.
     """
     A, M = stiffness(_AT_REST, multiples), stiffness.system(_AT_REST).M
-    if not len(A):
+    if np.abs(A).max(initial=0.0) <= _UNHELD * np.abs(M).max(initial=0.0):
         return []
-    speed = float(np.sqrt(np.abs(A).max() / np.abs(M).max())) or 1.0
+    speed = float(np.sqrt(np.abs(A).max() / np.abs(M).max()))
     B = (A - stiffness(speed, multiples)) / speed**2
     values, vectors = np.linalg.eigh(A)
     if values[0] < -1e-9 * values[-1]:

@@ -20,6 +20,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from exudyn_rotor.calls import kept
+from exudyn_rotor.linear.model.assembly import OwnBody
 from exudyn_rotor.linear.model.body import RotorAlone, RotorBody
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.turning import compressed, rotor_points, wave_amplitudes
@@ -44,6 +45,7 @@ _FITTED, _NOT_FITTED = 0.1, 0.05  # least fitted share for that, and share that 
 _STATIC = 1e-7  # share of the speed: a frequency seen from outside that is round-off
 _SAME = 1e-8  # relative distance of λ of repeated motions
 _NO_OSCILLATION = 1e-6  # share of |λ| below which a frequency is that of critical damping
+_SWINGS = 0.1  # frequency over growth below which a motion on an integral is the integral's
 _GONE = 100.0  # decay over Ω of a motion that is over before the rotor turns
 _GONE_FREQUENCY = 1e-2  # share of such a decay: of periodic equations below it a multiple of Ω
 _DIGITS = 9  # of energies, and of what is sorted: beyond them numbers are equal
@@ -135,12 +137,15 @@ class Content:
     rows : sequence of ndarray, shape (r, k)
         R of each wave, then of the motion along the axis, along the circumference, along the
         radius, of all motion of the rotors, and of what stands still beside them.
+    integrating : ndarray, shape (k,)
+        Of coordinates of controllers, :attr:`OwnBody.integrating`; 0 for others.
     """
 
     waves: np.ndarray
     shifts: np.ndarray
     spins: np.ndarray
     rows: Sequence[np.ndarray]
+    integrating: np.ndarray
 
     @classmethod
     def of(cls, model: LinearModel) -> Content:
@@ -148,6 +153,7 @@ class Content:
         assembly = model.assembly(1.0)
         k, found, share = assembly.size, [], 0.0
         directions: list[list[np.ndarray]] = [[] for _ in range(5)]
+        integrating = np.zeros(k)
         for body, place in zip(assembly.bodies, assembly.slices, strict=True):
             if isinstance(body, RotorBody):
                 waves, seen, per_mass = _seen(body.alone, body.mean)
@@ -161,11 +167,13 @@ class Content:
             if not isinstance(body, RotorBody) and body.size:  # as heavy as the rotor where alike
                 rows = np.sqrt(share) * np.linalg.cholesky(body.M).T
                 directions[4].append(assembly.wide({0: rows}, place)[0])
+            if isinstance(body, OwnBody):
+                integrating[place] = body.integrating
         found = found or [(0, 0.0, 0.0, np.zeros((1, k)))]  # no point that moves: no whirl
         waves, shifts, spins, rows = zip(*found, strict=True)
         none = np.zeros((1, k))
         rows = [*rows, *(np.vstack(each or [none]) for each in directions)]
-        return cls(np.array(waves), np.array(shifts), np.array(spins), rows)
+        return cls(np.array(waves), np.array(shifts), np.array(spins), rows, integrating)
 
     @cached_property
     def _forms(self) -> np.ndarray:
@@ -217,6 +225,9 @@ class Content:
         fitted = by_wave.sum(axis=1)
         unseen = whole <= 1e-12 * np.max(whole, axis=1, keepdims=True, initial=0.0)
         unseen |= (fitted < _NOT_FITTED) & (np.max(directions[:3], axis=0) < 0.5 * whole)
+        if np.any(self.integrating):
+            swings = heard > _SWINGS * np.abs(values.real)
+            standing = np.where(swings, self._standing_by_rate(vectors, values), standing)
         stands = standing > whole
         codes = np.where(stands, FOUNDATION, np.where(unseen, UNKNOWN, codes))
         main = orders[np.argmax(np.sum(np.abs(vectors) ** 2, axis=2), axis=1)]
@@ -227,6 +238,15 @@ class Content:
         inertial, rotor = (np.where(lost, np.nan, each) for each in (inertial, rotor))
         codes, diameters = np.where(lost, UNKNOWN, codes), np.where(lost, -1, diameters)
         return _still(Named(motions, inertial, rotor, codes.astype(np.int64), diameters))
+
+    def _standing_by_rate(self, vectors: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """Return the energy (s, k) of what stands still, of integrals that of their rates.
+
+        The integral of a slow oscillation is large, whatever it does.
+        """
+        rates = np.abs(np.nan_to_num(values))[:, None, None] * self.integrating[:, None]
+        moved = self.rows[-1] @ (np.where(self.integrating[:, None] > 0.0, rates, 1.0) * vectors)
+        return np.sum(np.abs(moved) ** 2, axis=(1, 2))
 
     def _diameters(self, energy: np.ndarray) -> np.ndarray:
         """Return n where ±n hold most of the energy (s, w, k), of which 1 is all; −1 elsewhere."""
@@ -374,16 +394,49 @@ def rounded(values: np.ndarray, nan: float = 2.0) -> np.ndarray:
 def track(named: Named, M: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return which column continues each mode of the first speed, and whether it is the same mode.
 
-    Both (s, k), by the mass matrix (k, k). Speeds without values are passed over.
+    Both (s, k), by the mass matrix (k, k). Speeds without values are passed over. A mode that is
+    NaN at a speed is looked for from the last speed before it at which it was known.
     """
     known, (s, k) = named.motions.known, named.inertial.shape
     columns, continued = np.tile(np.arange(k), (s, 1)), np.ones((s, k), dtype=bool)
+    if np.any(np.isnan(named.motions.values[known])):
+        last = named.rows(known[:1])
+        for before, after in itertools.pairwise(known):
+            later = named.rows([after])
+            chosen, same = matched(last, later, M)
+            columns[before + 1 : after], columns[after] = columns[before], chosen
+            later = later.columns(chosen)
+            lost = np.isnan(later.motions.values)
+            continued[after] = same | lost | np.isnan(last.motions.values)
+            last = _joined(later, last, lost)
+        return columns, continued
     following, same = matched(named.rows(known[:-1]), named.rows(known[1:]), M)
     for step, (before, after) in enumerate(itertools.pairwise(known)):
         last = columns[before]
         columns[after], continued[after] = following[step][last], same[step][last]
         columns[before + 1 : after] = last
     return columns, continued
+
+
+def first_known(named: Named) -> Named:
+    """Return each motion (k) at the first speed at which it is known, in one row."""
+    known = named.motions.known
+    first = named.rows(known[:1])
+    for row in known[1:]:
+        lost = np.isnan(first.motions.values)
+        if not np.any(lost):
+            break
+        first = _joined(first, named.rows([row]), lost)
+    return first
+
+
+def _joined(one: Named, other: Named, lost: np.ndarray) -> Named:
+    """Return motions at one speed, those that are `lost` (1, k) of another row."""
+    values = np.where(lost, other.motions.values, one.motions.values)
+    vectors = np.where(lost[:, None, None], other.motions.vectors, one.motions.vectors)
+    motions = replace(one.motions, values=values, vectors=vectors)
+    pairs = zip(one[1:], other[1:], strict=True)
+    return Named(motions, *(np.where(lost, theirs, own) for own, theirs in pairs))
 
 
 def matched(

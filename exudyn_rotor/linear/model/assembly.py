@@ -201,9 +201,13 @@ class OwnBody(Body):
     ----------
     shown : ndarray, shape (p, k)
         What elements see of them, in the axes of the body.
+    integrating : ndarray, shape (k,)
+        1/ω [s] of the coordinates of a controller that are integrals, of which ``q̇/ω`` is a
+        displacement as other coordinates are; 0 for these.
     """
 
     shown: np.ndarray = field(kw_only=True)
+    integrating: np.ndarray = field(kw_only=True)
 
     def supported(self, _: str) -> dict[int, np.ndarray]:
         """Return what elements see, from outside, (p, k)."""
@@ -215,12 +219,18 @@ def own_body(one: Controlled, number: int, turns: int) -> OwnBody:
     word, name = f"{one.word} {number} at {one.interface}", f" {number}"
     labels = tuple(f"{word}, {n}" for n in range(1, one.size + 1))
     M, none = np.diag(one.masses), np.zeros((one.size, one.size))
+    integrating = np.zeros(one.size)
     if one.word == "pads":
-        return OwnBody(name, 0, M, (none,), (none,), labels, shown=np.eye(one.size))
+        given = {"shown": np.eye(one.size), "integrating": integrating}
+        return OwnBody(name, 0, M, (none,), (none,), labels, **given)
+    if one.word == "controller":
+        K, D = (np.diag(X)[-one.size :] for X in one.matrices(0.0))
+        integrating = np.where(K == 0.0, one.masses / D, 0.0)
     pairs = np.kron(np.eye(one.size // 2), ACROSS)  # displacements along (n1, n2, e)
     quarter = pairs.T @ axial_skew(len(pairs)) @ pairs
     powers_D, powers_K = (none, 2.0 * turns * M @ quarter), (none, none, -float(turns) * M)
-    return OwnBody(name, turns, M, powers_D, powers_K, labels, shown=pairs)
+    given = {"shown": pairs, "integrating": integrating}
+    return OwnBody(name, turns, M, powers_D, powers_K, labels, **given)
 
 
 def _relative(end: End, base: End | None, rows: int = 6) -> Callable[[Seen], Terms]:

@@ -113,6 +113,7 @@ class SteadyState:
             start[0, :2] = (scene.axes.T @ body.axis.radial(body.frame.origin))[:2]
         turns = np.array([axial_rotation(theta) for theta in angles])
         motion = np.einsum("tij,tkj->tki", turns, seen.reshape(-1, 2, 3) - start) + start
+        motion[:, 0] += scene.moved
         return motion.mean(axis=0).ravel()
 
 

@@ -48,8 +48,9 @@ class Motions:
         The harmonics m; only 0 of constant equations.
     bounds : ndarray, shape (s,)
         By how much rounding can change a real part [1/s].
-    lost : sequence of float
-        Speeds [rad/s] at which a motion did not converge that is no decay over at once.
+    lost : sequence of (float, float)
+        Speeds [rad/s] at which motions did not converge that are no decays over at once, and about
+        the lowest frequency of these [rad/s].
     """
 
     speeds: np.ndarray
@@ -57,7 +58,7 @@ class Motions:
     vectors: np.ndarray
     orders: np.ndarray
     bounds: np.ndarray
-    lost: Sequence[float] = ()
+    lost: Sequence[tuple[float, float]] = ()
 
     @property
     def known(self) -> np.ndarray:
@@ -209,7 +210,7 @@ def _ascending(speed: float, found: Exponents, made: States, bound: float) -> Mo
     vectors = vectors / np.where(sizes > 0.0, sizes, 1.0)
     order = np.lexsort((found.values.real, np.abs(found.values.imag)))
     given = found.values[order][None], vectors[None, :, :, order], found.orders
-    lost = (speed,) if found.lost.size else ()
+    lost = [(speed, float(np.abs(found.lost.imag).min()))] if found.lost.size else ()
     return Motions(np.array([speed]), *given, np.array([bound]), lost)
 
 

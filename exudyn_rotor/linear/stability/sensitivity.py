@@ -178,8 +178,8 @@ def sensitivity(
     axis      peak |S|  peak [dB]  at [Hz]  zone
     left, 1    1.66895    4.44887  160.631  A
     left, 2    1.66895    4.44887  160.631  A
-    right, 1   1.66174    4.41125  153.016  A
-    right, 2   1.66174    4.41125  153.016  A
+    right, 1   1.66895    4.44887  160.631  A
+    right, 2   1.66895    4.44887  160.631  A
     """
     checks.instance(rotor, "rotor", (ReducedRotor, SolidRotor, RotorTrain))
     values = checks.ascending(frequencies, "frequencies", "rad/s")

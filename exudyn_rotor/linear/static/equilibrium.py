@@ -25,7 +25,8 @@ from exudyn_rotor.bearings.resting import (
 from exudyn_rotor.linear.equations import UnconvergedError, others
 from exudyn_rotor.linear.solve.forced import static_motion
 
-_MOST, _CONVERGED = 100, 1e-10  # of Newton's steps; of the largest force and place
+_MOST, _CONVERGED = 100, 1e-8  # of Newton's steps; of the largest force, of each place
+_LEAST = 1e-3  # of the largest place: a smaller one, as in a rigid bearing, is rounding of it
 _SLOW = 15  # steps from which they are halved: contacts that open and close by turns
 _RIGID = 1e-7  # compliance of a rigid bearing, over that of the rotor's highest mode
 _SHORTEST = 1e-6  # share of a step below which a film is taken not to carry
@@ -76,7 +77,11 @@ def equilibrium(
                 share *= 0.5
                 if share < _SHORTEST:
                     raise
-        is_found = _is_small(forces - R, forces) and all(map(_is_small, U @ (tried - y), U @ tried))
+        moves, places = U @ (tried - y), U @ tried
+        least = _LEAST * np.abs(places).max(initial=1e-9)
+        is_found = _is_small(forces - R, forces, least) and all(
+            _is_small(*each, least) for each in zip(moves, places, strict=True)
+        )
         y, R = tried, forces
         if step and is_found:  # the first equations are those of journals in the centre
             return basis @ y, R
@@ -86,8 +91,8 @@ def equilibrium(
     )
 
 
-def _is_small(change: np.ndarray, value: np.ndarray) -> bool:
-    return bool(np.abs(change).max() <= _CONVERGED * np.abs(value).max(initial=1e-12))
+def _is_small(change: np.ndarray, value: np.ndarray, least: float) -> bool:
+    return bool(np.abs(change).max() <= _CONVERGED * np.abs(value).max(initial=least))
 
 
 def _solved(
@@ -100,7 +105,10 @@ def _solved(
     """Return coordinates and forces of the linear equations, forces in units of a stiffness."""
     k, count = len(K), 2 * len(U)
     most = np.abs(U).max(initial=0.0) or 1.0
-    unit = max(np.abs(K).max(initial=0.0), 1.0) / most
+    # forces over it are as large as coordinates, so that rounding of the one spares the other
+    yielding = [one for one in equations if np.any(one.B)]
+    bearing = max((np.abs(one.A).max() / np.abs(one.B).max() for one in yielding), default=0.0)
+    unit = max(np.abs(K).max(initial=0.0) / most, bearing * most, 1.0 / most)
     A, b = np.zeros((k + count, k + count)), np.zeros(k + count)
     A[:k, :k], A[:k, k:], b[:k] = K, -unit * U.reshape(count, k).T, load
     for i, one in enumerate(equations):

@@ -13,6 +13,7 @@ from typing import Any
 import exudyn
 import numpy as np
 
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.multibody.rotor.plan import MODES
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems, marker_carrier
 from exudyn_rotor.theory.axis import skew
@@ -207,7 +208,9 @@ def load_places(body: RotorItems) -> tuple[LoadPlace, ...]:
     }
     for one in body.supports:
         if one.uses_python:
-            acting.setdefault(one.support.interface, getattr(one.support, "tilts", False))
+            name, law = one.support.interface, one.support
+            tilts = isinstance(law, Support) and law.tilts
+            acting[name] = acting.get(name, False) or tilts
     for name, interface in body.selection.source.interfaces.items():
         if name in acting:
             motion = interface.motion @ body.selection.T

@@ -356,12 +356,9 @@ def known_rotors(mbs: exudyn.MainSystem) -> Iterator[RotorItems]:
 
 def _stands(mbs: exudyn.MainSystem, rotor: RotorItems) -> bool:
     """Return whether the object with the rotor's equations is still on the rotor's nodes."""
-    physics = rotor.objects["physics"]
-    if int(physics) >= mbs.systemData.NumberOfObjects():
-        return False
     try:
-        found = mbs.GetObjectParameter(physics, "nodeNumbers")
-    except Exception:  # an object of another kind; Exudyn's errors have no common base but this
+        found = mbs.GetObjectParameter(rotor.objects["physics"], "nodeNumbers")
+    except Exception:  # none, or of another kind; Exudyn's errors have no common base but this
         return False
     return list(map(int, found)) == list(map(int, rotor.nodes.values()))
 

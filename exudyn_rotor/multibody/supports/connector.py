@@ -25,7 +25,7 @@ from scipy.linalg import block_diag
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.annular_seal import AnnularSeal
-from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.bearing import Bearing, differences
 from exudyn_rotor.bearings.clearance_stop import ClearanceStop
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support, acts
@@ -99,7 +99,7 @@ class Connector(Between, ABC):
     Its coordinates are those of the `nodes` of both, and `own` more of the law, on a node in `mbs`.
     """
 
-    has_mass = False  # whether a mass goes with the rotor across the axis
+    has_mass = False  # whether a mass, added_mass(), goes with the rotor across the axis
     constant: Sequence[np.ndarray] = ()  # mass, damping and stiffness of own coordinates
     outside = False  # whether it was evaluated beyond a clearance
     guard: Callable[[exudyn.MainSystem], None] | None = None  # looks at the accepted state then
@@ -138,10 +138,6 @@ class Connector(Between, ABC):
     @abstractmethod
     def tangent(self, t: float) -> Tangent:
         """Return the law's tangent where the ends have been read."""
-
-    def added_mass(self) -> float:
-        """Return the mass that goes with the rotor at its speed [kg]."""
-        return 0.0
 
     def friction(self) -> float:
         """Return the torque on the rotor that a prescribed spin does not feel [N m]."""
@@ -355,7 +351,7 @@ class BearingConnector(Connector):
     ring whose elements an inner ring takes along. Forces act along the axes at rest, also where the
     base tilts, and pull at the middles of journal and bore: about the axis the base lacks the
     moment ``u × F`` of their distance u. Its `parts` are the bearing, or the films of its pads.
-    Torques brake a spin that is free.
+    Torques brake a spin that is free, and take a base along that can turn.
     """
 
     def __init__(
@@ -376,7 +372,12 @@ class BearingConnector(Connector):
         self.levers = -bearing.film.radius * bearing.tangents if pads else None
         if pads:
             self.constant = (bearing.pad_inertia * np.eye(self.own),)
-        self.brakes = is_free and has_torque(bearing)
+        # of a prescribed spin the base alone feels the torque, if it can turn
+        turns = base.size > 0 and not (
+            isinstance(base, FoundationEnd) and not np.any(base.rows()[5])
+        )
+        self.brakes = (is_free or turns) and has_torque(bearing)
+        self._slides = self.brakes and (is_free or self.feels)
         self.laws = [one.law_with_torque if self.brakes else one.law for one in self.parts]
         self._least = self.parts[0].clearance_along() ** 2
 
@@ -436,18 +437,21 @@ class BearingConnector(Connector):
         parts = zip(self.parts, self.laws, self.motions(), strict=True)
         for number, (part, law, motion) in enumerate(parts):
             k, d = part.slopes(*motion)
+            if self.brakes and self.base.size:
+                by_place, by_rate = differences(law, *motion)
+                k, d = np.vstack([k, by_place[2:]]), np.vstack([d, by_rate[2:]])
             if self.feels:
                 k = k + self.base.speed * d @ np.array([[0.0, 1.0], [-1.0, 0.0]])
                 if self._turn is not None:
-                    c, s = self._turn
-                    R = np.array([[c, -s], [s, c]])
-                    k, d = R @ k @ R.T, R @ d @ R.T
+                    R = axial_rotation(self.base.turn)
+                    rows = len(k)
+                    k, d = R[:rows, :rows] @ k @ R[:2, :2].T, R[:rows, :rows] @ d @ R[:2, :2].T
             S = np.eye(3, count)  # of what this film sees, by the ports
             if self.levers is not None:
                 S[:2, 3 + number] = -self.levers[number]
-            K += S[:2].T @ k @ S[:2]
-            D += S[:2].T @ d @ S[:2]
-            if self.brakes and self.probed is None:
+            K += S[: len(k)].T @ k @ S[:2]
+            D += S[: len(d)].T @ d @ S[:2]
+            if self._slides and self.probed is None:
                 step = SPEED_STEP * max(abs(motion[5]), 1.0)
                 faster = law(*motion[:5], motion[5] + step)
                 D[:, 2] += np.subtract(law(*motion), faster) / step @ S
@@ -527,10 +531,21 @@ class SceneLaw(ABC):
     evaluation: tuple[str, ...]
     connector: Connector | None
 
+    def __post_init__(self) -> None:
+        checks.keep(self, _kinds=[_kind(self.body.mbs, number) for number in self.objects])
+
     @property
     def uses_python(self) -> bool:
         """True when a time step calls Python for it."""
         return PYTHON in self.evaluation
+
+    def check_present(self) -> None:
+        """Raise ValueError where the system no longer holds it under its numbers."""
+        if [_kind(self.body.mbs, number) for number in self.objects] != self._kinds:
+            raise ValueError(
+                f"mbs: no longer holds what acts on rotor {self.body.name!r} under its numbers: "
+                f"{self}: objects were deleted; build the scene anew without them"
+            )
 
     @abstractmethod
     def values(self, configuration: exudyn.ConfigurationType = CURRENT) -> tuple:
@@ -554,6 +569,15 @@ class SceneLaw(ABC):
             return np.hstack(self.values(configuration)).tolist()
 
         return add_sensor(self.body, SensorUserFunction, options, sensorUserFunction=output)
+
+
+def _kind(mbs: exudyn.MainSystem, number: exudyn.ObjectIndex) -> tuple:
+    """Return the type of an object, and its nodes or markers; nothing where there is none."""
+    if int(number) >= mbs.systemData.NumberOfObjects():
+        return ()
+    item = mbs.GetObject(number)
+    ends = item.get("nodeNumbers", item.get("markerNumbers", ()))
+    return item["objectType"], *map(int, ends)
 
 
 def check_body(body: Body, argument: str) -> None:

@@ -37,7 +37,8 @@ def journal_start(scene: LinearScene, speed: float, orders: np.ndarray) -> np.nd
     harmonics[at[0]] = scene.N.T @ _tilts(scene, speed, loads)
     # where the origin is the centre of mass, its displacement is from its place at rest
     apart = scene.axes.T @ scene.body.axis.radial(scene.body.frame.origin)
-    for n, shift in {0: apart, **into_rotor_frame(-apart)}.items():
+    back = into_rotor_frame(-apart - scene.moved)  # from where the given state has it
+    for n, shift in ((0, apart), *back.items()):
         harmonics[at[n]] += scene.N[: scene.count].T @ shift[: scene.count]
     cage = scene.body.placement.angle
     places = {one.interface: _place(one, load, speed, cage) for one, load in loads.items()}

@@ -143,6 +143,15 @@ class LinearScene:
         return axes_of(SpinAxis(self.body.motion.invariants.direction))
 
     @cached_property
+    def moved(self) -> np.ndarray:
+        """Displacement of the rotor, turned back, in the given state [m].
+
+        Along (n1, n2, e) that stand still, (3,).
+        """
+        given = self.body.motion.free_directions @ self.rest[self.free[: self.count]]
+        return self.body.standing_axes.T @ given
+
+    @cached_property
     def touching(self) -> np.ndarray:
         """Which of the unknowns move the rotor, (k,)."""
         return np.any(self.N[: self.modal.stop] != 0.0, axis=0)
@@ -300,6 +309,8 @@ def check_body(mbs: exudyn.MainSystem, body: RotorBody) -> None:
     if body.mbs is not mbs:
         raise ValueError(f"rotor {body.name!r} belongs to another mbs")
     body.check_present()
+    for one in (*body.supports, *body.drives):
+        one.check_present()
     if not mbs.systemIsConsistent:
         raise ValueError("the system is not assembled: call mbs.Assemble() first")
     if mbs.systemData.ODE1Size():

@@ -61,7 +61,9 @@ class SceneModel(LinearModel):
         # any load, until that in the equilibrium is known
         share = np.array([0.0, -9.81 * scene.mass / max(len(given), 1)])
         given = [
-            replace(one, load=share) if _follows_load(one) and one.load is None else one
+            replace(one, load=share)
+            if _follows_load(one) and one.load is None and getattr(one, "carries", True)
+            else one
             for one in given
         ]
         return cls(
