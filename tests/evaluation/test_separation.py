@@ -4,20 +4,14 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from models import centered_disc
+from test_evaluation import sized
 
 from exudyn_rotor import (
     Support,
     Unbalance,
-    UnbalanceResponse,
     separation_margins,
     unbalance_response,
 )
-
-
-def sized(speeds, size):
-    """A circular response of given size."""
-    motion = np.array([1.0, -1j, 0, 0, 0, 0]) * np.asarray(size)[:, None]
-    return UnbalanceResponse(("a",), [1], motion[:, None, None], "inertial", speeds)
 
 
 @pytest.fixture(scope="module")
