@@ -3,6 +3,7 @@
 import exudyn as exu
 import numpy as np
 import pytest
+from test_tables import rotor
 
 from exudyn_rotor import (
     FloatingRingBearing,
@@ -27,13 +28,6 @@ NAMES = ("left", "right")
 INNER = [[2e7, 1e6], [-1e6, 3e7]], [[2e3, 0.0], [0.0, 1e3]]
 OUTER = [[6e6, 0.0], [0.0, 4e6]], 500.0
 RING = 0.8
-
-
-def rotor():
-    """Two masses of 2 kg on a rigid rod."""
-    rod = 1e12 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    made = SolidRotor.from_matrices(2.0 * np.eye(6), rod, [[0, 0, -0.1], [0, 0, 0.1]], "z")
-    return made.with_interface("left", [0]).with_interface("right", [1])
 
 
 def in_series():

@@ -9,6 +9,7 @@ from exudyn.itemInterface import NodePoint, NodeRigidBodyEP, ObjectFFRF
 from exudyn.utilities import EulerParameters2GLocal, EulerParameters2RotationMatrix
 from point_rotors import random_arrays, random_invariants
 from spatial_frame import SpatialFrame
+from test_terms import dense
 
 
 def cardan(angles: np.ndarray) -> np.ndarray:
@@ -41,10 +42,6 @@ class Body:
 @pytest.fixture(scope="module", params=[False, True], ids=["modes", "full model"])
 def body(request) -> Body:
     return Body(request.param)
-
-
-def dense(value) -> np.ndarray:
-    return value.toarray() if sp.issparse(value) else np.asarray(value)
 
 
 def assert_same(actual, expected, tolerance: float) -> None:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.linalg as la
+from bodies import moments
 from point_rotors import SKEW_AXIS, random_invariants, ring_rotor
 
 from exudyn_rotor import Formulation, Motion, select_modes
@@ -14,12 +15,6 @@ from exudyn_rotor.theory.stiffening import stiffening
 MASS = 12.0
 DISC, SHAFT = (0.3, 0.02), (0.1, 0.4)  # radius, half length of two rings
 BODIES = pytest.mark.parametrize("shape", [DISC, SHAFT], ids=["disc", "shaft"])
-
-
-def moments(shape: tuple[float, float]) -> tuple[float, float]:
-    """Return I_p and I_t of two rings."""
-    radius, half_length = shape
-    return MASS * radius**2, MASS * (radius**2 / 2 + half_length**2)
 
 
 def rigid_rotor(shape: tuple[float, float]):
