@@ -84,7 +84,7 @@ def results() -> list:
         Stability(speeds, table + 1j, speeds, speeds > 15.0, speeds, table, codes, codes),
         StabilityThresholds([20.0], [True], [9.0], [0], [1], 10.0, 30.0, False),
         StabilityMap(speeds, speeds[:2], table, table > 1.5, table, codes, codes, table,
-                     ("k [N/m]", "speed [rad/s]")),
+                     ("k [N/m]", "speed [rad/s]"), least_stable_growth=table - 3.0),
         SeparationMargins(("left",), [20.0], [1e-5], [[19.0, np.nan]], [10.0], [0.15], [0.2],
                           [25.0, 30.0], ("left", "right"), speeds, table.T),
         StabilityLevelOne(speeds - 10.0, 0.3 - 0.01 * speeds, speeds, 10.0, 90.0, "centrifugal",

@@ -39,6 +39,21 @@ def test_growth_verdict_and_motion(result):
     assert set(result.whirl.ravel()) == {"forward"}
 
 
+def test_a_free_motion_does_not_hide_the_least_stable_one(point):
+    """The shift along the axis is free; across it the growth is −c/2m."""
+
+    def build(damping: float, speed: float) -> tuple:
+        return linear_model(point, supports=[Support("disc", np.diag([2e4, 2e4]), damping)]), speed
+
+    found = stability_map(build, [2.0, 8.0, 40.0], [30.0])
+    assert not np.any(found.growth)
+    growth = -np.array([[2.0], [8.0], [40.0]]) / (2.0 * MASS)
+    np.testing.assert_allclose(found.least_stable_growth, growth, rtol=1e-9)
+    assert "least stable: lateral motion, -0.5 1/s at (2, " in found.table()
+    for shown in (found.columns()["growth [1/s]"], found.plot().collections[0].get_array()):
+        np.testing.assert_allclose(shown, growth.ravel(), rtol=1e-9)
+
+
 def test_a_point_that_fails_is_nan(point):
     def build(stiffness: float, speed: float) -> tuple:
         if stiffness > 2e4:

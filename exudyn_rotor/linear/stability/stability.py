@@ -371,6 +371,9 @@ class StabilityMap(OfMotions, Result):
     growth : ndarray, shape (a, b)
         Largest real part of the exponents [1/s], 0 where a free motion is neutral.
     stable : ndarray of bool, shape (a, b)
+    least_stable_growth : ndarray, shape (a, b), or None
+        Real part of the least stable motion that is not neutral [1/s], 0 where all are; it is what
+        tables and pictures show. That of :attr:`growth` by default.
     frequencies_inertial : ndarray, shape (a, b)
         Of the least stable motion that is not neutral, seen from outside [rad/s].
     whirl_codes, nodal_diameters : ndarray of int, shape (a, b)
@@ -409,6 +412,12 @@ class StabilityMap(OfMotions, Result):
     log_decrement: np.ndarray = numbers("x", "y", finite=False)
     labels: tuple[str, ...] = words(2, default=("x", "y"))
     basis_errors: np.ndarray | None = numbers("x", "y", finite=False, optional=True)
+    least_stable_growth: np.ndarray | None = numbers("x", "y", finite=False, optional=True)
+
+    @property
+    def _shown(self) -> np.ndarray:
+        """Growth of the motions that tables and pictures speak of, shape (a, b)."""
+        return self.growth if self.least_stable_growth is None else self.least_stable_growth
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns, one row for each point.
@@ -420,7 +429,7 @@ class StabilityMap(OfMotions, Result):
         return {
             first: np.repeat(self.x, len(self.y)),
             second: np.tile(self.y, len(self.x)),
-            "growth [1/s]": self.growth.ravel(),
+            "growth [1/s]": self._shown.ravel(),
             "stable": self.stable.ravel(),
             f"inertial [{shown.frequency}]": shown.frequencies(self.frequencies_inertial).ravel(),
             "log decrement": self.log_decrement.ravel(),
@@ -430,19 +439,22 @@ class StabilityMap(OfMotions, Result):
         }
 
     def table(self) -> str:
-        """Return the growth [1/s] at every point as lines of text; '*' marks instability."""
+        """Return the growth [1/s] at every point as lines of text; '*' marks instability.
+
+        Free motions, which are neutral, do not count.
+        """
         first, second = self.labels
         lines = [f"growth [1/s]; columns: {second}", f"{first:>24}"]
         lines[-1] += "".join(f"{value:13.5g} " for value in self.y).rstrip()
         marks = np.where(self.stable | np.isnan(self.growth), " ", "*")
-        for value, growth, marked in zip(self.x, self.growth, marks, strict=True):
+        for value, growth, marked in zip(self.x, self._shown, marks, strict=True):
             entries = (f"{g:13.5g}{mark}" for g, mark in zip(growth, marked, strict=True))
             lines.append(f"{value:24.6g}" + "".join(entries).rstrip())
         if np.any(np.isfinite(self.growth)):
-            at = np.unravel_index(np.nanargmax(self.growth), self.growth.shape)
+            at = np.unravel_index(np.nanargmax(self._shown), self.growth.shape)
             place = f"({self.x[at[0]]:.5g}, {self.y[at[1]]:.5g})"
             heard = f"{Units.of('Hz').frequencies(self.frequencies_inertial[at]):.5g} Hz"
-            told = _in_words(self.growth[at], place, heard, self.whirl[at], self.log_decrement[at])
+            told = _in_words(self._shown[at], place, heard, self.whirl[at], self.log_decrement[at])
             lines.append(f"least stable: {self.families[at]} motion, {told}")
         if self.basis_errors is None:
             lines.append(NOT_KNOWN)
@@ -460,12 +472,13 @@ class StabilityMap(OfMotions, Result):
         ax.set(xlabel=self.labels[0], ylabel=self.labels[1])
         ax.set_xscale("log" if _is_geometric(self.x) else "linear")
         ax.set_yscale("log" if _is_geometric(self.y) else "linear")
-        neutral = np.where(self.stable, np.minimum(self.growth, 0.0), self.growth)
+        neutral = np.where(self.stable, np.minimum(self._shown, 0.0), self._shown)
         growth = np.ma.masked_invalid(neutral).T
         largest = np.abs(growth).max() or 1.0
         if min(self.growth.shape) == 1:  # contours need two values of each
             places = np.meshgrid(self.x, self.y)
-            filled = ax.scatter(*places, c=growth, cmap="RdBu_r", vmin=-largest, vmax=largest)
+            limits = {"vmin": -largest, "vmax": largest}
+            filled = ax.scatter(*places, c=growth.ravel(), cmap="RdBu_r", **limits)
             ax.figure.colorbar(filled, ax=ax, label="growth [1/s]")
             return ax
         from matplotlib.ticker import MaxNLocator
@@ -565,7 +578,7 @@ def stability_map(
     warn_of_refused(refused, shape[0] * shape[1])
     models = [points[0][1] for points in alike.values()]
     warn_of_omissions(max(models, key=lambda one: one.has_structural_damping), what=WHAT)
-    growth, inertial, decrement, errors = np.full((4, *shape), np.nan)
+    growth, moving, inertial, decrement, errors = np.full((5, *shape), np.nan)
     stable, codes = np.zeros(shape, dtype=bool), np.full(shape, UNKNOWN, dtype=np.int64)
     diameters = np.full(shape, -1, dtype=np.int64)
     corners = itertools.product(*((0, size - 1) for size in shape))
@@ -577,7 +590,10 @@ def stability_map(
         motions = motions_in(model, stack, "auto", tolerance, held=True, least_stable=True)
         found = of_motions(model, content, motions, None)
         rows, at = (np.arange(len(points)), found.least_stable), tuple(np.array(places).T)
-        growth[at], stable[at] = found.growth, found.stable
+        neutral = np.abs(found.growth) <= found.bounds
+        growth[at], stable[at] = np.where(neutral, 0.0, found.growth), found.stable
+        decays = np.where(found._moving, found.exponents.real, 0.0)[rows]
+        moving[at] = np.where(np.isnan(found.growth), np.nan, decays)
         inertial[at], decrement[at] = found.frequencies_inertial[rows], found.log_decrement[rows]
         codes[at], diameters[at] = found.whirl_codes[rows], found.nodal_diameters[rows]
         for row, place in enumerate(places):
@@ -601,6 +617,7 @@ def stability_map(
         decrement,
         names,
         basis_errors=errors if known else None,
+        least_stable_growth=moving,
     )
 
 
