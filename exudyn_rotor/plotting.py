@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Mapping, Sequence
+from itertools import cycle
 from os import PathLike
 from typing import TYPE_CHECKING
 from weakref import WeakSet
@@ -98,8 +99,8 @@ def _close_unseen(made: Figure) -> None:
 
 def plot_orbits(ax: Axes, orbits: Mapping[str, np.ndarray]) -> Axes:
     """Draw orbits, each (steps, 2) [m], in inertial axes and micrometres."""
-    for (label, points), color, line in zip(orbits.items(), COLORS, LINES, strict=False):
-        ax.plot(1e6 * points[:, 0], 1e6 * points[:, 1], line, color=color, lw=1.3, label=label)
+    for (label, points), color, line in zip(orbits.items(), cycle(COLORS), cycle(LINES)):
+        ax.plot(1e6 * points[:, 0], 1e6 * points[:, 1], ls=line, color=color, lw=1.3, label=label)
     ax.set_aspect("equal", adjustable="datalim")
     ax.set_xlabel("horizontal displacement [µm]")
     ax.set_ylabel("vertical displacement [µm]")

@@ -144,11 +144,15 @@ class ModelResult(Result):
     axes: str = one_of(AXES[1:], default="inertial", kw_only=True)
     unevenness: float = field(default=0.0, kw_only=True)
 
+    @property
+    def _uneven(self) -> str:
+        return "unevenness of the mesh, averaged"
+
     def _closing(self, errors: np.ndarray | None) -> list[str]:
         """Return the last lines of a table; `errors` of the basis, None where not known."""
         lines = [f"stiffening: {self.stiffening}"] if self.stiffening else []
         if self.unevenness > _SHOWN:
-            lines.append(f"unevenness of the mesh, averaged: {self.unevenness:.2g}")
+            lines.append(f"{self._uneven}: {self.unevenness:.2g}")
         return lines if errors is not None else [*lines, NOT_KNOWN]
 
 

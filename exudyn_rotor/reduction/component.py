@@ -123,9 +123,13 @@ def free_modes(rotor: FiniteElementRotor, count: int) -> ModeBasis:
 
 
 def lowest_with_pairs(
-    stiffness: sp.csr_array, mass: sp.csr_array, inverse: eigen.Inverse, count: int
+    stiffness: sp.csr_array,
+    mass: sp.csr_array,
+    inverse: eigen.Inverse,
+    count: int,
+    warns: bool = True,
 ) -> eigen.Modes:
-    """Return the `count` lowest modes; with a warning where the next one is the last one's pair.
+    """Return the `count` lowest modes; it `warns` where the next one is the last one's pair.
 
     A round rotor bends in all planes alike; an uneven mesh splits the two frequencies by little.
     With one mode of a pair it is an asymmetric shaft.
@@ -139,12 +143,13 @@ def lowest_with_pairs(
     apart = np.diff(frequencies)
     # where both neighbours of the last mode are near, its pair is the nearer one
     nearer = count < len(values) and (count == 1 or apart[count - 1] < apart[count - 2])
-    if nearer and apart[count - 1] <= _APART * frequencies[count]:
+    if warns and nearer and apart[count - 1] <= _APART * frequencies[count]:
         first, second = frequencies[count - 1 : count + 1] / (2.0 * np.pi)
         warnings.warn(
-            f"count: mode {count} ({first:.4g} Hz) is one of a pair in two planes, and mode "
+            f"mode {count} ({first:.4g} Hz) is one of a pair in two planes, and mode "
             f"{count + 1} ({second:.4g} Hz) is left out: the rotor bends as an asymmetric shaft "
-            f"does, or in one plane alone; ask for {count + 1} modes",
+            f"does, or in one plane alone; ask for {count + 1} modes, of a SolidRotor by "
+            f"rotor.reduce({count + 1})",
             UserWarning,
             stacklevel=user_level(),
         )

@@ -18,7 +18,7 @@ from exudyn_rotor.reduction.component import (
     ModeBasis,
     OrthonormalBasis,
     component_modes,
-    free_modes,
+    lowest_with_pairs,
     numbered,
     unit_columns,
 )
@@ -108,7 +108,10 @@ def reduced_for_loads(
         columns.append(inertia_relief(rotor).solve(np.column_stack(loads)))
     if spins:
         most = rotor.nodes.size - free_motions_of(rotor).shape[1]
-        columns.append(free_modes(rotor, min(_FREE_MODES, most)).matrix)
+        matrices, count = (rotor.stiffness, rotor.mass), min(_FREE_MODES, most)
+        # one of a pair alone makes no asymmetric shaft: static modes have its flexibility
+        found = lowest_with_pairs(*matrices, inertia_relief(rotor), count, warns=False)
+        columns.append(found[1])
     matrix = unit_columns(rotor, np.hstack(columns))
     known = None if spins or rotor.carried_prestress is not None else False
     basis = ModeBasis(matrix, numbered("static mode", matrix.shape[1]), rotor.nodes)

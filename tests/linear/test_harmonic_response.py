@@ -1,8 +1,10 @@
 """Harmonic responses against closed forms and against K − ω²M with the spin as a coordinate."""
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from forced_models import MASS, SPEEDS, TILT_C, TILT_K, C, K, close, held, oscillator, rings
+from models import disc_with_craig_bampton_modes
 from point_rotors import ring_rotor
 
 from exudyn_rotor import (
@@ -51,6 +53,35 @@ def test_base_acceleration_is_minus_mass_times_acceleration(speed):
     assert close(response.phasor("mid", "n2", 0), 1.0j * expected)
     # along the axis nothing holds it: −a/(−ω²)
     assert close(response.phasor("mid", "e", 0), 0.5 / SPEEDS[1:] ** 2)
+
+
+@pytest.mark.parametrize(
+    ("load", "direction", "unit"),
+    [
+        (HarmonicForce("left", (0.0, 0.0, 1.0)), "e", "m"),
+        (BaseAcceleration((0.0, 0.0, 1.0)), "e", "m"),
+        (HarmonicForce("left", moment=(0.0, 0.0, 1.0)), "twist", "rad"),
+    ],
+)
+def test_a_motion_along_or_about_the_axis_is_shown_at_speed(load, direction, unit):
+    """Across it the unevenness of the mesh makes small motions in other harmonics."""
+    supports = [Support(name, 1e7 * np.eye(3), 500.0) for name in ENDS]
+    at_rest, found = (
+        harmonic_response(
+            disc_with_craig_bampton_modes(), [200.0, 400.0], load, speed=speed, supports=supports
+        )
+        for speed in (0.0, 100.0)
+    )
+    assert list(found.orders) == [-1, 0, 1]
+    assert found.main_order == 0
+    expected = at_rest.phasor("right", direction)
+    np.testing.assert_allclose(found.phasor("right", direction), expected, rtol=1e-4)
+    (size, _), polar = found.plot("right", directions=[direction]), found.plot_polar("right")
+    np.testing.assert_allclose(size.lines[0].get_ydata(), 1e6 * np.abs(expected), rtol=1e-4)
+    assert size.get_ylabel() == f"amplitude [µ{unit}]"
+    assert polar.get_ylabel().endswith("[µm]")
+    assert f"{direction} [{unit}]" in found.table("right")
+    plt.close("all")
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from exudyn_rotor.linear.modal.resonance import Stiffness
 from exudyn_rotor.linear.response.response import resolved_peak
 
 POINT, ENDS, ON = point_mass().reduce(0), ("left", "right"), er.Support("at", 1e4, 1.0)
+MAGNET, FILM = er.Support("at", -5e3), er.Support("at", lambda speed: 1e4 + speed)
 UNBALANCE = er.Unbalance("mid", 1e-4)
 OVER = er.Support.from_table("at", frequencies=[1.0, 3.0], stiffness=[np.eye(2), 3.0 * np.eye(2)])
 ALONG, ACROSS = {"8": [0.0, 0.0, 5.0]}, {"8": [0.0, 5.0, 0.0]}
@@ -66,6 +67,9 @@ def map_of(stiffness=1e4, rotor=POINT, at="at"):
     ("call", "message"),
     [
         (lambda: er.critical_speed_map(POINT, [], [1e4]), "interfaces: needs at least one name"),
+        (lambda: er.critical_speed_map(POINT, "at", [0.0]), "positive finite numbers"),
+        (lambda: er.critical_speed_map(POINT, "at", [1e3], supports=MAGNET), "negative stiffness"),
+        (lambda: er.critical_speeds(POINT, supports=FILM), "needs the largest speed"),
         (lambda: er.critical_speeds(POINT, nodal_diameters=[]), "at least one whole number"),
         (lambda: er.linear_model(flat(), supports=held_ends()).state_space(9.0), r"\.matrices\("),
         (lambda: er.linear_model(flat(), supports=held_ends(UNEVEN)).matrices(9.0), "repeat every"),
@@ -86,6 +90,7 @@ def map_of(stiffness=1e4, rotor=POINT, at="at"):
         (lambda: er.steady_state(on_supports(*held_ends(), drive="elastic")), "add a torsional"),
         (lambda: er.stability_map(lambda x, y: POINT, [1.0], [1.0], labels="a"), "two names"),
         (lambda: er.stability_map(lambda x, y: POINT, [1.0], [1.0]), "build: needs to return"),
+        (lambda: er.stability_threshold(POINT, 0.0, 1.0, supports=str), "needs the spin speed"),
         (lambda: er.stability_threshold(POINT, 0.0, 1.0, speed=3.0), "is the parameter.*leave it"),
         (lambda: er.static_response(scene(), gravity=[9, 0, 0]), "steady_state.body. finds"),
         (lambda: static(ACROSS, *films("0"), frame="rotor", speed=9.0), "'0' stands still"),

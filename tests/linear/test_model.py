@@ -10,9 +10,11 @@ from exudyn_rotor import (
     RotorTrain,
     SolidRotor,
     Support,
+    Unbalance,
     campbell,
     linear_model,
     stability,
+    unbalance_response,
 )
 
 UNEVEN = np.diag([2e7, 4e7])
@@ -72,6 +74,10 @@ def test_meshs_own_unevenness_is_averaged_and_told():
     result = campbell(disc(), [100.0], supports=held(UNEVEN), accuracy=None)
     assert result.unevenness == model.unevenness
     assert "unevenness of the mesh" in result.table()
+    given = {"supports": held(UNEVEN), "accuracy": None}
+    turning = unbalance_response(disc(), [100.0], Unbalance("left", 1e-4), **given)
+    assert turning.unevenness == model.unevenness
+    assert f"unevenness of the rotor: {model.unevenness:.2g}" in turning.table()
 
 
 def test_rotor_and_train_of_one_are_the_same():

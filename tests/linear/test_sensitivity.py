@@ -47,6 +47,14 @@ def test_loop_of_one_mass(point, speed, extra):
         np.testing.assert_allclose(values, 1.0 / (1.0 + loop), rtol=1e-6)
 
 
+def test_a_peak_beside_own_frequencies_is_found_with_few_points(point):
+    few, many = (
+        sensitivity(point, np.geomspace(10.0, 2e4, count), supports=[bearing(2e4)]).peaks
+        for count in (10, 3000)
+    )
+    np.testing.assert_allclose(few, many, rtol=1e-5)
+
+
 def test_an_unstable_loop_is_refused(point):
     with pytest.raises(ValueError, match=r"unstable at 0 rad/s: a motion of .* grows by"):
         sensitivity(point, [10.0, 20.0], supports=[bearing(1e3)])

@@ -1,6 +1,7 @@
 """Supports with coefficients over speed and frequency, against models that carry the states."""
 
 import warnings
+from dataclasses import replace
 from functools import partial
 
 import exudyn as exu
@@ -35,7 +36,7 @@ from exudyn_rotor import (
     static_response,
     unbalance_response,
 )
-from tests.models import disc_with_craig_bampton_modes
+from tests.models import disc_rotor, disc_with_craig_bampton_modes
 
 NAMES = ("left", "right")
 SPEED = 300.0
@@ -204,6 +205,26 @@ def test_six_by_six_is_a_rigid_housing_on_springs():
         for given in ({"supports": housing}, {"supports": stiff, "foundation": block})
     )
     assert found == pytest.approx(expected, rel=1e-6)
+
+
+def test_a_mass_that_differs_in_two_directions():
+    """Closed forms of one of both masses: it has a mass of its own in each direction."""
+    added, rates, k, c = np.array([1.5, 3.0]), np.array([50.0, 200.0]), 2e4, 10.0
+    given = [Support("left", k, c, mass=np.diag(added)), Support("right", k, c)]
+    turning = unbalance_response(rotor(), rates, Unbalance("left", 1e-4), supports=given)
+    force = HarmonicForce("left", (1.0, 1.0))
+    shaken = harmonic_response(rotor(), rates, force, speed=100.0, supports=given)
+    for i, direction in enumerate(("n1", "n2")):
+        moved = 1.0 / (k - (2.0 + added[i]) * rates**2 + 1j * c * rates)
+        load = 1e-4 * rates**2 * (-1j) ** i
+        assert turning.phasor("left", direction) == pytest.approx(load * moved, rel=1e-9)
+        assert shaken.phasor("left", direction) == pytest.approx(moved, rel=1e-9)
+    sag = static_response(rotor(), {"left": [0.0, 1.0, 0.0]}, supports=given)
+    assert sag.displacement[0, 1] == pytest.approx(1.0 / k, rel=1e-9)
+    with pytest.warns(UserWarning, match="one of a pair"):
+        halves = disc_rotor().reduce(1)
+    model = replace(linear_model(halves, supports=given), largest_unevenness=2.0)
+    assert model.axes == "inertial"
 
 
 def test_what_has_several_frequencies_at_once_refuses_them():

@@ -51,8 +51,6 @@ def test_onset_by_cross_coupling(point, damping):
     )
     assert found.values == pytest.approx([100.0 * damping], rel=1e-7)
     assert found.table().splitlines()[0].split()[:2] == ["q", "[N/m]"]
-    with pytest.raises(ValueError, match="needs the spin speed"):
-        stability_threshold(point, 0.0, 5e3, supports=supports)
 
 
 def test_table_with_a_gap_of_coefficients(point):

@@ -1,7 +1,7 @@
 """Results are small, readable, stored without pickle, and drawn without a display."""
 
 import inspect
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -92,6 +92,13 @@ def test_every_result_has_a_table_a_short_repr_and_a_picture(name):
     for ax in np.ravel(drawn):  # a Bode diagram has two: size and phase
         assert isinstance(ax, pyplot.Axes)
         assert ax.figure is pyplot.gcf()
+
+
+def test_orbits_of_many_places_have_a_line_each(ellipses):
+    names = tuple(f"place {i}" for i in range(9))
+    many = replace(ellipses, places=names, motion=ellipses.motion[:, :1].repeat(9, axis=1),
+                   basis_errors=None)  # fmt: skip
+    assert len(many.plot_orbit(240.0).lines) == 2 * len(names)  # with a dot each
 
 
 def test_orbit_is_drawn_for_every_place(ellipses):

@@ -8,7 +8,7 @@ import pytest
 from models import STEEL, disc_rotor
 from netgen.occ import Cylinder, Dir, OCCGeometry, Pnt
 
-from exudyn_rotor import SolidRotor, craig_bampton_modes, free_modes
+from exudyn_rotor import SolidRotor, Support, craig_bampton_modes, free_modes, static_response
 from exudyn_rotor.theory.axis import rotations, translations
 
 CUT = "one of a pair"
@@ -80,6 +80,11 @@ def test_of_near_neighbours_the_nearest_is_the_pair(hertz, expected):
     assert cut(lambda number: free_modes(rotor, number), range(1, 6)) == expected
 
 
-def test_reduce_says_what_to_do():
-    with pytest.warns(UserWarning, match="count: mode 1 .* ask for 2 modes"):
+def test_reduce_says_what_to_do(monkeypatch):
+    with pytest.warns(UserWarning, match=r"^mode 1 .* ask for 2 modes, .* by rotor\.reduce\(2\)"):
         disc_rotor().reduce(1)
+    monkeypatch.setattr("exudyn_rotor.reduction.reduce._FREE_MODES", 1)
+    with warnings.catch_warnings():  # beside static modes nobody asked for one of a pair
+        warnings.simplefilter("error")
+        pins = [Support(name, 1e9) for name in ("left", "right")]
+        static_response(disc_rotor(), {"left": [1.0, 0.0, 0.0]}, supports=pins, speed=100.0)

@@ -26,7 +26,6 @@ _RANGE, _LOWEST = 2.0, 6  # times the fastest speed, and lowest modes: what is j
 _SPREAD = 0.2  # third of the share of a frequency by which the same motion may differ
 _POINTS = 3  # speeds at which the richer model is solved
 _LEAST = 0.1  # of the largest motion at the same speed or frequency: smaller ones count as that
-_AXIAL = 1e-6  # share of a motion across the axis that is rounding
 
 Amplitudes = Mapping[int, np.ndarray]  # harmonics (s, p, 6) over speeds or frequencies
 
@@ -116,11 +115,13 @@ def basis_errors(
     values: np.ndarray,
     motions: Amplitudes,
     solve: Callable[[LinearModel, np.ndarray], Amplitudes],
+    along: float = 1.0,
 ) -> np.ndarray | None:
     """Return relative errors (s, p) by the basis, NaN where none is looked at; None if not known.
 
     Of `motions`, harmonics (s, p, 6), at speeds or frequencies `values` (s,) [rad/s]; `solve` takes
-    a model and such values, and gives the motions.
+    a model and such values, and gives the motions. The harmonic that is looked at is the largest,
+    with motion `along` the axis by this share of it.
     """
     if not is_known(model, accuracy):
         return None
@@ -132,7 +133,7 @@ def basis_errors(
     better = solve(model.richer, values[at])
     for row, index in enumerate(at):
         given = {n: a[index] for n, a in motions.items()}
-        errors[index] = motion_error(given, {n: a[row] for n, a in better.items()})
+        errors[index] = motion_error(given, {n: a[row] for n, a in better.items()}, along)
     return errors
 
 
@@ -149,16 +150,16 @@ def looked_at(sizes: np.ndarray) -> np.ndarray:
     return np.intersect1d(chosen, known)
 
 
-def motion_error(given: Mapping[int, np.ndarray], finer: Mapping[int, np.ndarray]) -> np.ndarray:
-    """Return relative errors (p,) of displacements (p, 6) in the largest harmonic across the axis.
+def motion_error(
+    given: Mapping[int, np.ndarray], finer: Mapping[int, np.ndarray], along: float = 1.0
+) -> np.ndarray:
+    """Return relative errors (p,) of displacements (p, 6) in the largest harmonic.
 
-    Relative to the larger one of the two motions at the place, or to a tenth of the largest at any.
+    Which is largest, motion `along` the axis counts for by this share. Errors are relative to the
+    larger one of both motions at the place, or to a tenth of the largest at any.
     """
-    sizes = {
-        n: np.linalg.norm(each[:, :2]) + _AXIAL * np.linalg.norm(each[:, :3])
-        for n, each in finer.items()
-    }
-    order = max(sizes, key=sizes.get)  # not the static stretch by the rotation
+    sizes = {n: np.linalg.norm(each[:, :3] * [1.0, 1.0, along]) for n, each in finer.items()}
+    order = max(sizes, key=sizes.get)
     other = given.get(order, np.zeros_like(finer[order]))
     size = np.maximum(_size(finer[order]), _size(other))  # beside a sharp peak either is larger
     away = _size(finer[order] - other)

@@ -156,18 +156,23 @@ class Element:
                 put(found, "K", 2, products(U, mass, rate_of(first)))
         return found
 
+    @property
+    def stands(self) -> str:
+        """Why it needs axes that stand still; empty where it takes any."""
+        if self.table_frequencies.size:
+            return "coefficients over the frequency"
+        if self.has_mass and not is_isotropic_matrix(self.mass(0.0)):
+            return "a mass that is not the same in all directions"
+        return ""
+
     def check_axes(self, turns: int) -> None:
-        """Refuse an anisotropic element that turns otherwise than the axes do, and such a mass."""
-        uneven = self.has_mass and not is_isotropic_matrix(self.mass(0.0))
-        for fault, is_there in (
-            ("has coefficients over the frequency", turns and self.table_frequencies.size),
-            ("has a mass that is not the same in all directions", turns and uneven),
-        ):
-            if is_there:
-                raise ValueError(
-                    f"supports: {self.what} {fault}, which needs a rotor that is round, and axes "
-                    "that stand still; leave axes='rotor' out, or give support.at_frequency(…)"
-                )
+        """Refuse what needs other axes, and an anisotropic element that turns otherwise."""
+        if turns and self.stands:
+            other = ", or give support.at_frequency(…)" if self.table_frequencies.size else ""
+            raise ValueError(
+                f"supports: {self.what} has {self.stands}, which needs a rotor that is round, and "
+                f"axes that stand still; leave axes='rotor' out{other}"
+            )
         if self.turns and self.turns != turns and not self.is_isotropic(0.0):
             raise ValueError(
                 f"supports: {self.what} is not the same in all directions and turns with "

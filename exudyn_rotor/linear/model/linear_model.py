@@ -202,7 +202,7 @@ class LinearModel:
         elements, own = self._elements
         if own or self._standing_bodies or len(self._used) > 1:
             return False
-        return not any(one.varies or not one.is_isotropic(0.0) for one in elements)
+        return not any(one.varies or one.stands or not one.is_isotropic(0.0) for one in elements)
 
     @property
     def axes(self) -> str:
@@ -465,6 +465,11 @@ class LinearModel:
         averaged = [b.name for b in rotors_of(self.bodies) if b.mean]
         return max((self._own_unevenness[name] for name in averaged), default=0.0)
 
+    @property
+    def largest_own_unevenness(self) -> float:
+        """Largest share of a rotor that differs around its axis, averaged or not."""
+        return max(self._own_unevenness.values())
+
     @cached_property
     def complete_up_to(self) -> float:
         """Frequency of the lowest pair of which the basis holds one half alone [rad/s].
@@ -681,9 +686,9 @@ class LinearModel:
 
         Near a critical speed a forced motion stands in the rotor, where the unevenness of a mesh
         counts to first order. It has few harmonics in the axes of the rotor. Coefficients over the
-        frequency need axes that stand still.
+        frequency, and a mass that differs in two directions, need axes that stand still.
         """
-        if self.wanted_axes != "auto" or self.over_frequency:
+        if self.wanted_axes != "auto" or any(one.stands for one in self._elements[0]):
             return self
         return replace(self, wanted_axes="rotor")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import cycle
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -22,8 +23,12 @@ if TYPE_CHECKING:
 
 DIRECTIONS = ("n1", "n2", "e", "tilt n1", "tilt n2", "twist")
 CIRCULAR = ("forward", "backward")
+_IN_TABLES = (*DIRECTIONS[:3], "twist")
+_TOGETHER = (*DIRECTIONS[:2], *CIRCULAR), ("e",), DIRECTIONS[3:5], ("twist",)  # of one harmonic
 HALF_POWER = np.sqrt(0.5)  # of the size at a peak
 STILL = 1e-6  # share of a peak below which a neighbour stands still, as at rest without a load
+_REVERSED = 1e-6  # phase [rad] beside half a turn that damping is not seen by
+_CLOSE, _TURNED = 1e-6, 0.3  # share of the range, and phase [rad] that turns within it undamped
 _CONSTANT = 1e-12  # share of the largest frequency that is none
 _NO_MOTION = 1e-12  # of the largest amplitude
 
@@ -63,17 +68,24 @@ class Response(AtPlaces, ModelResult):
         Whether (n1, n2, e) of :attr:`SpinAxis.plane` stand still or turn with the rotor.
     basis_errors : ndarray, shape (s, p), or None
         Estimated relative errors by the basis of a reduced rotor, of the displacement in the
-        harmonic that is largest across the axis; a motion counts as at least a tenth of the largest
-        at that speed or frequency. They are estimated at all peaks and at the first, middle and
-        last point, which the table names; NaN elsewhere. None where they are not known.
-    stiffening, axes, unevenness
+        largest harmonic, under unbalance the largest across the axis; a motion counts as at least
+        a tenth of the largest at that speed or frequency. They are estimated at all peaks and at
+        the first, middle and last point, which the table names; NaN elsewhere. None where they are
+        not known.
+    radius : float
+        The rotor's radius of gyration, at which a rotation counts as a displacement [m].
+    stiffening, axes
         See :class:`Stability`.
+    unevenness : float
+        Largest share of a rotor that differs around its axis, as that of a mesh: in the axes of the
+        rotor it counts, in inertial axes it was averaged over a turn.
     """
 
     orders: np.ndarray = numbers("orders", dtype=int)
     motion: np.ndarray = numbers("abscissa", "places", "orders", 6, dtype=complex, finite=False)
     frame: str = checks.one_of(FRAMES)
     basis_errors: np.ndarray | None = numbers("abscissa", "places", finite=False, optional=True)
+    radius: float = field(default=1.0, kw_only=True)
 
     _over: ClassVar[str] = "speeds"
     _what: ClassVar[str] = "spin speed"
@@ -83,9 +95,9 @@ class Response(AtPlaces, ModelResult):
         """What the response was computed over, shape (s,) [rad/s]."""
         return getattr(self, self._over)
 
-    def rates(self, order: int) -> np.ndarray:
-        """Return the angular frequencies of a harmonic, shape (s,) [rad/s]."""
-        raise NotImplementedError
+    @property
+    def _uneven(self) -> str:
+        return super()._uneven if self.axes == "inertial" else "unevenness of the rotor"
 
     @property
     def _rounding(self) -> np.ndarray:
@@ -95,9 +107,22 @@ class Response(AtPlaces, ModelResult):
     @property
     def main_order(self) -> int:
         """The harmonic with the largest displacement across the axis, or along it if none is."""
+        return self._largest(DIRECTIONS[: 2 if np.any(self._sizes[:, :2]) else 3])
+
+    @property
+    def _sizes(self) -> np.ndarray:
+        """Largest motion in each harmonic and direction, (h, 6) [m], rotations at the radius."""
         sizes = np.abs(np.nan_to_num(self.motion)).max(axis=(0, 1))
-        across = sizes[:, :2] if np.any(sizes[:, :2]) else sizes[:, :3]
-        return int(self.orders[across.max(axis=1).argmax()])
+        return sizes * np.repeat([1.0, self.radius], 3)
+
+    def _largest(self, directions: Sequence[str]) -> int:
+        """Return the harmonic with the largest motion in directions."""
+        columns = [DIRECTIONS.index(name) for name in directions]
+        return int(self.orders[self._sizes[:, columns].max(axis=1).argmax()])
+
+    def _main(self, directions: Sequence[str]) -> int:
+        """Return the harmonic that is shown of directions: an unbalance acts across the axis."""
+        return self.main_order
 
     def phasor(
         self, place: str | None = None, direction: str = "n1", order: int | None = None
@@ -111,7 +136,8 @@ class Response(AtPlaces, ModelResult):
         direction : {'n1', 'n2', 'e', 'tilt n1', 'tilt n2', 'twist', 'forward', 'backward'}
             The last two are the circular components of :meth:`whirl`.
         order : int, optional
-            :attr:`main_order` by default.
+            By default :attr:`main_order` under unbalance, and under harmonic loads the harmonic
+            that is largest in the direction: across the axis, along it, of tilts, or of the twist.
 
         Raises
         ------
@@ -120,6 +146,7 @@ class Response(AtPlaces, ModelResult):
         """
         if checks.choice(direction, "direction", (*DIRECTIONS, *CIRCULAR)) in CIRCULAR:
             return self.whirl(place, order)[CIRCULAR.index(direction)]
+        order = self._order(order, (direction,))
         return self._harmonic(place, order)[:, DIRECTIONS.index(direction)]
 
     def whirl(
@@ -130,7 +157,8 @@ class Response(AtPlaces, ModelResult):
         ``u_n1 + i u_n2 = forward exp(i|rate|t) + backward exp(−i|rate|t)``; forward is from n1 to
         n2, the sense of a positive spin.
         """
-        motion, backward = self._harmonic(place, order), self.rates(self._order(order)) < 0.0
+        order = self._order(order, CIRCULAR)
+        motion, backward = self._harmonic(place, order), self.rates(order) < 0.0
         a, b = np.where(backward[:, None], motion.conj(), motion)[:, :2].T
         return 0.5 * (a + 1j * b), 0.5 * (a - 1j * b).conj()
 
@@ -149,13 +177,18 @@ class Response(AtPlaces, ModelResult):
         """Return the highest resonance: where the major semi-axis is largest [rad/s], its size [m].
 
         Between three points by a parabola of 1/size². A warning tells where they are too far
-        apart to show a resonance; ``refine=True`` of the analysis adds points there.
+        apart to show a resonance; ``refine=True`` of the analysis adds points there. A resonance
+        that nothing damps has an infinite size, with a warning.
 
         Raises
         ------
         ValueError
             If the motion has no maximum between the first and the last point.
         """
+        endless = undamped_resonances(self, place, order)
+        if endless.size:
+            warn_of_undamped([(self._named(place), float(at)) for at in endless])
+            return float(endless[0]), np.inf
         major, _ = self.semi_axes(place, order)
         inner = np.flatnonzero((major[1:-1] > major[:-2]) & (major[1:-1] >= major[2:])) + 1
         name, values = self._named(place), self.abscissa
@@ -184,7 +217,7 @@ class Response(AtPlaces, ModelResult):
         points : int, optional
         """
         points = checks.count(points, "points", least=2)
-        index, order = self._nearest(value), self._order(order)
+        index, order = self._nearest(value), self._order(order, CIRCULAR)
         motion = self._harmonic(place, order)[index, :2]
         sense = -1.0 if self.rates(order)[index] < 0.0 else 1.0
         angle = sense * np.linspace(0.0, 2.0 * np.pi, points)
@@ -204,10 +237,10 @@ class Response(AtPlaces, ModelResult):
         (values, unit), columns = self._shown(units), {}
         columns[f"{self._what} [{unit}]"] = values
         columns |= {"place": np.full(len(values), place), "order": np.full(len(values), order)}
-        for name in DIRECTIONS[:3]:
+        for name, quantity in zip(_IN_TABLES, ("m", "m", "m", "rad"), strict=True):
             phasor = self.phasor(place, name, order)
             phases = np.where(np.abs(phasor) <= self._rounding, 0.0, np.degrees(np.angle(phasor)))
-            columns |= {f"{name} [m]": np.abs(phasor), f"{name} phase [deg]": phases}
+            columns |= {f"{name} [{quantity}]": np.abs(phasor), f"{name} phase [deg]": phases}
         columns |= {f"{name} [m]": np.abs(self.phasor(place, name, order)) for name in CIRCULAR}
         errors = self.basis_errors
         errors = None if errors is None else errors[:, self._at(place)]
@@ -222,17 +255,26 @@ class Response(AtPlaces, ModelResult):
     ) -> str:
         """Return sizes and phases at one place as text; '-' for an error that is not estimated.
 
+        Where motion along the axis or twist is larger than motion across it, it stands in place of
+        circular components.
+
         Parameters
         ----------
-        place, order
+        place
             See :meth:`phasor`.
+        order : int, optional
+            :attr:`main_order` by default.
         units : {'rpm', 'Hz', 'SI'}
             'rpm' is for spin speeds, frequencies are in Hz then; 'SI' is rad/s.
         """
-        place, order = self._named(place), self._order(order)
-        left_out = "place", "order", "e [m]", "e phase [deg]"
+        place, order = self._named(place), self._order(order, DIRECTIONS)
+        n1, n2, along, *_, twist = self._sizes[list(self.orders).index(order)]
+        sizes = {CIRCULAR: max(n1, n2), ("e",): along, ("twist",): twist}
+        told, columns = max(sizes, key=sizes.get), self._columns(place, order, units)
+        names = [name for group in sizes if group != told for name in group]
+        left_out = [name for name in columns if name.split()[0] in names]
         lines = [self._title(place, order)]
-        lines += table_lines(self._columns(place, order, units), *left_out)
+        lines += table_lines(columns, "place", "order", *left_out)
         return "\n".join([*lines, *self._closing(self.basis_errors)])
 
     def plot(
@@ -253,7 +295,7 @@ class Response(AtPlaces, ModelResult):
         directions : sequence of str
             See :meth:`phasor`.
         order : int, optional
-            Harmonic; the main one by default.
+            Harmonic; see :meth:`phasor`.
         ax : two matplotlib Axes, optional
             For size and phase; a new figure by default.
         units : {'rpm', 'Hz', 'SI'}
@@ -268,7 +310,8 @@ class Response(AtPlaces, ModelResult):
         from matplotlib.ticker import MultipleLocator
 
         names = checks.labels(directions, "directions", (*DIRECTIONS, *CIRCULAR))
-        (values, unit), place, order = self._shown(units), self._named(place), self._order(order)
+        (values, unit), place = self._shown(units), self._named(place)
+        order = self._order(order, names)
         if ax is None:
             ax = figure(2, 1, size=(7.0, 5.5), sharex=True)[1]
         pair = checks.instances(ax, "ax", Axes)
@@ -277,12 +320,14 @@ class Response(AtPlaces, ModelResult):
         size, phase = pair
         style = {"lw": 1.4, "marker": "." if len(values) == 1 else None}  # one point is no line
         curves = [self.phasor(place, name, order) for name in names]
-        for name, curve, color, line in zip(names, curves, COLORS, LINES, strict=False):
+        kinds = [_micro(name) for name in names]
+        for name, curve, color, line in zip(names, curves, cycle(COLORS), cycle(LINES)):
+            name = f"{name} [{_micro(name)}]" if len(set(kinds)) > 1 else name
             size.plot(values, 1e6 * np.abs(curve), label=name, color=color, ls=line, **style)
             phase.plot(values, _phase(curve), color=color, ls=line, **style)
         if np.any(np.nan_to_num(curves)):  # nothing is nowhere on a log scale
             size.set_yscale("log")
-        size.set_ylabel("amplitude [µm]")
+        size.set_ylabel(f"amplitude [{', '.join(dict.fromkeys(kinds))}]")
         size.set_title(self._title(place, order), loc="right", fontsize=10)
         phase.set(xlabel=f"{self._what} [{unit}]", ylabel="phase [deg]")
         phase.yaxis.set_major_locator(MultipleLocator(90.0))
@@ -300,7 +345,7 @@ class Response(AtPlaces, ModelResult):
         ax: Axes | None = None,
         units: str = "rpm",
     ) -> Axes:
-        """Draw the complex amplitude [µm] as a curve in its plane (Nyquist diagram).
+        """Draw the complex amplitude [µm] or [µrad] as a curve in its plane (Nyquist diagram).
 
         A damped resonance is a loop; its place across from the start is the critical speed. Five
         points are labelled with their speed or frequency.
@@ -314,7 +359,8 @@ class Response(AtPlaces, ModelResult):
         ax : matplotlib.axes.Axes, optional
             A new figure by default.
         """
-        (values, unit), place, order = self._shown(units), self._named(place), self._order(order)
+        (values, unit), place = self._shown(units), self._named(place)
+        order = self._order(order, (direction,))
         curve = 1e6 * self.phasor(place, direction, order)
         known = np.isfinite(curve)
         values, curve, ax = values[known], curve[known], axes_or_new(ax, (5.5, 5.5))
@@ -329,7 +375,8 @@ class Response(AtPlaces, ModelResult):
         ax.axhline(0.0, color="0.6", lw=0.7)
         ax.axvline(0.0, color="0.6", lw=0.7)
         ax.set_aspect("equal", adjustable="datalim")
-        ax.set(xlabel=f"in phase, {direction} [µm]", ylabel="a quarter turn ahead [µm]")
+        kind = _micro(direction)
+        ax.set(xlabel=f"in phase, {direction} [{kind}]", ylabel=f"a quarter turn ahead [{kind}]")
         ax.grid(alpha=0.3)
         ax.set_title(self._title(place, order), loc="right", fontsize=10)
         return ax
@@ -365,7 +412,7 @@ class Response(AtPlaces, ModelResult):
         orbits = {name: self.orbit(value, name, order) for name in names}
         ax = plot_orbits(axes_or_new(ax, (5.5, 5.5)), orbits)
         arrow = {"arrowstyle": "->", "lw": 1.4}
-        for points, color in zip(orbits.values(), COLORS, strict=False):
+        for points, color in zip(orbits.values(), cycle(COLORS)):
             x, y = 1e6 * points.T
             ax.plot(x[0], y[0], "o", color=color, ms=5)
             ax.annotate("", (x[24], y[24]), (x[20], y[20]), arrowprops=arrow | {"color": color})
@@ -385,18 +432,17 @@ class Response(AtPlaces, ModelResult):
     def _title(self, place: str, order: int) -> str:
         return f"{place}, order {order}, {self.frame} frame"
 
-    def _harmonic(self, place: str | None, order: int | None) -> np.ndarray:
+    def _harmonic(self, place: str | None, order: int) -> np.ndarray:
         """Return the amplitudes (s, 6) of one harmonic at one place."""
-        order = self._order(order)
         motion = self.motion[:, self._at(place), list(self.orders).index(order)]
         rates = np.abs(self.rates(order))
         constant = rates <= _CONSTANT * np.abs(self.abscissa).max()
         return np.where(constant[:, None], motion.real, motion)
 
-    def _order(self, order: int | None) -> int:
-        """Return a harmonic that matters, the main one by default."""
+    def _order(self, order: int | None, directions: Sequence[str]) -> int:
+        """Return a harmonic that matters, by default the main one of directions."""
         if order is None:
-            return self.main_order
+            return self._main(directions)
         order = checks.whole_number(order, "order")
         if order not in self.orders:
             known = ", ".join(str(n) for n in self.orders)
@@ -471,6 +517,15 @@ class HarmonicResponse(Response):
     frequencies: np.ndarray = numbers("abscissa")
     speed: float
 
+    @property
+    def main_order(self) -> int:
+        """The harmonic with the largest motion, of rotations at the :attr:`radius`."""
+        return self._largest(DIRECTIONS)
+
+    def _main(self, directions: Sequence[str]) -> int:
+        together = [group for group in _TOGETHER if not set(group).isdisjoint(directions)]
+        return self._largest([name for group in together for name in group if name in DIRECTIONS])
+
     _over: ClassVar[str] = "frequencies"
     _what: ClassVar[str] = "frequency"
 
@@ -480,6 +535,11 @@ class HarmonicResponse(Response):
 
     def _shown(self, units: str) -> tuple[np.ndarray, str]:
         return Units.of(units).frequencies(self.abscissa), Units.of(units).frequency
+
+
+def _micro(direction: str) -> str:
+    """Return the unit of a direction in pictures."""
+    return "µrad" if direction in DIRECTIONS[3:] else "µm"
 
 
 # ------------------------------------------------------------------ peaks
@@ -501,6 +561,48 @@ def resolved_peak(at: np.ndarray, size: np.ndarray, index: int) -> tuple[float, 
     least = square * place**2 + slope * place + middle
     # as close to a pole as the parabola may put it, no size follows from it
     return float(at[1] + place), float(size[1] / np.sqrt(max(least, 0.25))), is_near
+
+
+def undamped_resonances(
+    response: Response, place: str | None = None, order: int | None = None
+) -> np.ndarray:
+    """Return where resonances across the axis lie that nothing damps [rad/s].
+
+    From a point before to one behind, a displacement turns by half a revolution, and it grows
+    towards both; without damping it turns so within any width.
+    """
+    motion = np.stack([response.phasor(place, name, order) for name in DIRECTIONS[:2]], axis=1)
+    motion[response.semi_axes(place, order)[0] == 0.0] = 0.0  # rounding
+    at, known = response.abscissa, np.all(np.isfinite(motion), axis=1)
+    missing, at, found = at[~known], at[known], {}
+    close = np.diff(at) < _CLOSE * np.ptp(at) if at.size else np.zeros(0)
+    largest = np.abs(motion[known]).max(axis=1, initial=0.0)
+    for u in motion[known].T if len(at) > 2 else ():
+        size = np.abs(u)
+        moves = size > STILL * largest
+        turned = np.abs(np.angle(u[1:] * u[:-1].conj()))
+        passed = (turned > np.pi - _REVERSED) | (close & (turned > _TURNED))
+        before, behind = np.r_[0.0, np.diff(size)[:-1]], np.r_[np.diff(size)[1:], 0.0]
+        grows = (before >= 0.0) & (behind <= 0.0) & moves[1:] & moves[:-1]
+        for i in np.flatnonzero(passed & grows).tolist():
+            between = missing[(missing > at[i]) & (missing < at[i + 1])]
+            middle = np.average(at[i : i + 2], weights=size[i : i + 2])
+            found[i] = between[0] if between.size else middle
+    return np.array([found[i] for i in sorted(found)])
+
+
+def warn_of_undamped(peaks: Sequence[tuple[str, float]]) -> None:
+    """Warn of resonances [rad/s] at places that nothing damps, once for all."""
+    if not peaks:
+        return
+    name, at = peaks[0]
+    more = f" (and {len(peaks) - 1} more)" if len(peaks) > 1 else ""
+    warnings.warn(
+        f"{name}: nothing damps the resonance at {at:g} rad/s{more}, so that its size and "
+        "amplification are infinite; give supports or the rotor damping",
+        UserWarning,
+        stacklevel=user_level(),
+    )
 
 
 def warn_of_coarse_peaks(coarse: Sequence[tuple[str, float]]) -> None:

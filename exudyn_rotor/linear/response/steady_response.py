@@ -216,6 +216,7 @@ class _Sweep:
     accuracy: float | None
     speed: float = field(default=1.0, kw_only=True)
     unit: ClassVar[str]
+    share_along: ClassVar[float] = 1.0  # by which motion along the axis counts
 
     def __post_init__(self) -> None:
         checks.keep(self, at=checked_places(self.at))
@@ -231,7 +232,8 @@ class _Sweep:
         if self.refine:
             values, motions = self._refined(model, values, motions)
         motions, observed = self.joined(motions, values), places(model, self.at, self.speed)
-        errors = basis_errors(model, self.accuracy, values, motions, self._joined_motions)
+        solve = self._joined_motions
+        errors = basis_errors(model, self.accuracy, values, motions, solve, self.share_along)
 
         def told(row: int, place: int) -> str:
             where = f"{Units.of(self.unit).speeds(values[row]):.5g} {self.unit}"
@@ -253,8 +255,9 @@ class _Sweep:
             "motion": motion[:, :, matters],
             "basis_errors": errors,
             "stiffening": model.stiffening,
+            "radius": model.radius,
             "axes": model.axes,
-            "unevenness": model.unevenness,
+            "unevenness": model.largest_own_unevenness,
         }
 
     def _motions(self, model: LinearModel, values: np.ndarray) -> tuple[Harmonics, np.ndarray]:
@@ -300,6 +303,7 @@ class _OverSpeed(_Sweep):
     unbalances: Sequence[Unbalance] = field(kw_only=True)
     own: bool = field(kw_only=True)
     unit: ClassVar[str] = "rpm"
+    share_along: ClassVar[float] = 1e-6  # no static stretch by the rotation
 
     def coordinates(self, model: LinearModel, values: np.ndarray) -> tuple[Harmonics, np.ndarray]:
         """Return the coordinates of a model, and at which speeds (s,) it has equations."""

@@ -66,8 +66,6 @@ def forced_motions(
     rates = np.asarray(rates, dtype=float)
     shape = len(rates), system.size
     acting = {n: np.broadcast_to(F, shape) for n, F in loads.items() if np.any(F)}
-    if not acting:
-        return {n: np.zeros(shape, dtype=complex) for n in loads}
     if system.is_constant:
         mean = system.matrices()
         return {

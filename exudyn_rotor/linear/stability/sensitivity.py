@@ -41,6 +41,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 ZONES = {"A": 3.0, "B": 4.0, "C": 5.0, "D": np.inf}  # largest |S|, ISO 14839-3:2006
+_NEAR_LARGEST = 0.8  # share of the largest |S| above which a peak is looked at
+_ROUNDS, _AROUND = 3, 9  # how often, and with how many points between its neighbours
 _SENSOR = slice(3, 6)  # ports of a controller; the bearing's come first
 
 
@@ -138,8 +140,8 @@ def sensitivity(
     rotor : ReducedRotor, SolidRotor or RotorTrain
     frequencies : array_like, shape (f,)
         Where S is computed [rad/s], ascending, above zero. The closed loop's own frequencies
-        between the first and the last, of motions with damping, are added, so that no peak is
-        missed.
+        between the first and the last, of motions with damping, are added, and points around the
+        largest peaks.
     supports : sequence of MagneticBearing, and others
         Of a rotor; a train has its own.
     foundation : Foundation, optional
@@ -174,10 +176,10 @@ def sensitivity(
     >>> bearings = [MagneticBearing(interface=name, **parts) for name in ("left", "right")]
     >>> print(sensitivity(rotor, np.geomspace(10.0, 5e3, 50), supports=bearings).table())
     axis      peak |S|  peak [dB]  at [Hz]  zone
-    left, 1    1.66174    4.41125  153.016  A
-    left, 2    1.66174    4.41125  153.016  A
-    right, 1   1.66174    4.41125  153.016  A
-    right, 2   1.66174    4.41125  153.016  A
+    left, 1    1.66895    4.44887  160.631  A
+    left, 2    1.66895    4.44887  160.631  A
+    right, 1   1.66895    4.44887  160.631  A
+    right, 2   1.66895    4.44887  160.631  A
     """
     checks.instance(rotor, "rotor", (ReducedRotor, SolidRotor, RotorTrain))
     values = checks.ascending(frequencies, "frequencies", "rad/s")
@@ -210,13 +212,33 @@ def sensitivity(
         )
     own = heard[np.abs(growth) > motions.bounds[0]]
     values = np.union1d(values, own[(own > values[0]) & (own < values[-1])])
-    rows = [
-        _of_axis(model, *loop, axis, values, speed)
-        for (_, bearing), loop in zip(bearings, loops, strict=True)
-        for axis in bearing.control_axes
-    ]
+
+    def found(at: np.ndarray) -> np.ndarray:
+        return np.array([
+            _of_axis(model, *loop, axis, at, speed)
+            for (_, bearing), loop in zip(bearings, loops, strict=True)
+            for axis in bearing.control_axes
+        ])  # fmt: skip
+
+    rows = found(values)
+    for _ in range(_ROUNDS):  # a wide peak is at no own frequency
+        more = np.setdiff1d(_around_peaks(values, np.abs(rows)), values)
+        if more.size:
+            values, rows = np.r_[values, more], np.hstack([rows, found(more)])
+            order = np.argsort(values)
+            values, rows = values[order], rows[:, order]
     names = [f"{name}, {number}" for name, _ in bearings for number in (1, 2)]
-    return Sensitivity(tuple(names), values, np.array(rows), speed)
+    return Sensitivity(tuple(names), values, rows, speed)
+
+
+def _around_peaks(values: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+    """Return frequencies between the neighbours of the largest peaks of sizes (axes, f)."""
+    sizes = np.nan_to_num(sizes)
+    middle = sizes[:, 1:-1]
+    is_peak = (middle >= sizes[:, :-2]) & (middle >= sizes[:, 2:])
+    is_peak &= middle >= _NEAR_LARGEST * sizes.max(axis=1, keepdims=True)
+    at = np.flatnonzero(np.any(is_peak, axis=0)) + 1
+    return np.linspace(values[at - 1], values[at + 1], _AROUND + 2)[1:-1].ravel()
 
 
 def _of_axis(

@@ -73,6 +73,8 @@ class Problem:
                 if isinstance(one, SeriesSupport | FloatingRingBearing):
                     one = Support(one.interface, one.linearised().static_stiffness)
                 linear = isinstance(one, Support)
+                if linear and (frame == "inertial" or not speed):  # what stands still has no mass
+                    one = replace(one.at_frequency(0.0), mass=0.0)
                 if not linear and frame == "rotor" and speed:
                     raise ValueError(
                         f"frame: the bearing at {one.interface!r} stands still, and its force is "
