@@ -48,7 +48,8 @@ def test_a_drawn_mode_names_its_sense_and_covers_no_label(index):
     legend, whole = ax.get_legend().get_window_extent(), ax.figure.bbox
     for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
         box = axis.label.get_window_extent()
-        assert whole.x0 <= box.x0 and box.x1 <= whole.x1 and whole.y0 <= box.y0
+        assert whole.x0 <= box.x0 < box.x1 <= whole.x1
+        assert whole.y0 <= box.y0
         ticks = [text.get_window_extent() for text in axis.get_ticklabels()]
         assert not any(legend.overlaps(each) for each in [box, *ticks])
     pyplot.close(ax.figure)
