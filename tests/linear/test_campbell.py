@@ -38,8 +38,6 @@ def test_rigid_disc_on_springs_that_differ(speed, kx, ky):
     frequencies = np.sort(frequencies[frequencies > 1.0])[:4]
     # the masses are on springs of 1e8 N/m
     np.testing.assert_allclose(frequencies, np.sort(wanted), rtol=2e-2)
-    stiffer = np.abs(frequencies / np.sort(wanted) - 1.0)
-    assert stiffer.max() < 2e-2
 
 
 def test_uneven_bearings_over_fifty_speeds_take_no_time_and_agree_with_a_train():

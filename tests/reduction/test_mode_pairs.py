@@ -65,7 +65,6 @@ def test_pairs_of_a_disc_on_a_shaft_on_held_interfaces():
 @pytest.mark.parametrize(
     ("hertz", "expected"),
     [
-        ([10.0, 10.01, 12.0, 12.01, 14.0, 16.0], [1, 3]),
         ([10.0, 10.03, 10.13, 10.15, 14.0, 16.0], [1, 3]),  # pairs that are nearly alike
         ([8.0, 10.0, 10.03, 10.13, 10.15, 16.0], [2, 4]),
         ([8.0, 10.0, 10.02, 10.13, 12.0, 12.01], [2, 5]),  # beside a mode without a pair
