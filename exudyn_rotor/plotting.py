@@ -35,6 +35,7 @@ LINES = ("-", "--", ":", "-.", (0, (1, 1)))
 _made: WeakSet[Figure] = WeakSet()  # figures of this package that are alive
 
 _WIDEST = 1.1  # a legend, in widths of its axes
+_ZOOM = 0.75  # of a body in space, so that the labels of its axes are within the figure
 _LINE = 1.2  # from a line of text to the next, in sizes of its letters
 
 
@@ -180,9 +181,13 @@ def draw_surface(
     around = 0.5 * np.maximum(0.2 * np.max(high - low) - (high - low), 0.0)  # of a slender body
     for name, start, end in zip("xyz", low - around, high + around, strict=True):
         ax.set(**{f"{name}lim": (start, end)})
-        getattr(ax, f"set_{name}label")(f"{name} [m]", labelpad=12.0)
+        getattr(ax, f"set_{name}label")(f"{name} [m]", labelpad=10.0)
         getattr(ax, f"{name}axis").set_major_locator(MaxNLocator(3))
+    ax.tick_params(labelsize="small")
+    ax.tick_params("z", pad=10.0)
+    ax.zaxis.labelpad = 20.0  # beside its ticks, which are as long as numbers
     ax.set_aspect("equal")
+    ax.set_box_aspect(np.ptp([low - around, high + around], axis=0), zoom=_ZOOM)
     ax.figure.colorbar(mapped, ax=ax, label=label, pad=0.15, shrink=0.8)
     return ax
 

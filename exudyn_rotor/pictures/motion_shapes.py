@@ -30,6 +30,7 @@ _ALPHA = 0.3  # of the surface, through which the orbits are seen
 _COLORS = dict(zip(("forward", "backward", "straight"), COLORS, strict=False))
 # of the larger amplitude: an orbit with less of the smaller one is neither forward nor backward
 _STRAIGHT = 0.02
+_UNEVEN = 0.01  # of the largest displacement: what a mesh adds to torsion and axial motion
 # frequencies that differ by less than this share are one
 _SAME = 1e-6
 
@@ -176,7 +177,8 @@ class MotionShapes(Result):
         if orbits:
             centers = np.array([center + scale * points[0] for center, points in orbits])
             ax.plot(*centers.T, "k.-", lw=1.0, ms=4, zorder=6, label="centre line")
-            ax.legend(loc="upper right", frameon=False, fontsize="small")
+            # ticks of the third axis are on the right
+            ax.legend(loc="upper left", frameon=False, fontsize="small")
         ax.set_title(
             f"{self.labels[index]}\n{shown.frequencies(self.frequencies[index]):.5g} "
             f"{shown.frequency} at a spin of {shown.speeds(self.speeds[index]):.5g} {shown.speed}",
@@ -277,10 +279,13 @@ class MotionShapes(Result):
 
     def _senses(self, index: int) -> list[str]:
         sign = np.sign(self.speeds[index]) or 1.0
-        senses = []
-        for _, forward, backward, _ in self._whirls(index):
+        largest = np.linalg.norm(np.abs(self.motion[index]).sum(axis=0), axis=1).max()
+        senses, whirls = [], self._whirls(index)
+        lateral = max((abs(a) + abs(b) for _, a, b, _ in whirls), default=0.0)
+        for _, forward, backward, axial in whirls:
             ahead = sign * (abs(forward) - abs(backward))
-            straight = abs(ahead) <= _STRAIGHT * max(abs(forward), abs(backward))
+            straight = abs(ahead) <= _STRAIGHT * max(abs(forward), abs(backward), abs(axial))
+            straight |= lateral <= _UNEVEN * largest
             senses.append("straight" if straight else "forward" if ahead > 0.0 else "backward")
         return senses
 

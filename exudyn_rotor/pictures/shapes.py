@@ -185,8 +185,8 @@ def _with_mesh(
     model = linear_model(target, supports=supports, stiffening=stiffening, axes=axes)
     if len(model.rotors) > 1 or model.bodies[0].alone.rotor.shapes is None:
         raise ValueError(
-            "target: its linear model has no mesh nodes to show; take a rotor on supports, reduced "
-            "with its shapes, and not a scene"
+            "target: its linear model has no mesh nodes to show; take a single rotor on supports, "
+            "reduced with its shapes, and neither a scene nor a RotorTrain"
         )
     return model
 

@@ -5,19 +5,11 @@ import numpy as np
 import pytest
 from rings import J, rings, run
 
-from exudyn_rotor import (
-    FlexibleCoupling,
-    Support,
-    TorqueCurve,
-    add_drive,
-    add_rotor,
-    add_supports,
-    connect_rotors,
-)
+import exudyn_rotor as er
 
 ENDS = ("left", "right")
 OFFSET = [1e-3, -4e-4, 2e-3, 1e-3]
-COUPLING = FlexibleCoupling(
+COUPLING = er.FlexibleCoupling(
     torsion=2e4, lateral=[1e6, 3e5], angular=[4e3, 1e3], axial=2e5,
     damping=[30.0, 20.0, 2.0, 1.0], misalignment=OFFSET, runout=[2e-4, 0.0, 0.0, 1e-3],
 )  # fmt: skip
@@ -43,7 +35,7 @@ def test_loads_of_misalignment():
     angles = 2.0 * np.pi * np.arange(16) / 16
 
     def harmonics(**changes):
-        coupling = FlexibleCoupling(torsion=1e4, **changes)
+        coupling = er.FlexibleCoupling(torsion=1e4, **changes)
         x = np.zeros(12)
         loads = []
         for angle in angles:
@@ -65,19 +57,19 @@ def test_loads_of_misalignment():
 def two_on_one_axis(coupling, full):
     """Return a scene of two rotors, one behind the other, right end to left."""
     mbs, rotor = exu.SystemContainer().AddSystem(), rings()
-    one = add_rotor(mbs, rotor.reduce(0), name="one")
+    one = er.add_rotor(mbs, rotor.reduce(0), name="one")
     behind = rotor if full else rotor.reduce(0)
-    two = add_rotor(mbs, behind, name="two", position=[0.0, 0.0, 0.3])
+    two = er.add_rotor(mbs, behind, name="two", position=[0.0, 0.0, 0.3])
     for body in (one, two):
-        add_supports(body, [Support(name, 1e6 * np.eye(3)) for name in ENDS])
-    return mbs, one, connect_rotors(coupling, one, "right", two, "left")
+        er.add_supports(body, [er.Support(name, 1e6 * np.eye(3)) for name in ENDS])
+    return mbs, one, er.connect_rotors(coupling, one, "right", two, "left")
 
 
 @pytest.mark.parametrize("full", [False, True])
 def test_two_inertias_on_a_torsion_spring(full):
     """A torque step on two equal inertias: half of the twist at ω² = 2 k/J."""
-    mbs, one, connection = two_on_one_axis(FlexibleCoupling(torsion=200.0), full)
-    add_drive(one, TorqueCurve(lambda speed, t: 4.0))
+    mbs, one, connection = two_on_one_axis(er.FlexibleCoupling(torsion=200.0), full)
+    er.add_drive(one, er.TorqueCurve(lambda speed, t: 4.0))
     sensor = connection.add_sensor()
     run(mbs, 0.1, 200)
     time, torque = mbs.GetSensorStoredData(sensor)[:, :2].T

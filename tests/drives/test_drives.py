@@ -6,20 +6,9 @@ import pytest
 from exudyn.rigidBodyUtilities import InertiaCuboid
 from rings import J, Z, rings, run, speed_of
 
-from exudyn_rotor import (
-    DirectCurrentMotor,
-    Drag,
-    InductionMotor,
-    Support,
-    TorqueCurve,
-    add_drive,
-    add_rotor,
-    add_supports,
-    linear_model,
-    stability,
-)
+import exudyn_rotor as er
 
-MOTOR = DirectCurrentMotor(stall_torque=5.0, no_load_speed=100.0)
+MOTOR = er.DirectCurrentMotor(stall_torque=5.0, no_load_speed=100.0)
 
 
 def from_slip(slip, motor):
@@ -28,15 +17,15 @@ def from_slip(slip, motor):
     return 0.5 * size * ((1.0 - slip**2) / (2.0 * most) - most * np.log(slip))
 
 
-INDUCTION = InductionMotor(breakdown_torque=8.0, breakdown_slip=0.25, synchronous_speed=100.0)
+INDUCTION = er.InductionMotor(breakdown_torque=8.0, breakdown_slip=0.25, synchronous_speed=100.0)
 CLOSED = {  # drive, speed at the start, time, speed then
     "direct current": (MOTOR, 0.0, 1.0, 100.0 * (1.0 - np.exp(-1.0))),
     "induction": (INDUCTION, 0.0, from_slip(0.15, INDUCTION), 85.0),
-    "table": (TorqueCurve(([0.0, 100.0], [5.0, 0.0])), 0.0, 1.0, 100.0 * (1.0 - np.exp(-1.0))),
-    "function of time": (TorqueCurve(lambda speed, time: 4.0 * time), 0.0, 1.0, 2.0 / J),
-    "dry": (Drag(constant=2.0, smooth_speed=1e-3), 60.0, 1.0, 60.0 - 2.0 / J),
-    "linear": (Drag(linear=0.05), 60.0, 1.0, 60.0 * np.exp(-1.0)),
-    "quadratic": (Drag(quadratic=1e-3), 60.0, 1.0, 1.0 / (1.0 / 60.0 + 1e-3 / J)),
+    "table": (er.TorqueCurve(([0.0, 100.0], [5.0, 0.0])), 0.0, 1.0, 100.0 * (1.0 - np.exp(-1.0))),
+    "function of time": (er.TorqueCurve(lambda speed, time: 4.0 * time), 0.0, 1.0, 2.0 / J),
+    "dry": (er.Drag(constant=2.0, smooth_speed=1e-3), 60.0, 1.0, 60.0 - 2.0 / J),
+    "linear": (er.Drag(linear=0.05), 60.0, 1.0, 60.0 * np.exp(-1.0)),
+    "quadratic": (er.Drag(quadratic=1e-3), 60.0, 1.0, 1.0 / (1.0 / 60.0 + 1e-3 / J)),
 }
 
 
@@ -46,8 +35,8 @@ def test_start_and_coast_down_in_closed_form(name, at):
     """J dΩ/dt = T(Ω, t); the rule is of second order, its error some (h/τ)²/12."""
     drive, start, time, expected = CLOSED[name]
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rings().reduce(0), translation="none", initial_speed=start)
-    add_drive(body, drive, at)
+    body = er.add_rotor(mbs, rings().reduce(0), translation="none", initial_speed=start)
+    er.add_drive(body, drive, at)
     run(mbs, time, 150)
     assert speed_of(body) == pytest.approx(expected, rel=2e-5)
 
@@ -57,10 +46,10 @@ def eccentric(axis=Z, rotation=None, at=None, steps=60, modes=0):
     mbs = exu.SystemContainer().AddSystem()
     rotor = rings(axis, heavy=0.05)
     rotor = rotor if modes is None else rotor.reduce(modes)
-    body = add_rotor(mbs, rotor, rotation=rotation, initial_speed=20.0)
-    add_supports(body, [Support(name, 1e5 * np.eye(3)) for name in ("left", "right")])
-    motor = add_drive(body, MOTOR, at)
-    drag = add_drive(body, Drag(quadratic=2e-4, linear=0.01), "right" if at is None else None)
+    body = er.add_rotor(mbs, rotor, rotation=rotation, initial_speed=20.0)
+    er.add_supports(body, [er.Support(name, 1e5 * np.eye(3)) for name in ("left", "right")])
+    motor = er.add_drive(body, MOTOR, at)
+    drag = er.add_drive(body, er.Drag(quadratic=2e-4, linear=0.01), "right" if at is None else None)
     sensors = [body.add_energy_sensor(), motor.add_sensor(), drag.add_sensor()]
     run(mbs, 0.2, steps, body)
     return mbs, body, sensors
@@ -89,10 +78,10 @@ def test_energy_is_what_the_drives_give(at):
 def test_the_stator_takes_the_reaction():
     """Rotor and a free housing: no angular momentum together."""
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rings().reduce(0), translation="none", position=[0.0, 0.0, 0.15])
+    body = er.add_rotor(mbs, rings().reduce(0), translation="none", position=[0.0, 0.0, 0.15])
     inertia = InertiaCuboid(density=2500.0, sideLengths=[0.3, 0.2, 0.1])
     housing = mbs.CreateRigidBody(inertia=inertia, nodeType=exu.NodeType.RotationRxyz)
-    add_drive(body, MOTOR, "left", base=housing)
+    er.add_drive(body, MOTOR, "left", base=housing)
     run(mbs, 0.5, 50)
     omega = mbs.GetObjectOutputBody(housing, exu.OutputVariableType.AngularVelocity, [0, 0, 0])
     back = inertia.GetInertia6D()[2]
@@ -104,11 +93,11 @@ def test_the_stator_takes_the_reaction():
 
 def test_a_run_beyond_a_table_stops():
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rings().reduce(0), translation="none")
-    add_drive(body, TorqueCurve(([0.0, 5.0], [5.0, 5.0])))
+    body = er.add_rotor(mbs, rings().reduce(0), translation="none")
+    er.add_drive(body, er.TorqueCurve(([0.0, 5.0], [5.0, 5.0])))
     with pytest.raises(Exception, match="curve: its table holds 0 to 5 rad/s"):
         run(mbs, 0.2, 20)
-    assert TorqueCurve(([0.0, 5.0], [5.0, 4.0]), extrapolate=True).torque(9.0) == 4.0
+    assert er.TorqueCurve(([0.0, 5.0], [5.0, 4.0]), extrapolate=True).torque(9.0) == 4.0
 
 
 @pytest.mark.parametrize("at", ["left", None])
@@ -118,16 +107,16 @@ def test_linear_analyses_of_a_scene_with_a_motor(at):
     At the speed without load, as a torque itself acts on shafts that bend.
     """
     rotor, slope = rings().reduce(24), MOTOR.stall_torque / MOTOR.no_load_speed
-    held = [Support(name, 2e6 * np.eye(3), 50.0 * np.eye(3)) for name in ("left", "right")]
+    held = [er.Support(name, 2e6 * np.eye(3), 50.0 * np.eye(3)) for name in ("left", "right")]
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor, spin="free", initial_speed=MOTOR.no_load_speed)
-    add_supports(body, held)
-    add_drive(body, MOTOR, at)
+    body = er.add_rotor(mbs, rotor, spin="free", initial_speed=MOTOR.no_load_speed)
+    er.add_supports(body, held)
+    er.add_drive(body, MOTOR, at)
     mbs.Assemble()
-    damper = [Support(at, tilt_damping=np.diag([0.0, 0.0, slope]))] if at else []
-    models = linear_model(mbs, body=body), linear_model(rotor, supports=[*held, *damper])
+    damper = [er.Support(at, tilt_damping=np.diag([0.0, 0.0, slope]))] if at else []
+    models = er.linear_model(mbs, body=body), er.linear_model(rotor, supports=[*held, *damper])
     found, expected = (
-        stability(one, [MOTOR.no_load_speed], accuracy=None).exponents[0] for one in models
+        er.stability(one, [MOTOR.no_load_speed], accuracy=None).exponents[0] for one in models
     )
     distances = np.abs(found[:, None] - expected).min(axis=1)
     assert (distances / np.abs(found)).max() < 1e-6

@@ -5,24 +5,14 @@ import numpy as np
 import pytest
 from rings import rings, run, speed_of
 
-from exudyn_rotor import (
-    DirectCurrentMotor,
-    Drag,
-    GearMesh,
-    Support,
-    TorqueCurve,
-    add_drive,
-    add_rotor,
-    add_supports,
-    connect_rotors,
-)
+import exudyn_rotor as er
 
 RADII = (0.06, 0.09)
 ENDS = ("left", "right")
 
 
 def mesh(**changes):
-    return GearMesh(**({"radii": RADII, "stiffness": 2e6, "line_angle": 0.4} | changes))
+    return er.GearMesh(**({"radii": RADII, "stiffness": 2e6, "line_angle": 0.4} | changes))
 
 
 def pair(gears, support=2e6, damping=0.0, first=None, second=None):
@@ -30,22 +20,26 @@ def pair(gears, support=2e6, damping=0.0, first=None, second=None):
     mbs, rotor = exu.SystemContainer().AddSystem(), rings().reduce(0)
     along = np.cos(gears.line_angle), np.sin(gears.line_angle)
     apart = gears.center_distance * rotor.axis.plane @ along
-    one = add_rotor(mbs, rotor, name="one", **(first or {}))
-    two = add_rotor(mbs, rotor, name="two", position=apart, **(second or {}))
+    one = er.add_rotor(mbs, rotor, name="one", **(first or {}))
+    two = er.add_rotor(mbs, rotor, name="two", position=apart, **(second or {}))
     for body in (one, two):
-        add_supports(
-            body, [Support(name, support * np.eye(3), damping * np.eye(3)) for name in ENDS]
+        er.add_supports(
+            body, [er.Support(name, support * np.eye(3), damping * np.eye(3)) for name in ENDS]
         )
-    return mbs, (one, two), connect_rotors(gears, one, "left", two, "left")
+    return mbs, (one, two), er.connect_rotors(gears, one, "left", two, "left")
 
 
-MOTOR = DirectCurrentMotor(stall_torque=9.0, no_load_speed=60.0)
+MOTOR = er.DirectCurrentMotor(stall_torque=9.0, no_load_speed=60.0)
 
 
 def test_speeds_and_torques_are_in_the_ratio_of_the_radii():
     """Steady at T(Ω) r₂/r₁ = c Ω r₁/r₂; stiff bearings, or the gears would move apart."""
     mbs, bodies, connection = pair(mesh(damping=500.0), support=1e8)
-    added = add_drive(bodies[0], MOTOR), add_drive(bodies[1], Drag(linear=0.05)), connection
+    added = (
+        er.add_drive(bodies[0], MOTOR),
+        er.add_drive(bodies[1], er.Drag(linear=0.05)),
+        connection,
+    )
     sensors = [each.add_sensor() for each in added]
     run(mbs, 4.0, 200, accuracy=1e-7)
     motor, drag, gear = (mbs.GetSensorStoredData(n) for n in sensors)
@@ -63,7 +57,7 @@ def test_mesh_frequency_is_that_of_the_teeth():
     mbs, bodies, connection = pair(
         gears, first={"spin": 30.0}, second={"initial_speed": -20.0}, damping=3e3
     )
-    add_drive(bodies[1], TorqueCurve(lambda speed, t: 10.0))
+    er.add_drive(bodies[1], er.TorqueCurve(lambda speed, t: 10.0))
     sensor = connection.add_sensor()
     run(mbs, 0.25, 500)
     time, force = mbs.GetSensorStoredData(sensor)[:, :2].T

@@ -6,12 +6,7 @@ import pytest
 from models import centered_disc
 from test_evaluation import sized
 
-from exudyn_rotor import (
-    Support,
-    Unbalance,
-    separation_margins,
-    unbalance_response,
-)
+from exudyn_rotor import Support, Unbalance, separation_margins, unbalance_response
 
 
 @pytest.fixture(scope="module")

@@ -11,12 +11,7 @@ from netgen.occ import Box, OCCGeometry, Pnt, Y, Z
 from test_foundations import BLOCK, HELD, POINTS, SPEED
 from test_supports_in_scenes import KINDS, rings
 
-from exudyn_rotor import (
-    Foundation,
-    Mount,
-    SolidRotor,
-    linear_model,
-)
+from exudyn_rotor import Foundation, Mount, SolidRotor, linear_model
 
 
 def test_modes_of_a_block_are_the_block():

@@ -10,35 +10,21 @@ from apart import distance
 from point_rotors import ring_rotor
 from test_supports_in_scenes import KINDS, rings
 
-from exudyn_rotor import (
-    BaseAcceleration,
-    Foundation,
-    HarmonicForce,
-    Mount,
-    Support,
-    Unbalance,
-    add_foundation,
-    add_rotor,
-    add_supports,
-    campbell,
-    harmonic_response,
-    linear_model,
-    unbalance_response,
-)
+import exudyn_rotor as er
 from exudyn_rotor.reduction.selection import without_spin
 
 SPEED = 200.0
 POINTS = {"left": [0.0, 0.0, -0.15], "right": [0.0, 0.0, 0.15]}
 CORNERS = [[x, -0.3, z] for x in (-0.2, 0.2) for z in (-0.2, 0.3)]
 STIFFNESS = np.diag([1e6, 2e6, 1e6]) + 1e5
-BLOCK = Foundation.rigid(
+BLOCK = er.Foundation.rigid(
     30.0,
     [[2.0, 0.1, 0.05], [0.1, 2.0, 0.0], [0.05, 0.0, 1.0]],
     [0.05, -0.2, 0.02],
-    [Mount(corner, STIFFNESS, 100.0) for corner in CORNERS],
+    [er.Mount(corner, STIFFNESS, 100.0) for corner in CORNERS],
     POINTS,
 )
-HELD = Support("right", np.diag([1e6, 2e6, 5e5]), 150.0)
+HELD = er.Support("right", np.diag([1e6, 2e6, 5e5]), 150.0)
 
 
 # ------------------------------------------------------------------ closed forms
@@ -50,9 +36,9 @@ def two_masses(mass=5.0, stiffness=2e6, damping=0.0, own=(0.0, 0.0), ratio=1.0):
     The foundation translates only, with the stiffness `own` along x and y: in each direction two
     masses in a row.
     """
-    supports = [Support(name, np.eye(3) * stiffness / 2, damping / 2) for name in POINTS]
+    supports = [er.Support(name, np.eye(3) * stiffness / 2, damping / 2) for name in POINTS]
     m = ratio * mass
-    foundation = Foundation(
+    foundation = er.Foundation(
         m * np.eye(3),
         np.diag([30.0, 50.0, 10.0]),
         np.diag([*own, 1e6]),
@@ -84,8 +70,8 @@ def frequencies_in_a_row(own):
 def test_natural_frequencies_are_those_of_two_masses_at_any_speed():
     """Rotor on a foundation of its own mass: both planes by hand, and unmoved by the spin."""
     rotor, supports, foundation = two_masses(own=OWN)
-    model = linear_model(rotor, supports=supports, foundation=foundation.with_damping_ratio(0.0))
-    result = campbell(model, [0.0, SPEED])
+    model = er.linear_model(rotor, supports=supports, foundation=foundation.with_damping_ratio(0.0))
+    result = er.campbell(model, [0.0, SPEED])
     expected = np.sort(np.concatenate([frequencies_in_a_row(own) for own in OWN]))
     for row in result.frequencies_inertial:
         apart = np.abs(row[:, None] - expected).min(axis=0)
@@ -100,14 +86,14 @@ def test_unbalance_response_is_that_of_two_masses(speed):
     own, omega = 1.5e6, speed * np.sqrt(1.5e6 / 5.0)
     rotor, supports, foundation = two_masses(own=(own, own), damping=400.0)
     foundation = replace(foundation, damping=30.0 * np.eye(3))
-    unbalances = [Unbalance(name, 1e-4) for name in POINTS]
-    model = linear_model(rotor, supports=supports, foundation=foundation)
+    unbalances = [er.Unbalance(name, 1e-4) for name in POINTS]
+    model = er.linear_model(rotor, supports=supports, foundation=foundation)
     at = ["left", "left (foundation)"]
-    found = unbalance_response(model, [omega], unbalances, at=at)
+    found = er.unbalance_response(model, [omega], unbalances, at=at)
     expected = in_a_row(omega, own, [2e-4 * omega**2, 0.0], 400.0, 30.0)
     ours = [found.phasor(place, "n1")[0] for place in at]
     np.testing.assert_allclose(ours, expected, rtol=1e-9)
-    turning = unbalance_response(model, [omega], unbalances, at=at, frame="rotor")
+    turning = er.unbalance_response(model, [omega], unbalances, at=at, frame="rotor")
     row = turning.motion[0, :, turning.orders.tolist().index(0)]
     np.testing.assert_allclose(np.hypot(*row[:, :2].real.T), np.abs(expected), rtol=1e-9)
 
@@ -115,18 +101,20 @@ def test_unbalance_response_is_that_of_two_masses(speed):
 def test_loads_on_the_foundation_and_its_ground():
     """A force on the foundation, one that turns with the rotor, and shaken ground."""
     rotor, supports, foundation = two_masses(own=OWN, damping=400.0)
-    model = linear_model(rotor, supports=supports, foundation=foundation)
+    model = er.linear_model(rotor, supports=supports, foundation=foundation)
     at = ["right", "right (foundation)"]
     w = 700.0
-    forced = harmonic_response(model, [w], HarmonicForce(at[1], (3.0, 0.0)), speed=SPEED, at=at)
+    forced = er.harmonic_response(
+        model, [w], er.HarmonicForce(at[1], (3.0, 0.0)), speed=SPEED, at=at
+    )
     expected = in_a_row(w, OWN[0], [0.0, 3.0], 400.0, 30.0)
     np.testing.assert_allclose([forced.phasor(p, "n1")[0] for p in at], expected, rtol=1e-9)
-    shaken = harmonic_response(model, [w], BaseAcceleration((0.0, 2.0)), speed=SPEED, at=at)
+    shaken = er.harmonic_response(model, [w], er.BaseAcceleration((0.0, 2.0)), speed=SPEED, at=at)
     expected = in_a_row(w, OWN[1], [-10.0, -10.0], 400.0, 50.0)
     np.testing.assert_allclose([shaken.phasor(p, "n2")[0] for p in at], expected, rtol=1e-9)
     # a force of frequency 0 in the rotor frame is a rotating one of frequency Ω outside
-    load = HarmonicForce(at[1], (3.0, 0.0), frame="rotor")
-    turned = harmonic_response(model, [0.0], load, speed=SPEED, at=at)
+    load = er.HarmonicForce(at[1], (3.0, 0.0), frame="rotor")
+    turned = er.harmonic_response(model, [0.0], load, speed=SPEED, at=at)
     found = turned.motion[0, 1, turned.orders.tolist().index(1), :2]
     expected = [
         in_a_row(SPEED, own, [0.0, force], 400.0, damping)[1]
@@ -143,12 +131,12 @@ def compared(supports, turn=None, rotation=None, block=BLOCK, **options):
     rotor = rings(turn)
     block = block if turn is None else block.turned(turn)
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor, rotation=rotation, **options)
-    add_supports(body, supports, add_foundation(mbs, block, rotation=rotation))
+    body = er.add_rotor(mbs, rotor, rotation=rotation, **options)
+    er.add_supports(body, supports, er.add_foundation(mbs, block, rotation=rotation))
     mbs.Assemble()
-    found = linear_model(mbs, body=body)
+    found = er.linear_model(mbs, body=body)
     listed = without_spin(rotor) if "spin" in options else rotor
-    return distance(found, linear_model(listed, supports=supports, foundation=block), SPEED)
+    return distance(found, er.linear_model(listed, supports=supports, foundation=block), SPEED)
 
 
 CHOSEN = ["2 x 2", "3 x 3", "tilt, damped", "about the axis", "rotor frame", "table", "tilt table"]
@@ -164,7 +152,7 @@ def test_a_block_is_exudyns_rigid_body():
     """The same mass, inertia and springs as plain items of Exudyn."""
     mbs = exu.SystemContainer().AddSystem()
     supports = [KINDS["3 x 3"], KINDS["tilt"], HELD]
-    body = add_rotor(mbs, rings(), spin=SPEED)
+    body = er.add_rotor(mbs, rings(), spin=SPEED)
     inertia = exu.utilities.RigidBodyInertia(mass=30.0, inertiaTensor=np.diag([2.0, 2.5, 1.0]))
     base = mbs.CreateRigidBody(
         inertia=inertia, referencePosition=[0, -0.2, 0], nodeType=exu.NodeType.RotationRxyz
@@ -178,15 +166,15 @@ def test_a_block_is_exudyns_rigid_body():
             stiffness=[1e6, 2e6, 3e6],
             damping=[100.0] * 3,
         )
-    add_supports(body, supports, base)
+    er.add_supports(body, supports, base)
     mbs.Assemble()
-    expected = linear_model(mbs, body=body)
-    mounts = [Mount(corner, [1e6, 2e6, 3e6], 100.0) for corner in CORNERS]
-    block = Foundation.rigid(30.0, [2.0, 2.5, 1.0], [0.0, -0.2, 0.0], mounts, POINTS)
+    expected = er.linear_model(mbs, body=body)
+    mounts = [er.Mount(corner, [1e6, 2e6, 3e6], 100.0) for corner in CORNERS]
+    block = er.Foundation.rigid(30.0, [2.0, 2.5, 1.0], [0.0, -0.2, 0.0], mounts, POINTS)
     scene = exu.SystemContainer().AddSystem()
-    body = add_rotor(scene, rings(), spin=SPEED)
-    add_supports(body, supports, add_foundation(scene, block))
+    body = er.add_rotor(scene, rings(), spin=SPEED)
+    er.add_supports(body, supports, er.add_foundation(scene, block))
     scene.Assemble()
-    found = linear_model(scene, body=body)
+    found = er.linear_model(scene, body=body)
     # differences of Exudyn's forces give K to 4e-8 of its largest entry
     assert distance(found, expected, SPEED) < 1e-6

@@ -3,20 +3,9 @@
 import numpy as np
 import scipy.linalg as la
 from test_foundations import two_masses
-from test_magnetic_bearing import (
-    DELAYED,
-    PD,
-    apart,
-    closed_loop,
-    pair,
-)
+from test_magnetic_bearing import DELAYED, PD, apart, closed_loop, pair
 
-from exudyn_rotor import (
-    Support,
-    linear_model,
-    sensitivity,
-    stability,
-)
+from exudyn_rotor import Support, linear_model, sensitivity, stability
 
 AXIAL = Support("right", np.diag([0.0, 0.0, 5e5]), 0.0, np.diag([0.0, 0.0, 4e3]))
 OWN = (1.5e6, 4e6)

@@ -5,17 +5,7 @@ import pytest
 from spool_models import dual_spool, spool
 from train_models import two_discs
 
-from exudyn_rotor import (
-    GearMesh,
-    Link,
-    RotorTrain,
-    Support,
-    Unbalance,
-    campbell,
-    critical_speeds,
-    linear_model,
-    unbalance_response,
-)
+import exudyn_rotor as er
 
 SPEED = 800.0
 LIMIT = 2000.0  # rad/s, of the frequencies that are looked at
@@ -24,26 +14,26 @@ BEARING = np.diag([2e7, 6e7])
 
 def test_axisymmetric_part_and_what_is_left():
     """Mean over a turn: even to rounding for rings, of the mesh for a solid."""
-    assert linear_model(two_discs(1.7)).unevenness < 1e-12
+    assert er.linear_model(two_discs(1.7)).unevenness < 1e-12
     train = dual_spool(1.5)
     for each in (train, train.relative_to("outer")):
-        assert 1e-4 < linear_model(each).unevenness < 5e-2
+        assert 1e-4 < er.linear_model(each).unevenness < 5e-2
 
 
-def geared(modes: int, free: bool = False) -> RotorTrain:
+def geared(modes: int, free: bool = False) -> er.RotorTrain:
     """Return the spools side by side, geared 1 : -1."""
     rotors = {name: spool(name, modes, free) for name in ("inner", "outer")}
-    held = Support("front", 2e7 * np.eye(3)), Support("rear", 2e7, 200.0)
-    gears = GearMesh(radii=[0.1, 0.1], stiffness=2e8)
-    links = [Link("inner:middle", "outer:rear", gears)]
-    return RotorTrain(rotors, {"inner": 1.0, "outer": -1.0}, dict.fromkeys(rotors, held), links)
+    held = er.Support("front", 2e7 * np.eye(3)), er.Support("rear", 2e7, 200.0)
+    gears = er.GearMesh(radii=[0.1, 0.1], stiffness=2e8)
+    links = [er.Link("inner:middle", "outer:rear", gears)]
+    return er.RotorTrain(rotors, {"inner": 1.0, "outer": -1.0}, dict.fromkeys(rotors, held), links)
 
 
-def uneven(modes: int, free: bool = False) -> RotorTrain:
+def uneven(modes: int, free: bool = False) -> er.RotorTrain:
     """Return the dual spool with unequal bearings of the outer one."""
     given = dual_spool(1.5, modes, free)
-    supports = {"inner": given.supports["inner"], "outer": [Support("front", BEARING, 300.0)]}
-    return RotorTrain(given.rotors, given.ratios, supports, given.links)
+    supports = {"inner": given.supports["inner"], "outer": [er.Support("front", BEARING, 300.0)]}
+    return er.RotorTrain(given.rotors, given.ratios, supports, given.links)
 
 
 TRAINS = {
@@ -62,8 +52,8 @@ def copies(values: np.ndarray, speed: float) -> np.ndarray:
 def test_estimates_are_the_errors_against_more_modes(name):
     """Five free modes of each rotor lack flexibility; 16 with static ones are the truth."""
     with pytest.warns(UserWarning, match=r"rotor 'inner' .* rotor 'outer' .* the flexibility"):
-        found = campbell(TRAINS[name](5, True), [0.0, SPEED], modes=18)
-    exact = campbell(TRAINS[name](16), [0.0, SPEED], accuracy=None)
+        found = er.campbell(TRAINS[name](5, True), [0.0, SPEED], modes=18)
+    exact = er.campbell(TRAINS[name](16), [0.0, SPEED], accuracy=None)
     for row, speed in enumerate(found.speeds):
         given, true = (r.growth[row] + 1j * r.frequencies_rotor[row] for r in (found, exact))
         looked_at = (found.frequencies_inertial[row] < LIMIT) & (np.abs(given) > 1.0)
@@ -84,8 +74,8 @@ def test_estimates_of_critical_speeds(order):
     """By unbalance of either spool."""
     given = {"order": order, "nodal_diameters": [1], "max_speed": 1400.0}
     with pytest.warns(UserWarning, match="the critical speed of"):
-        found = critical_speeds(dual_spool(1.5, 5, True), **given)
-    exact = critical_speeds(dual_spool(1.5, 16), accuracy=None, **given)
+        found = er.critical_speeds(dual_spool(1.5, 5, True), **given)
+    exact = er.critical_speeds(dual_spool(1.5, 16), accuracy=None, **given)
     errors = 1.0 - exact.speeds[: len(found.speeds)] / found.speeds
     assert errors.max() > 0.02
     np.testing.assert_allclose(found.basis_errors, errors, rtol=0.05)
@@ -94,10 +84,10 @@ def test_estimates_of_critical_speeds(order):
 @pytest.mark.parametrize("name", ["1.5", "uneven"])
 def test_estimates_of_responses(name):
     """At the first speed, the middle one and the last one."""
-    speeds, unbalance = [150.0, 300.0, 350.0, 600.0], Unbalance("inner:front", 1e-3)
+    speeds, unbalance = [150.0, 300.0, 350.0, 600.0], er.Unbalance("inner:front", 1e-3)
     with pytest.warns(UserWarning, match="the motion of"):
-        found = unbalance_response(TRAINS[name](5, True), speeds, unbalance, own=False)
-    exact = unbalance_response(TRAINS[name](16), speeds, unbalance, own=False, accuracy=None)
+        found = er.unbalance_response(TRAINS[name](5, True), speeds, unbalance, own=False)
+    exact = er.unbalance_response(TRAINS[name](16), speeds, unbalance, own=False, accuracy=None)
     known = np.isfinite(found.basis_errors[:, 0])
     assert known.sum() == 3
     for row in np.flatnonzero(known):

@@ -10,24 +10,13 @@ from test_magnetic_bearing import DELAYED, bearing
 from test_scene_trains import HELD, SPEED, accelerations_left
 from train_models import FIRST, SECOND, rings
 
-from exudyn_rotor import (
-    LinearActuator,
-    OilFilm,
-    RollingBearing,
-    ShortJournalBearing,
-    Support,
-    TiltingPadBearing,
-    add_rotor,
-    add_supports,
-    grooved_pads,
-    linear_model,
-)
+import exudyn_rotor as er
 
 RADIUS, LENGTH, CLEARANCE, VISCOSITY, OFF = 0.02, 0.02, 1e-4, 0.02, 6e-5
-SHORT = ShortJournalBearing(
+SHORT = er.ShortJournalBearing(
     interface="a", radius=RADIUS, length=LENGTH, clearance=CLEARANCE, viscosity=VISCOSITY
 )
-BALLS = RollingBearing(
+BALLS = er.RollingBearing(
     interface="a", count=7, pitch_radius=0.03, element_radius=0.006, stiffness=5e8
 )
 CASING = InertiaCuboid(1000.0, [0.1, 0.1, 0.1])
@@ -37,9 +26,9 @@ KINDS = exu.OutputVariableType
 def scene(support, outer, inner, full=False, **changes):
     """Return a system with an inner rotor on an outer one, its centre OFF along n1 = x."""
     mbs, solid = exu.SystemContainer().AddSystem(), rings(*FIRST)
-    carrying = add_rotor(mbs, solid if full else solid.reduce(0), name="outer", **outer)
-    body = add_rotor(mbs, rings(*SECOND).reduce(0), name="inner", **(inner | changes))
-    (added,) = add_supports(body, [support], base=carrying.marker("a"))
+    carrying = er.add_rotor(mbs, solid if full else solid.reduce(0), name="outer", **outer)
+    body = er.add_rotor(mbs, rings(*SECOND).reduce(0), name="inner", **(inner | changes))
+    (added,) = er.add_supports(body, [support], base=carrying.marker("a"))
     mbs.Assemble()
     q = mbs.systemData.GetODE2Coordinates()
     q[mbs.GetNodeODE2Index(body.nodes["rigid"])] += OFF
@@ -72,8 +61,8 @@ def test_a_film_in_a_casing_that_turns(kind):
     """As on another rotor: N. Petroff's casing drags as much oil as the journal."""
     mbs = exu.SystemContainer().AddSystem()
     casing = mbs.CreateRigidBody(inertia=CASING, initialAngularVelocity=[0.0, 0.0, 60.0])
-    body = add_rotor(mbs, rings(*SECOND).reduce(0), **{kind: 90.0})
-    (added,) = add_supports(body, [SHORT], base=casing)
+    body = er.add_rotor(mbs, rings(*SECOND).reduce(0), **{kind: 90.0})
+    (added,) = er.add_supports(body, [SHORT], base=casing)
     mbs.Assemble()
     q = mbs.systemData.GetODE2Coordinates()
     q[mbs.GetNodeODE2Index(body.nodes["rigid"])] += OFF
@@ -99,9 +88,9 @@ def test_elements_go_with_both_rings():
 
 
 BETWEEN = {
-    "table": Support("a", ([0.0, 100.0], [1e5, 4e5]), ([0.0, 100.0], [9.0, 30.0])),
-    "tilts": Support("a", 1e5, 0.0, np.diag([300.0, 200.0]), 2.0),
-    "table of tilts": Support("a", 1e5, 0.0, ([0.0, 300.0], [2e2, 3e2])),
+    "table": er.Support("a", ([0.0, 100.0], [1e5, 4e5]), ([0.0, 100.0], [9.0, 30.0])),
+    "tilts": er.Support("a", 1e5, 0.0, np.diag([300.0, 200.0]), 2.0),
+    "table of tilts": er.Support("a", 1e5, 0.0, ([0.0, 300.0], [2e2, 3e2])),
 }
 
 
@@ -110,23 +99,25 @@ def test_supports_between_rotors_are_links_of_a_train(kind):
     """Tables over the difference of the speeds: accelerations are those of the equations."""
     mbs = exu.SystemContainer().AddSystem()
     first, second = (
-        add_rotor(mbs, rings(*sizes).reduce(0), name=name, spin=speed)
+        er.add_rotor(mbs, rings(*sizes).reduce(0), name=name, spin=speed)
         for sizes, name, speed in ((FIRST, "LP", SPEED), (SECOND, "HP", 1.7 * SPEED))
     )
-    add_supports(first, HELD)
-    add_supports(second, Support("b", 1e5 * np.eye(3), 9.0, 1e3))
-    add_supports(second, BETWEEN[kind], base=first.marker("a"))
+    er.add_supports(first, HELD)
+    er.add_supports(second, er.Support("b", 1e5 * np.eye(3), 9.0, 1e3))
+    er.add_supports(second, BETWEEN[kind], base=first.marker("a"))
     mbs.Assemble()
-    model = linear_model(mbs, body=[first, second])
+    model = er.linear_model(mbs, body=[first, second])
     assert accelerations_left(mbs, [first, second], model, (1.0, 1.7)) < 1e-9
 
 
-PADS = OilFilm(RADIUS, LENGTH, VISCOSITY, grooved_pads(CLEARANCE, [0.0, 3.0], 0.5), axial_nodes=0)
+PADS = er.OilFilm(
+    RADIUS, LENGTH, VISCOSITY, er.grooved_pads(CLEARANCE, [0.0, 3.0], 0.5), axial_nodes=0
+)
 REFUSED = {
-    "about the axis": Support("a", 1e5, 0.0, np.diag([300.0, 300.0, 50.0])),
+    "about the axis": er.Support("a", 1e5, 0.0, np.diag([300.0, 300.0, 50.0])),
     "unlike the bore": replace(SHORT, load=[0.0, -9.0]).linearised(),
-    "its pads": TiltingPadBearing(interface="a", film=PADS, pad_inertia=1e-6),
-    "pads or magnets": bearing("a", DELAYED, LinearActuator(80.0, 1e5)),
+    "its pads": er.TiltingPadBearing(interface="a", film=PADS, pad_inertia=1e-6),
+    "pads or magnets": bearing("a", DELAYED, er.LinearActuator(80.0, 1e5)),
 }
 
 

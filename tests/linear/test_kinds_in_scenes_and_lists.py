@@ -11,31 +11,17 @@ from models import disc_with_two_modes
 from scipy.spatial.transform import Rotation
 from test_magnetic_bearing import DELAYED, LINEAR
 
-from exudyn_rotor import (
-    AnnularSeal,
-    ClearanceStop,
-    Foundation,
-    MagneticBearing,
-    Mount,
-    RollingBearing,
-    SqueezeFilmDamper,
-    Support,
-    add_foundation,
-    add_rotor,
-    add_supports,
-    bearing_loads,
-    linear_model,
-)
+import exudyn_rotor as er
 
 ENDS = ("left", "right")
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
 SPEED, HEAVY = 300.0, 5.0 * np.array([0.0, -9.81, 0.0])
 CORNERS = [[x, -0.3, z] for x in (-0.2, 0.2) for z in (-0.1, 0.6)]
-BLOCK = Foundation.rigid(
+BLOCK = er.Foundation.rigid(
     80.0,
     [4.0, 5.0, 1.0],
     [0.0, -0.2, 0.2],
-    [Mount(corner, 4e6, 2e3) for corner in CORNERS],
+    [er.Mount(corner, 4e6, 2e3) for corner in CORNERS],
     {"left": [0.0, 0.0, 0.0], "right": [0.0, 0.0, 0.5]},
 )
 OIL = {"radius": 0.06, "length": 0.02, "clearance": 2e-4, "viscosity": 0.01}
@@ -48,46 +34,46 @@ RISING = ([0.0, 200.0, 900.0], [CROSSED, 1.5 * CROSSED, 2.0 * CROSSED.T])
 
 
 def springs(name):
-    return Support(name, 5e6, 500.0)
+    return er.Support(name, 5e6, 500.0)
 
 
 KINDS = {
     "damper": lambda name, load: [
-        SqueezeFilmDamper(interface=name, load=load, centring_stiffness=5e6, **OIL)
+        er.SqueezeFilmDamper(interface=name, load=load, centring_stiffness=5e6, **OIL)
     ],
     "damper on an orbit": lambda name, load: [
-        SqueezeFilmDamper(interface=name, load=load, centring_stiffness=5e6, orbit=0.4, **OIL)
+        er.SqueezeFilmDamper(interface=name, load=load, centring_stiffness=5e6, orbit=0.4, **OIL)
     ],
     "balls": lambda name, load: [
-        RollingBearing(interface=name, load=load, damping=500.0, clearance=1e-6, **BALLS)
+        er.RollingBearing(interface=name, load=load, damping=500.0, clearance=1e-6, **BALLS)
     ],
     "preloaded rollers": lambda name, load: [
-        RollingBearing(
+        er.RollingBearing(
             interface=name, load=load, damping=9e2, clearance=-2e-6, elements="rollers",
             **BALLS | {"stiffness": 2e8},
         )
     ],
     "seal": lambda name, load: [
-        AnnularSeal(interface=name, density=1000.0, viscosity=1e-3, **PUMP), springs(name)
+        er.AnnularSeal(interface=name, density=1000.0, viscosity=1e-3, **PUMP), springs(name)
     ],
     "stop": lambda name, load: [
-        ClearanceStop(interface=name, radius=0.02, clearance=5e-4, stiffness=1e7, friction=0.2),
+        er.ClearanceStop(interface=name, radius=0.02, clearance=5e-4, stiffness=1e7, friction=0.2),
         springs(name),
     ],
     "magnets": lambda name, load: [
-        MagneticBearing(interface=name, load=load, actuator=LINEAR, controller=DELAYED)
+        er.MagneticBearing(interface=name, load=load, actuator=LINEAR, controller=DELAYED)
     ],
-    "table": lambda name, load: [Support(name, RISING, ([0.0, 900.0], [LOSSES, 2.0 * LOSSES]))],
+    "table": lambda name, load: [er.Support(name, RISING, ([0.0, 900.0], [LOSSES, 2.0 * LOSSES]))],
     "rotor frame": lambda name, load: [
-        Support(name, CROSSED, 0.2 * LOSSES, frame="rotor"), Support(name, 0.0, LOSSES)
+        er.Support(name, CROSSED, 0.2 * LOSSES, frame="rotor"), er.Support(name, 0.0, LOSSES)
     ],
     "tilts": lambda name, load: [
-        Support(name, CROSSED, LOSSES, TILTS, TILT_LOSSES), springs(name)
+        er.Support(name, CROSSED, LOSSES, TILTS, TILT_LOSSES), springs(name)
     ],
 }  # fmt: skip
 
 
-THRUST = Support("right", np.diag([0.0, 0.0, 1e6]), np.diag([0.0, 0.0, 100.0]))
+THRUST = er.Support("right", np.diag([0.0, 0.0, 1e6]), np.diag([0.0, 0.0, 100.0]))
 
 
 def models(make, base=None, free=False, gravity=HEAVY, heavy=0.0):
@@ -96,16 +82,16 @@ def models(make, base=None, free=False, gravity=HEAVY, heavy=0.0):
 
 
 def on_ends(reduced, make, base=None, free=False, gravity=HEAVY):
-    loads = bearing_loads(reduced, list(ENDS), gravity)
+    loads = er.bearing_loads(reduced, list(ENDS), gravity)
     supports = [each for pair in zip(ENDS, loads, strict=True) for each in make(*pair)]
     supports.append(THRUST)
     spin = {"initial_speed": SPEED} if free else {"spin": SPEED, "translation": "none"}
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, reduced, gravity=SKEW @ gravity, rotation=SKEW, **spin)
-    add_supports(body, supports, base and add_foundation(mbs, base, rotation=SKEW))
+    body = er.add_rotor(mbs, reduced, gravity=SKEW @ gravity, rotation=SKEW, **spin)
+    er.add_supports(body, supports, base and er.add_foundation(mbs, base, rotation=SKEW))
     mbs.Assemble()
-    in_list = linear_model(reduced, supports=supports, foundation=base)
-    return linear_model(mbs, body=body), in_list
+    in_list = er.linear_model(reduced, supports=supports, foundation=base)
+    return er.linear_model(mbs, body=body), in_list
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -11,15 +11,7 @@ from beam_models import BeamRotor
 from spool_models import ROSS
 from train_models import lateral
 
-from exudyn_rotor import (
-    GearMesh,
-    Link,
-    ReducedRotor,
-    RotorTrain,
-    Support,
-    campbell,
-    linear_model,
-)
+from exudyn_rotor import GearMesh, Link, ReducedRotor, RotorTrain, Support, campbell, linear_model
 
 DATA = ROSS["published"]
 SPEEDS = np.pi / 30.0 * np.array(DATA["rpm"])

@@ -8,19 +8,7 @@ from test_magnetic_bearing import DELAYED, bearing
 from test_supports_in_scenes import SKEW
 from train_models import FIRST, SECOND, rings
 
-from exudyn_rotor import (
-    FlexibleCoupling,
-    GearMesh,
-    LinearActuator,
-    Link,
-    RotorTrain,
-    Support,
-    add_rotor,
-    add_supports,
-    campbell,
-    connect_rotors,
-    linear_model,
-)
+import exudyn_rotor as er
 from exudyn_rotor.linear.model.body import RotorBody as LinearBody
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.multibody.evaluation import evaluating
@@ -28,8 +16,8 @@ from exudyn_rotor.reduction.selection import _beside_spin
 
 SPEED, ANGLE = 90.0, 0.7
 HELD = [
-    Support("a", [[3e5, 2e4], [-1e4, 2e5]], 20.0),
-    Support("b", np.diag([4e5, 4e5, 2e5]), 30.0, np.diag([500.0, 500.0, 0.0])),
+    er.Support("a", [[3e5, 2e4], [-1e4, 2e5]], 20.0),
+    er.Support("b", np.diag([4e5, 4e5, 2e5]), 30.0, np.diag([500.0, 500.0, 0.0])),
 ]
 
 
@@ -39,14 +27,14 @@ def scene(ratio, axis="z", rotation=None, **options):
     rotation = np.eye(3) if rotation is None else rotation
     rotors = [rings(*dimensions, axis).reduce(0) for dimensions in (FIRST, SECOND)]
     first, second = (
-        add_rotor(mbs, rotor, name=name, spin=rate * SPEED, rotation=rotation, **options)
+        er.add_rotor(mbs, rotor, name=name, spin=rate * SPEED, rotation=rotation, **options)
         for rotor, name, rate in zip(rotors, ("LP", "HP"), (1.0, ratio), strict=True)
     )
-    add_supports(first, HELD)
-    magnet = bearing("b", DELAYED, LinearActuator(80.0, 1e5), angle=0.3)
-    add_supports(second, [magnet, Support("a", 1e5 * np.eye(3), 9.0)])
-    between = Support("a", 2e5, 15.0, 300.0)
-    add_supports(second, between, base=first.marker("a"))
+    er.add_supports(first, HELD)
+    magnet = bearing("b", DELAYED, er.LinearActuator(80.0, 1e5), angle=0.3)
+    er.add_supports(second, [magnet, er.Support("a", 1e5 * np.eye(3), 9.0)])
+    between = er.Support("a", 2e5, 15.0, 300.0)
+    er.add_supports(second, between, base=first.marker("a"))
     mbs.Assemble()
     return mbs, (first, second), rotors
 
@@ -128,7 +116,7 @@ def forces(mbs, bodies, model, rates, motion):
 def test_accelerations_of_a_scene_are_those_of_its_train(ratio, axis, rotation):
     """Uneven and cross-coupled supports, a magnetic bearing with delay, a link with damping."""
     mbs, bodies, _ = scene(ratio, axis, rotation)
-    model = linear_model(mbs, body=bodies)
+    model = er.linear_model(mbs, body=bodies)
     assert model.ratios == pytest.approx({"LP": 1.0, "HP": ratio})
     assert accelerations_left(mbs, bodies, model, (1.0, ratio)) < 1e-9
 
@@ -142,22 +130,22 @@ def geared(connection, driven="", turned=None, speed=SPEED, **options):
     rotor = rings(*FIRST).reduce(0)
     rates = (speed, -0.5 * speed) if apart else (speed, speed)
     bodies = [
-        add_rotor(
+        er.add_rotor(
             mbs, rotor, name=name, position=turned @ position, rotation=turned,
             **{"spin" if name in driven else "initial_speed": rate}, **options,
         )
         for name, rate, position in zip("AB", rates, ([0.0, 0.0, 0.0], place), strict=True)
     ]  # fmt: skip
     for body in bodies:
-        add_supports(body, [Support(n, np.diag([3e5, 3e5, 1e5]), 9.0) for n in "ab"])
+        er.add_supports(body, [er.Support(n, np.diag([3e5, 3e5, 1e5]), 9.0) for n in "ab"])
     ends = ("a", "a") if apart else ("b", "a")
-    connect_rotors(connection, bodies[0], ends[0], bodies[1], ends[1])
+    er.connect_rotors(connection, bodies[0], ends[0], bodies[1], ends[1])
     mbs.Assemble()
     return mbs, bodies
 
 
-GEARS = GearMesh(radii=[0.1, 0.2], stiffness=3e6, damping=30.0)
-COUPLING = FlexibleCoupling(
+GEARS = er.GearMesh(radii=[0.1, 0.2], stiffness=3e6, damping=30.0)
+COUPLING = er.FlexibleCoupling(
     torsion=2e3, lateral=2e5, angular=50.0, damping=[9.0, 9.0, 0.1, 0.1], axial=1e5
 )
 
@@ -170,7 +158,7 @@ COUPLING = FlexibleCoupling(
 def test_spins_of_a_scene_that_a_drive_holds_are_held_in_its_train(connection, turned, driven):
     """Torsion is that of the spins that are free in the scene, through gears and couplings."""
     mbs, bodies = geared(connection, driven=driven, turned=turned)
-    model = linear_model(mbs, body=bodies)
+    model = er.linear_model(mbs, body=bodies)
     assert model.driven == tuple(driven)
     assert model.size == 12 - len(driven)
     assert accelerations_left(mbs, bodies, model, [*model.ratios.values()]) < 1e-8
@@ -178,19 +166,22 @@ def test_spins_of_a_scene_that_a_drive_holds_are_held_in_its_train(connection, t
 
 def test_gears_and_couplings_of_a_scene_are_links():
     """The same numbers as of the train that is written by hand."""
-    coupling = FlexibleCoupling(
+    coupling = er.FlexibleCoupling(
         torsion=2e3, lateral=[2e5, 1e5], angular=50.0, damping=[9.0, 9.0, 0.1, 0.1]
     )
-    rotor, held = rings(*FIRST).reduce(0), [Support(n, np.diag([3e5, 3e5, 1e5]), 9.0) for n in "ab"]
+    rotor, held = (
+        rings(*FIRST).reduce(0),
+        [er.Support(n, np.diag([3e5, 3e5, 1e5]), 9.0) for n in "ab"],
+    )
     for connection, ratio, link in (
-        (GEARS, -0.5, Link("A:a", "B:a", GEARS)),
-        (coupling, 1.0, Link("A:b", "B:a", coupling.support("b"))),
+        (GEARS, -0.5, er.Link("A:a", "B:a", GEARS)),
+        (coupling, 1.0, er.Link("A:b", "B:a", coupling.support("b"))),
     ):
         mbs, bodies = geared(connection)
-        train = RotorTrain(dict.fromkeys("AB", rotor), {"A": 1.0, "B": ratio},
+        train = er.RotorTrain(dict.fromkeys("AB", rotor), {"A": 1.0, "B": ratio},
                            dict.fromkeys("AB", held), [link])  # fmt: skip
         found, expected = (
-            campbell(*given, accuracy=None, **more).frequencies_inertial
+            er.campbell(*given, accuracy=None, **more).frequencies_inertial
             for given, more in (
                 ((mbs, [0.0, SPEED]), {"body": bodies}),
                 ((train, [0.0, SPEED]), {}),

@@ -3,22 +3,9 @@
 import numpy as np
 import pytest
 import scipy.linalg as la
-from train_models import (
-    FIRST,
-    GROUND,
-    SECOND,
-    UNEVEN,
-    at,
-    by_hand,
-    two_discs,
-)
+from train_models import FIRST, GROUND, SECOND, UNEVEN, at, by_hand, two_discs
 
-from exudyn_rotor import (
-    HarmonicForce,
-    Unbalance,
-    harmonic_response,
-    unbalance_response,
-)
+from exudyn_rotor import HarmonicForce, Unbalance, harmonic_response, unbalance_response
 
 
 @pytest.mark.parametrize("ratio", [1.7, -1.3])

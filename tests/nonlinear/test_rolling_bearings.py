@@ -6,19 +6,7 @@ import pytest
 from point_rotors import ring_rotor
 from scipy.integrate import solve_ivp
 
-from exudyn_rotor import (
-    Foundation,
-    Mount,
-    RollingBearing,
-    SolidRotor,
-    Support,
-    Unbalance,
-    add_foundation,
-    add_rotor,
-    add_supports,
-    periodic_response,
-    recommended_settings,
-)
+import exudyn_rotor as er
 from exudyn_rotor.nonlinear import continuation
 
 BALLS = {"count": 8, "pitch_radius": 0.0326, "element_radius": 0.006, "stiffness": 7e9}
@@ -26,18 +14,18 @@ DOWN, UPRIGHT, MASS = [0.0, -9.81, 0.0], [0.0, 0.0, -9.81], 20.0
 
 
 def bearing(interface="seat", **changes):
-    return RollingBearing(interface=interface, **(BALLS | {"damping": 1500.0} | changes))
+    return er.RollingBearing(interface=interface, **(BALLS | {"damping": 1500.0} | changes))
 
 
 def point(axis="z"):
-    solid = SolidRotor.from_matrices(MASS * np.eye(3), np.zeros((3, 3)), [[0.0, 0, 0]], axis)
+    solid = er.SolidRotor.from_matrices(MASS * np.eye(3), np.zeros((3, 3)), [[0.0, 0, 0]], axis)
     return solid.with_interface("seat", [0]).reduce(0)
 
 
 def response(one, speeds, amount=0.0, gravity=DOWN, rotor=None, **options):
-    given = [Unbalance("seat", amount)] if amount else ()
+    given = [er.Unbalance("seat", amount)] if amount else ()
     options = {"tolerance": 1e-2, "follow": False, "supports": one} | options
-    return periodic_response(rotor or point(), speeds, given, gravity=gravity, **options)
+    return er.periodic_response(rotor or point(), speeds, given, gravity=gravity, **options)
 
 
 def integrated(one, speed, amount, length, kept, gravity):
@@ -99,27 +87,27 @@ def test_a_run_from_it_stays_on_it(founded):
     spin, places = 300.0, {"left": [0.0, 0.0, -0.15], "right": [0.0, 0.0, 0.15]}
     rings = ring_rotor(0.1, 0.15, MASS).with_interface("left", range(5))
     rings = rings.with_interface("right", range(5, 10))
-    given = {"supports": [Support("left", np.diag([0.0, 0.0, 1e6]))]}
+    given = {"supports": [er.Support("left", np.diag([0.0, 0.0, 1e6]))]}
     if founded:
-        mounts = [Mount([x, -0.2, z], 2e6, 2e3) for x in (-0.2, 0.2) for z in (-0.2, 0.2)]
-        block = Foundation.rigid(10.0, [0.4, 0.4, 0.4], [0.0, -0.1, 0.0], mounts, places)
+        mounts = [er.Mount([x, -0.2, z], 2e6, 2e3) for x in (-0.2, 0.2) for z in (-0.2, 0.2)]
+        block = er.Foundation.rigid(10.0, [0.4, 0.4, 0.4], [0.0, -0.1, 0.0], mounts, places)
         given["foundation"] = block
     else:
         rings = rings.add_point_mass([0.1, 0.0, 0.15], 2e-4)
-        given["supports"].append(Support("right", [[5e6, 0.0], [0.0, 0.0]], frame="rotor"))
+        given["supports"].append(er.Support("right", [[5e6, 0.0], [0.0, 0.0]], frame="rotor"))
     clearance = 5e-6 if founded else 0.0
     given["supports"] += [bearing(name, clearance=clearance) for name in places]
     reduced = rings.reduce(0)
     options = {"gravity": DOWN, "tolerance": 1e-2, "follow": False}
-    found = periodic_response(reduced, [spin], **given, **options)
+    found = er.periodic_response(reduced, [spin], **given, **options)
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, reduced, spin=spin, gravity=DOWN, translation="none")
-    base = add_foundation(mbs, block, gravity=DOWN) if founded else None
-    add_supports(body, given["supports"], base)
+    body = er.add_rotor(mbs, reduced, spin=spin, gravity=DOWN, translation="none")
+    base = er.add_foundation(mbs, block, gravity=DOWN) if founded else None
+    er.add_supports(body, given["supports"], base)
     sensor = body.add_interface_sensor("left", exu.OutputVariableType.Displacement)
     mbs.Assemble()
     body.start_from(found.state(0, body))
-    settings = recommended_settings(end_time=0.01, step=2e-5)
+    settings = er.recommended_settings(end_time=0.01, step=2e-5)
     settings.timeIntegration.verboseMode = 0
     settings.solution.file.write = False
     settings.solution.sensors.writePeriod = 2e-5
@@ -138,7 +126,7 @@ def test_lacking_harmonics_are_told(monkeypatch):
 
 def test_a_speed_without_a_motion_costs_no_other():
     """A table that ends: beyond it there are no coefficients."""
-    table = Support("seat", ([0.0, 250.0], [np.diag([1e5, 1e5, 1e6])] * 2))
+    table = er.Support("seat", ([0.0, 250.0], [np.diag([1e5, 1e5, 1e6])] * 2))
     with pytest.warns(UserWarning, match="no steady motion was found at, .* 300"):
         found = response([table, bearing()], [100.0, 200.0, 300.0])
     assert found.values.tolist() == [100.0, 200.0]

@@ -6,35 +6,24 @@ import pytest
 from exudyn.itemInterface import CartesianSpringDamper, Force, MarkerBodyPosition
 from point_rotors import ring_rotor
 
-from exudyn_rotor import (
-    Foundation,
-    HarmonicForce,
-    Mount,
-    RotorTrain,
-    ShortJournalBearing,
-    SqueezeFilmDamper,
-    Support,
-    Unbalance,
-    add_foundation,
-    add_rotor,
-    add_supports,
-    periodic_response,
-)
+import exudyn_rotor as er
 
 ENDS, SPEEDS = ("left", "right"), [200.0, 300.0]
 TURN = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # mesh z → inertial x
 DOWN, AT = np.array([0.0, 0.0, -9.81]), [0.1, 0.2, 0.3]
 MESH_DOWN = TURN.T @ DOWN
-UNBALANCE = Unbalance("left", 1e-4)
+UNBALANCE = er.Unbalance("left", 1e-4)
 
 
 def dampers(viscosity, stiffness):
     sizes = {"radius": 0.06, "length": 0.02, "clearance": 1.5e-4, "viscosity": viscosity}
-    return [SqueezeFilmDamper(interface=end, centring_stiffness=stiffness, **sizes) for end in ENDS]
+    return [
+        er.SqueezeFilmDamper(interface=end, centring_stiffness=stiffness, **sizes) for end in ENDS
+    ]
 
 
 DAMPERS = dampers(0.003, 1e6)
-THRUST = Support("left", np.diag([0.0, 0.0, 1e6]), np.diag([0.0, 0.0, 100.0]))
+THRUST = er.Support("left", np.diag([0.0, 0.0, 1e6]), np.diag([0.0, 0.0, 100.0]))
 
 
 def rings(modes=0):
@@ -43,17 +32,17 @@ def rings(modes=0):
 
 
 def block():
-    mounts = [Mount([x, -0.2, z], 2e6, 2e3) for x in (-0.2, 0.2) for z in (-0.2, 0.2)]
+    mounts = [er.Mount([x, -0.2, z], 2e6, 2e3) for x in (-0.2, 0.2) for z in (-0.2, 0.2)]
     places = {"left": [0.0, 0.0, -0.15], "right": [0.0, 0.0, 0.15]}
-    return Foundation.rigid(10.0, [0.4, 0.4, 0.4], [0.0, -0.1, 0.0], mounts, places)
+    return er.Foundation.rigid(10.0, [0.4, 0.4, 0.4], [0.0, -0.1, 0.0], mounts, places)
 
 
 def scene(foundation=None, supports=(*DAMPERS, THRUST)):
     mbs = exu.SystemContainer().AddSystem()
     options = {"position": AT, "rotation": TURN}
-    body = add_rotor(mbs, rings(), spin=100.0, gravity=DOWN, **options)
-    base = foundation and add_foundation(mbs, foundation, gravity=DOWN, **options)
-    add_supports(body, supports, base)
+    body = er.add_rotor(mbs, rings(), spin=100.0, gravity=DOWN, **options)
+    base = foundation and er.add_foundation(mbs, foundation, gravity=DOWN, **options)
+    er.add_supports(body, supports, base)
     return mbs, body
 
 
@@ -73,10 +62,10 @@ def test_a_scene_has_the_motion_of_its_lists(founded):
         given["foundation"] = block()
     else:
         mbs.AddLoad(Force(markerNumber=body.marker("left"), loadVector=[0.0, 40.0, 30.0]))
-        given["loads"] = [HarmonicForce("left", [40.0, 30.0])]
+        given["loads"] = [er.HarmonicForce("left", [40.0, 30.0])]
     mbs.Assemble()
-    found = periodic_response(mbs, SPEEDS, UNBALANCE, body=body, follow=False)
-    listed = periodic_response(rings(), SPEEDS, UNBALANCE, follow=False, **given)
+    found = er.periodic_response(mbs, SPEEDS, UNBALANCE, body=body, follow=False)
+    listed = er.periodic_response(rings(), SPEEDS, UNBALANCE, follow=False, **given)
     np.testing.assert_array_equal(found.orders, listed.orders)
     size = np.abs(listed.motion[..., :3]).max()
     np.testing.assert_allclose(found.motion[..., :3], listed.motion[..., :3], atol=1e-7 * size)
@@ -99,26 +88,26 @@ def test_items_that_may_be_nonlinear_are_named():
         change(mbs, body)
         mbs.Assemble()
         with pytest.raises(ValueError, match=match):
-            periodic_response(mbs, SPEEDS, UNBALANCE, body=body)
+            er.periodic_response(mbs, SPEEDS, UNBALANCE, body=body)
 
 
 def test_rotors_of_a_train_see_their_own_speed():
     """A journal film under weight and dampers with unbalance, on rotors that nothing links."""
     films = [
-        ShortJournalBearing(
+        er.ShortJournalBearing(
             interface=end, radius=0.03, length=0.02, clearance=6e-5, viscosity=0.02
         )
         for end in ENDS
     ]  # fmt: skip
     weight = [0.0, -9.81, 0.0]
-    train = RotorTrain(
+    train = er.RotorTrain(
         {"A": rings(), "B": rings()}, {"A": 1.0, "B": -2.0},
         {"A": [*DAMPERS, THRUST], "B": [*films, THRUST]},
     )  # fmt: skip
-    unbalance = Unbalance("A:left", 1e-4)
-    found = periodic_response(train, SPEEDS, unbalance, gravity=weight, follow=False)
+    unbalance = er.Unbalance("A:left", 1e-4)
+    found = er.periodic_response(train, SPEEDS, unbalance, gravity=weight, follow=False)
     assert found.bearings == ("A:left", "A:right", "B:left", "B:right")
-    alone = periodic_response(
+    alone = er.periodic_response(
         rings(), SPEEDS, UNBALANCE, supports=[*DAMPERS, THRUST], gravity=weight, follow=False
     )
     np.testing.assert_allclose(found.amplitudes("A:left"), alone.amplitudes("left"), rtol=1e-6)

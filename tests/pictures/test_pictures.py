@@ -9,40 +9,27 @@ from matplotlib import pyplot
 from models import centered_disc, disc_rotor
 from PIL import Image
 
-from exudyn_rotor import (
-    MotionShapes,
-    ReducedRotor,
-    SolidRotor,
-    Spectra,
-    Support,
-    Unbalance,
-    campbell,
-    mode_shapes,
-    plot_orbit,
-    response_shapes,
-    spectra,
-    unbalance_response,
-)
+import exudyn_rotor as er
 from exudyn_rotor.plotting import draw_surface, keep_apart
 
 SPEED = 300.0
-EQUAL = [Support(name, 2e7, damping=200.0) for name in ("left", "right")]
-UNEQUAL = [Support(name, [[2e7, 0.0], [0.0, 8e6]], damping=200.0) for name in ("left", "right")]
+EQUAL = [er.Support(name, 2e7, damping=200.0) for name in ("left", "right")]
+UNEQUAL = [er.Support(name, [[2e7, 0.0], [0.0, 8e6]], damping=200.0) for name in ("left", "right")]
 
 
 @cache
-def reduced() -> ReducedRotor:
+def reduced() -> er.ReducedRotor:
     """Return a disc on a shaft along z with first-order elements."""
     return centered_disc(order=1).reduce(4)
 
 
 @cache
-def modes() -> MotionShapes:
-    return mode_shapes(reduced(), SPEED, supports=EQUAL, modes=6, stiffening="tilt")
+def modes() -> er.MotionShapes:
+    return er.mode_shapes(reduced(), SPEED, supports=EQUAL, modes=6, stiffening="tilt")
 
 
 def test_modes_are_those_of_the_campbell_diagram():
-    result = campbell(reduced(), [SPEED], supports=EQUAL, stiffening="tilt")
+    result = er.campbell(reduced(), [SPEED], supports=EQUAL, stiffening="tilt")
     order = np.argsort(result.frequencies_inertial[0], kind="stable")[:6]
     np.testing.assert_allclose(
         modes().frequencies, result.frequencies_inertial[0, order], rtol=1e-9, atol=1e-6
@@ -51,13 +38,30 @@ def test_modes_are_those_of_the_campbell_diagram():
     assert "backward" in modes().table()
 
 
+@pytest.mark.parametrize("index", range(6))
+def test_a_drawn_mode_names_its_sense_and_covers_no_label(index):
+    ax = modes().plot(index)
+    ax.figure.canvas.draw()
+    sense = modes().labels[index].split(", ")[1]
+    wanted = sense if sense in ("forward", "backward") else "straight"
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == [wanted, "centre line"]
+    legend, whole = ax.get_legend().get_window_extent(), ax.figure.bbox
+    for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
+        box = axis.label.get_window_extent()
+        assert whole.x0 <= box.x0 < box.x1 <= whole.x1
+        assert whole.y0 <= box.y0
+        ticks = [text.get_window_extent() for text in axis.get_ticklabels()]
+        assert not any(legend.overlaps(each) for each in [box, *ticks])
+    pyplot.close(ax.figure)
+
+
 @pytest.mark.parametrize("supports", [EQUAL, UNEQUAL])
 def test_orbits_are_those_of_the_response(supports):
     """Of the places that the unbalance response looks at, forward and backward, any supports."""
     given = {"supports": supports, "own": False}
-    heavy = [Unbalance("right", 1e-4)]
-    shapes = response_shapes(reduced(), [SPEED], heavy, **given)
-    response = unbalance_response(reduced(), [SPEED], heavy, at=["left", "right"], **given)
+    heavy = [er.Unbalance("right", 1e-4)]
+    shapes = er.response_shapes(reduced(), [SPEED], heavy, **given)
+    response = er.unbalance_response(reduced(), [SPEED], heavy, at=["left", "right"], **given)
     found = [orbit for _, orbit in shapes.orbits(0, points=9)]
     largest = np.abs(found).max()
     ends = found[0], found[-1]
@@ -67,7 +71,7 @@ def test_orbits_are_those_of_the_response(supports):
         np.testing.assert_allclose(orbit[:, :2], expected, atol=0.1 * largest)
     # what the rotor frame sees, turned into space, is the same motion
     node = int(np.argmax(disc_rotor(1).nodes[:, 2]))
-    at_node = unbalance_response(reduced(), [SPEED], heavy, at=[node], **given)
+    at_node = er.unbalance_response(reduced(), [SPEED], heavy, at=[node], **given)
     for time in (0.0, 0.4 / SPEED):
         local = shapes.displacement(0, time)[node]
         seen = shapes.axis.rotation(SPEED * time) @ local
@@ -81,7 +85,7 @@ def test_orbits_are_those_of_the_response(supports):
 @pytest.mark.parametrize("speed", [SPEED, -SPEED])
 def test_orbits_of_whirl_are_circles_of_their_sense(speed):
     """Forward whirl turns with the spin, whatever its sign; circles on equal supports."""
-    shapes = mode_shapes(reduced(), speed, supports=EQUAL, modes=6)
+    shapes = er.mode_shapes(reduced(), speed, supports=EQUAL, modes=6)
     for index, label in enumerate(shapes.labels):
         word = label.split(", ")[1]
         if word not in ("forward", "backward"):
@@ -98,12 +102,12 @@ def test_responses_tell_their_size_and_speed():
     """Masses of 2 kg on springs of 20 kN/m at the ends of a rod, U Ω²/(k − m Ω²) of one of them."""
     rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
     nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]
-    rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    rotor = er.SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
     rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
     speeds = np.array([50.0, 80.0])
     # of springs that differ, along n2 the half: the larger semi-axis
-    supports = [Support(name, np.diag([2e4, 8e4])) for name in ("left", "right")]
-    shapes = response_shapes(rotor, speeds, Unbalance("left", 1e-4), supports=supports)
+    supports = [er.Support(name, np.diag([2e4, 8e4])) for name in ("left", "right")]
+    shapes = er.response_shapes(rotor, speeds, er.Unbalance("left", 1e-4), supports=supports)
     sizes = 1e-4 * speeds**2 / (2e4 - 2.0 * speeds**2)
     assert shapes.labels == tuple(f"unbalance, largest {size:.3g} m" for size in sizes)
 
@@ -128,7 +132,7 @@ def run_up() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def test_spectra_part_forward_from_backward():
     time, motion, speed = run_up()
-    found = spectra(time, motion, speed, length=0.2, overlap=0.75)
+    found = er.spectra(time, motion, speed, length=0.2, overlap=0.75)
     spacing = np.diff(found.frequencies)[0]
     ahead = np.where(found.frequencies > 0.0, found.amplitudes, 0.0)
     strongest = found.frequencies[np.argmax(ahead, axis=1)]
@@ -145,7 +149,7 @@ def test_spectra_part_forward_from_backward():
 )
 def test_spectra_in_engineering_units(units, per_speed, per_rate):
     """Motion that runs twice as fast as the spin of 100 and 200 rad/s is on the line of order 2."""
-    found = Spectra([0.5, 1.5], [100.0, 200.0], [0.0, 200.0, 400.0], [[0, 1, 0], [0, 0, 1]])
+    found = er.Spectra([0.5, 1.5], [100.0, 200.0], [0.0, 200.0, 400.0], [[0, 1, 0], [0, 0, 1]])
     speeds, rates = per_speed * found.speeds, per_rate * 2.0 * found.speeds
     figure, (cascade, spectrogram) = pyplot.subplots(1, 2)
     found.plot(cascade, orders=[2.0], units=units)
@@ -161,7 +165,7 @@ def test_spectra_in_engineering_units(units, per_speed, per_rate):
 def test_amplitude_of_one_signal():
     """A harmonic on a line of the spectrum, and a constant that is taken out."""
     time = np.arange(0.0, 1.0, 1e-3)
-    found = spectra(time, 5.0 + 2.0 * np.cos(2.0 * np.pi * 50.0 * time), 300.0, length=0.5)
+    found = er.spectra(time, 5.0 + 2.0 * np.cos(2.0 * np.pi * 50.0 * time), 300.0, length=0.5)
     best = np.argmax(found.amplitudes[0])
     np.testing.assert_allclose(found.frequencies[best], 2.0 * np.pi * 50.0, rtol=1e-9)
     np.testing.assert_allclose(found.amplitudes[0, best], 2.0, rtol=1e-9)
@@ -169,7 +173,7 @@ def test_amplitude_of_one_signal():
 
 
 def test_cascade_and_spectrogram_are_drawn():
-    found = spectra(*run_up(), length=0.4)
+    found = er.spectra(*run_up(), length=0.4)
     figure, axes = pyplot.subplots(1, 2)
     found.plot(axes[0], orders=(1.0, -1.0))
     found.plot_spectrogram(axes[1])
@@ -179,13 +183,13 @@ def test_cascade_and_spectrogram_are_drawn():
 
 
 TIME = np.linspace(0.0, 1.0, 101)
-POINT = SolidRotor.from_matrices(np.eye(3), np.zeros((3, 3)), np.zeros((1, 3)), "z")
+POINT = er.SolidRotor.from_matrices(np.eye(3), np.zeros((3, 3)), np.zeros((1, 3)), "z")
 POINT = POINT.with_interface("left", [0]).reduce(0)
 
 
 def responses(speed, target=POINT):
-    heavy, spring = Unbalance("left", 1e-4), Support("left", 1e4)
-    return response_shapes(target, speed, heavy, supports=spring)
+    heavy, spring = er.Unbalance("left", 1e-4), er.Support("left", 1e4)
+    return er.response_shapes(target, speed, heavy, supports=spring)
 
 
 @pytest.mark.parametrize(
@@ -196,10 +200,16 @@ def responses(speed, target=POINT):
         (lambda: responses([0.0, 1.0]), "speeds: needs spin speeds above zero"),
         (lambda: responses(1.0, POINT.without_shapes()), "target: its linear model has no mesh"),
         (lambda: responses(100.0), "response_shapes: there is no steady motion"),
-        (lambda: spectra(TIME, TIME[:5], 1.0, length=0.5), r"motion: needs the shape \(101,\) or"),
-        (lambda: spectra(TIME, TIME, 1.0, length=5.0), "length: a window of 5 s has 500 steps"),
-        (lambda: spectra(TIME**2, TIME, 1.0, length=5.0), "time: needs two instants or more"),
-        (lambda: plot_orbit(np.zeros((3, 2)), [0.0, 1.0, 0.5]), "angle: needs a spin angle that"),
+        (
+            lambda: er.spectra(TIME, TIME[:5], 1.0, length=0.5),
+            r"motion: needs the shape \(101,\) or",
+        ),
+        (lambda: er.spectra(TIME, TIME, 1.0, length=5.0), "length: a window of 5 s has 500 steps"),
+        (lambda: er.spectra(TIME**2, TIME, 1.0, length=5.0), "time: needs two instants or more"),
+        (
+            lambda: er.plot_orbit(np.zeros((3, 2)), [0.0, 1.0, 0.5]),
+            "angle: needs a spin angle that",
+        ),
         (lambda: draw_surface(np.zeros((3, 3)), [], TIME[:3], "x"), "triangles: there are none"),
     ],
 )

@@ -4,10 +4,7 @@ import numpy as np
 import pytest
 from models import disc_rotor
 
-from exudyn_rotor import (
-    ReducedRotor,
-    SolidRotor,
-)
+from exudyn_rotor import ReducedRotor, SolidRotor
 from exudyn_rotor.theory.stiffening import stiffening
 
 

@@ -8,11 +8,7 @@ from models import STEEL
 from netgen.occ import Box, OCCGeometry, Pnt, X
 from numpy.polynomial import Polynomial
 
-from exudyn_rotor import (
-    SolidRotor,
-    SpinAxis,
-    campbell,
-)
+from exudyn_rotor import SolidRotor, SpinAxis, campbell
 
 LENGTH, WIDTH, HEIGHT = 1.0, 0.06, 0.02
 

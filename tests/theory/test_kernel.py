@@ -8,12 +8,7 @@ import pytest
 from point_rotors import random_invariants, random_spd, ring_rotor
 from scipy.spatial.transform import Rotation
 
-from exudyn_rotor import (
-    Formulation,
-    Motion,
-    PrescribedMotion,
-    select_modes,
-)
+from exudyn_rotor import Formulation, Motion, PrescribedMotion, select_modes
 from exudyn_rotor.multibody.solver_settings import recommended_settings
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.kernel import Kernel

@@ -5,14 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.linalg as la
-from bodies import moments
+from bodies import MASS, moments
 from point_rotors import SKEW_AXIS, random_invariants, ring_rotor
 
 from exudyn_rotor import Formulation, Motion, select_modes
 from exudyn_rotor.theory.axis import rotations, skew, translations
 from exudyn_rotor.theory.stiffening import stiffening
 
-MASS = 12.0
 DISC, SHAFT = (0.3, 0.02), (0.1, 0.4)  # radius, half length of two rings
 BODIES = pytest.mark.parametrize("shape", [DISC, SHAFT], ids=["disc", "shaft"])
 

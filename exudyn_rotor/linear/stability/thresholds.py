@@ -427,10 +427,10 @@ def unstable_ranges(
 ) -> np.ndarray:
     """Return the unstable speed ranges, shape (r, 2) [rad/s].
 
-    The search is that of :func:`stability_threshold` with `speeds` as samples; limits have an error
-    of 1e-7 of the highest speed, and a range narrower than the spacing can be missed. A range that
-    is open at the first or last speed ends there. For the other arguments see
-    :func:`stability_threshold`.
+    The search is that of :func:`stability_threshold`, which divides its samples further, with
+    `speeds` alone; limits have an error of 1e-7 of the highest speed, and a range narrower than
+    the spacing can be missed. A range that is open at the first or last speed ends there. For the
+    other arguments see :func:`stability_threshold`.
 
     Examples
     --------
