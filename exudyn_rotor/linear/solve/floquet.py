@@ -63,7 +63,7 @@ def floquet_motions(system: PeriodicSystem, made: States) -> Exponents:
         before = values
     if still is None:
         k = system.size
-        none = np.full(k, np.nan + 0j), np.zeros((1, 2 * k, k), dtype=complex)
+        none = np.full(k, np.nan + 0j), np.full((1, 2 * k, k), np.nan + 0j)
         return Exponents(*none, np.array([0]), np.zeros(1, dtype=complex))
     found, lost = np.flatnonzero(still), np.flatnonzero(~still)
     chosen = found[one_of_each_family(values[found], states[:, :, found], orders, system, made)]
