@@ -16,7 +16,7 @@ from exudyn_rotor.linear.equations import PeriodicSystem, States
 
 _SIZES = (2, 3, 4, 5, 6)  # harmonics on either side, in steps of the coefficients
 _LARGEST, _MOST = 250, 1000  # unknowns beyond which fast motions are not waited for, and none
-_SLOW = 3.0  # |λ| over Ω up to which a motion is slow
+_SLOW = 20.0  # |λ| over Ω up to which a motion is slow
 _NEAR = 1e-2  # of |λ|: by how much more one that is known about may grow
 _FAST = 30.0  # decay over Ω above which a motion is over before the coefficients change
 _OVER = 3.0  # decay over Ω, and over the own frequency, beyond which nobody looks at a motion
@@ -56,10 +56,10 @@ def hill_motions(
     """Return the motions of a system, and with how many harmonics to begin at the next speed.
 
     Harmonics are added until those at the edge of the sum hold next to nothing of each motion. Fast
-    decays are not waited for, nor are fast motions of many coordinates. Where only the growth of
-    the least stable motion is asked for, nor are slow motions that decay faster than it, once they
-    are known about. Growth up to `neutral` [1/s] then counts as none. Exponents that do not get
-    there are NaN.
+    decays are not waited for, and of many coordinates only what slow motions need to be known at
+    all. Where only the growth of the least stable motion is asked for, slow motions that decay
+    faster than it need no more, either. Growth up to `neutral` [1/s] then counts as none. Exponents
+    that do not get there are NaN.
     """
     k, speed = system.size, abs(system.speed)
     unknowns = [2 * k * (2 * size + 1) for size in _SIZES]
@@ -76,7 +76,7 @@ def hill_motions(
             near = slow & (growth >= least - _NEAR * np.abs(values))
             allowed[growth < least] = np.inf
             allowed[near & (growth < least)] = _LOST
-        few = np.where(slow, allowed, np.inf)
+        few = np.where(slow, allowed if neutral is not None else _LOST, np.inf)
         edges = energy[0] + energy[-1]
         last = place + 1 == len(_SIZES)
         wanted = few if last or unknowns[place + 1] > _LARGEST else allowed
