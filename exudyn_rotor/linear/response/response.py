@@ -517,6 +517,9 @@ class HarmonicResponse(Response):
     frequencies: np.ndarray = numbers("abscissa")
     speed: float
 
+    _over: ClassVar[str] = "frequencies"
+    _what: ClassVar[str] = "frequency"
+
     @property
     def main_order(self) -> int:
         """The harmonic with the largest motion, of rotations at the :attr:`radius`."""
@@ -525,9 +528,6 @@ class HarmonicResponse(Response):
     def _main(self, directions: Sequence[str]) -> int:
         together = [group for group in _TOGETHER if not set(group).isdisjoint(directions)]
         return self._largest([name for group in together for name in group if name in DIRECTIONS])
-
-    _over: ClassVar[str] = "frequencies"
-    _what: ClassVar[str] = "frequency"
 
     def rates(self, order: int) -> np.ndarray:
         """Return ω + nΩ, shape (s,) [rad/s]."""
@@ -595,11 +595,10 @@ def warn_of_undamped(peaks: Sequence[tuple[str, float]]) -> None:
     """Warn of resonances [rad/s] at places that nothing damps, once for all."""
     if not peaks:
         return
-    name, at = peaks[0]
-    more = f" (and {len(peaks) - 1} more)" if len(peaks) > 1 else ""
+    name, speed = _first_of(peaks)
     warnings.warn(
-        f"{name}: nothing damps the resonance at {at:g} rad/s{more}, so that its size and "
-        "amplification are infinite; give supports or the rotor damping",
+        f"{name}: nothing damps the resonance at {speed}, so that its size and amplification are "
+        "infinite; give supports or the rotor damping",
         UserWarning,
         stacklevel=user_level(),
     )
@@ -609,14 +608,20 @@ def warn_of_coarse_peaks(coarse: Sequence[tuple[str, float]]) -> None:
     """Warn of peaks [rad/s] at places whose neighbours are too far apart, once for all."""
     if not coarse:
         return
-    name, at = coarse[0]
-    more = f" (and {len(coarse) - 1} more)" if len(coarse) > 1 else ""
+    name, speed = _first_of(coarse)
     warnings.warn(
-        f"{name}: the points around the peak at {at:g} rad/s{more} are too far apart to give its "
-        "size and width; compute the response with refine=True, or give more points there",
+        f"{name}: the points around the peak at {speed} are too far apart to give its size and "
+        "width; compute the response with refine=True, or give more points there",
         UserWarning,
         stacklevel=user_level(),
     )
+
+
+def _first_of(peaks: Sequence[tuple[str, float]]) -> tuple[str, str]:
+    """Return the place and speed of the first peak, and how many more there are, as text."""
+    name, at = peaks[0]
+    more = f" (and {len(peaks) - 1} more)" if len(peaks) > 1 else ""
+    return name, f"{at:g} rad/s{more}"
 
 
 def _phase(values: np.ndarray) -> np.ndarray:

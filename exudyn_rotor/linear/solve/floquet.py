@@ -14,11 +14,10 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor.linear.equations import PeriodicSystem, States
-from exudyn_rotor.linear.solve.hill import Exponents, lost_of, one_of_each_family, shares
+from exudyn_rotor.linear.solve.hill import SLOW, Exponents, lost_of, one_of_each_family, shares
 
 _GAUSS_POINTS = 0.5 + np.array([-1.0, 1.0]) * np.sqrt(3.0) / 6.0
 _STEPS = (64, 128, 256, 512, 1024)  # of a period
-_SLOW = 20.0  # |λ| over Ω up to which motions are waited for
 _STILL = 1e-6  # relative change of an exponent by twice the steps
 _LEAST = 1e-10  # of the largest multiplier: one below is rounding
 
@@ -57,7 +56,7 @@ def floquet_motions(system: PeriodicSystem, made: States) -> Exponents:
         least = np.maximum(np.abs(values), abs(system.speed))
         still = np.fmin.reduce(away, axis=1, initial=np.inf) <= _STILL * least
         still[upper + 1] = still[upper]
-        fast = np.isnan(values) | (np.abs(values) > _SLOW * abs(system.speed))
+        fast = np.isnan(values) | (np.abs(values) > SLOW * abs(system.speed))
         if before.size and np.all(still | fast):
             break
         before = values

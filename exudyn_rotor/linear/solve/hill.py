@@ -16,7 +16,7 @@ from exudyn_rotor.linear.equations import PeriodicSystem, States
 
 _SIZES = (2, 3, 4, 5, 6)  # harmonics on either side, in steps of the coefficients
 _LARGEST, _MOST = 250, 1000  # unknowns beyond which fast motions are not waited for, and none
-_SLOW = 20.0  # |λ| over Ω up to which a motion is slow
+SLOW = 20.0  # |λ| over Ω up to which motions are waited for
 _NEAR = 1e-2  # of |λ|: by how much more one that is known about may grow
 _FAST = 30.0  # decay over Ω above which a motion is over before the coefficients change
 _OVER = 3.0  # decay over Ω, and over the own frequency, beyond which nobody looks at a motion
@@ -62,14 +62,14 @@ def hill_motions(
     that do not get there are NaN.
     """
     k, speed = system.size, abs(system.speed)
-    unknowns = [2 * k * (2 * size + 1) for size in _SIZES]
+    unknowns = [2 * k * (2 * size + 1) for size in (*_SIZES, np.inf)]
     for place in range(begin, len(_SIZES)):
         orders = system.step * np.arange(-_SIZES[place], _SIZES[place] + 1)
         values, states = _solved(made, orders, system.speed)
         chosen = one_of_each_family(values, states, orders, system, made)
         values, states = values[chosen], states[:, :, chosen]
         energy, growth = shares(states), values.real
-        fast, slow = -growth > _FAST * speed, np.abs(values) <= _SLOW * speed
+        fast, slow = -growth > _FAST * speed, np.abs(values) <= SLOW * speed
         allowed = np.where(fast, np.inf, _EDGE * tolerance)
         if neutral is not None:
             least = growth[np.abs(growth) > neutral].max(initial=-np.inf)
@@ -78,9 +78,8 @@ def hill_motions(
             allowed[near & (growth < least)] = _LOST
         few = np.where(slow, allowed if neutral is not None else _LOST, np.inf)
         edges = energy[0] + energy[-1]
-        last = place + 1 == len(_SIZES)
-        wanted = few if last or unknowns[place + 1] > _LARGEST else allowed
-        if np.all(edges <= wanted) or last or unknowns[place + 1] > _MOST:
+        wanted = few if unknowns[place + 1] > _LARGEST else allowed
+        if np.all(edges <= wanted) or unknowns[place + 1] > _MOST:
             break
     wanted = few if unknowns[place] > _LARGEST else allowed
     fewer = np.all(energy[1] + energy[-2] <= wanted)

@@ -26,7 +26,7 @@ from exudyn_rotor.linear.solve.hill import Exponents, hill_motions
 METHODS = ("auto", "hill", "floquet")
 _ROUNDING = 100.0 * EPSILON  # of the size of a state matrix: what a real part may be off by
 _PERIODIC = 10.0  # times that of periodic equations, which have many harmonics
-_SLOW = 3.0  # |λ| over Ω up to which a motion is slow
+_SOUGHT = 3.0  # |λ| over Ω up to which Floquet's method seeks a motion that was lost
 REAL = 1e-9  # share of |λ|: a frequency that is rounding
 _AT_ONCE = 2_000_000  # entries of matrices that are solved at once
 
@@ -192,7 +192,7 @@ def _periodic(
             exponents, size = hill_motions(system, made, tolerance, size, neutral)
             most = max(np.nanmax(exponents.values.real, initial=-np.inf), bound)
             # a slow motion that Hill's method has lost may be the one that grows
-            slow = exponents.lost[np.abs(exponents.lost) <= _SLOW * abs(system.speed)]
+            slow = exponents.lost[np.abs(exponents.lost) <= _SOUGHT * abs(system.speed)]
             if method == "auto" and np.any(slow.real > most):
                 other = floquet_motions(system, made)
                 if np.nanmax(other.values.real, initial=-np.inf) > most:

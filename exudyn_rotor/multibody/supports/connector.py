@@ -351,7 +351,8 @@ class BearingConnector(Connector):
     ring whose elements an inner ring takes along. Forces act along the axes at rest, also where the
     base tilts, and pull at the middles of journal and bore: about the axis the base lacks the
     moment ``u × F`` of their distance u. Its `parts` are the bearing, or the films of its pads.
-    Torques brake a spin that is free, and take a base along that can turn.
+    Torques brake a spin that is free; of a prescribed one they take along what carries the bearing,
+    but for foundations.
     """
 
     def __init__(
@@ -372,12 +373,9 @@ class BearingConnector(Connector):
         self.levers = -bearing.film.radius * bearing.tangents if pads else None
         if pads:
             self.constant = (bearing.pad_inertia * np.eye(self.own),)
-        # of a prescribed spin the base alone feels the torque, if it can turn
-        turns = base.size > 0 and not (
-            isinstance(base, FoundationEnd) and not np.any(base.rows()[5])
-        )
-        self.brakes = (is_free or turns) and has_torque(bearing)
-        self._slides = self.brakes and (is_free or self.feels)
+        # of a prescribed spin the base alone feels the torque
+        self.brakes = (is_free or self.feels) and has_torque(bearing)
+        self._drags = self.brakes and not is_free
         self.laws = [one.law_with_torque if self.brakes else one.law for one in self.parts]
         self._least = self.parts[0].clearance_along() ** 2
 
@@ -437,7 +435,7 @@ class BearingConnector(Connector):
         parts = zip(self.parts, self.laws, self.motions(), strict=True)
         for number, (part, law, motion) in enumerate(parts):
             k, d = part.slopes(*motion)
-            if self.brakes and self.base.size:
+            if self._drags:
                 by_place, by_rate = differences(law, *motion)
                 k, d = np.vstack([k, by_place[2:]]), np.vstack([d, by_rate[2:]])
             if self.feels:
@@ -451,7 +449,7 @@ class BearingConnector(Connector):
                 S[:2, 3 + number] = -self.levers[number]
             K += S[: len(k)].T @ k @ S[:2]
             D += S[: len(d)].T @ d @ S[:2]
-            if self._slides and self.probed is None:
+            if self.brakes and self.probed is None:
                 step = SPEED_STEP * max(abs(motion[5]), 1.0)
                 faster = law(*motion[:5], motion[5] + step)
                 D[:, 2] += np.subtract(law(*motion), faster) / step @ S
