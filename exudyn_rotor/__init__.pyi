@@ -72,9 +72,6 @@ from exudyn_rotor.linear.stability.stability import stability_map as stability_m
 from exudyn_rotor.linear.stability.thresholds import StabilityThresholds as StabilityThresholds
 from exudyn_rotor.linear.stability.thresholds import stability_threshold as stability_threshold
 from exudyn_rotor.linear.stability.thresholds import unstable_ranges as unstable_ranges
-from exudyn_rotor.linear.static.static_response import bearing_loads as bearing_loads
-from exudyn_rotor.linear.static.static_response import static_response as static_response
-from exudyn_rotor.linear.static.static_result import StaticResponse as StaticResponse
 from exudyn_rotor.multibody.add_rotor import add_rotor as add_rotor
 from exudyn_rotor.multibody.drives import add_drive as add_drive
 from exudyn_rotor.multibody.drives import connect_rotors as connect_rotors
@@ -118,6 +115,9 @@ from exudyn_rotor.solid.rigid_disc import PointMass as PointMass
 from exudyn_rotor.solid.rigid_disc import RigidDisc as RigidDisc
 from exudyn_rotor.solid.rotor import Interface as Interface
 from exudyn_rotor.solid_rotor import SolidRotor as SolidRotor
+from exudyn_rotor.static.static_response import bearing_loads as bearing_loads
+from exudyn_rotor.static.static_response import static_response as static_response
+from exudyn_rotor.static.static_result import StaticResponse as StaticResponse
 from exudyn_rotor.strength.field import StressField as StressField
 from exudyn_rotor.strength.history import StressHistory as StressHistory
 from exudyn_rotor.strength.history import stress_history as stress_history

@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear.response.loads import Unbalance
-from exudyn_rotor.linear.static.static_response import bearing_loads
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.static.static_response import bearing_loads
 
 _RESIDUAL = 6350e-6 * np.pi / 30.0  # U Ω / W [m/s]
 _FASTEST = 25_000.0 * np.pi / 30.0  # [rad/s]

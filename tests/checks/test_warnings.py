@@ -161,7 +161,7 @@ PLACES = {
 # part of the text of warnings that the tests of their analyses make fire
 ELSEWHERE = {
     "linear/modal/basis_error.py:warn": "errs by about",
-    "linear/static/static_response.py:static_response": "errs by about",
+    "static/static_response.py:static_response": "errs by about",
     "linear/response/steady_response.py:over": "errs by about",
     "linear/model/linear_model.py:warn_of_refused": "no values at .* which are NaN",
     "linear/modal/resonance.py:warn": "none are looked for",

@@ -24,8 +24,8 @@ from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
 from exudyn_rotor.linear.response.loads import At, BaseAcceleration, HarmonicForce, places, total
-from exudyn_rotor.linear.static.equilibrium import Journals, equilibrium
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.static.equilibrium import Journals, equilibrium
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_skew
 
 _ROUNDING = 1e-9  # share of a load that is none

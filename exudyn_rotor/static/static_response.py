@@ -16,11 +16,11 @@ from exudyn_rotor.linear.model.build import warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
 from exudyn_rotor.linear.response.loads import At, checked_places, node_number
-from exudyn_rotor.linear.static.problem import Problem
-from exudyn_rotor.linear.static.static_result import StaticResponse
 from exudyn_rotor.reduction.reduce import reduce, reduced_for_loads
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.static.problem import Problem
+from exudyn_rotor.static.static_result import StaticResponse
 from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.theory.stiffening import CHOICES
 
