@@ -128,6 +128,10 @@ class CriticalSpeeds(_Undamped):
             **basis_column(self.basis_errors, len(self.whirl)),
         }
 
+    @property
+    def splits(self) -> None:
+        """None: two planes of an averaged mesh have one critical speed."""
+
 
 def critical_speeds(
     target: Target,
