@@ -65,6 +65,15 @@ class Equilibria(Generic[State]):
         ]
         return min(known, key=lambda each: each[0])[1] if known else None
 
+    def is_refused_above(self, speed: float, load: np.ndarray) -> bool:
+        """Return whether there is none at a faster speed of the same sense, nor a known slower one.
+
+        Films carry less at slower speeds.
+        """
+        own = [(key[0] / speed, one) for key, one in list(self._known.items()) if key[1:] == (*load,)]
+        refused = any(ratio > 1.0 and isinstance(one, _FAILED) for ratio, one in own)
+        return refused and all(ratio > 1.0 or isinstance(one, _FAILED) for ratio, one in own)
+
 
 class NoEquilibriumError(NoCoefficientsError):
     """A bearing under load has no equilibrium at a speed, as films at rest."""

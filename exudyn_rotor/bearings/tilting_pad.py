@@ -204,6 +204,8 @@ class TiltingPadBearing(Bearing):
             f"bearing at {self.interface!r}: no equilibrium of the pads found under {size:g} N at "
             f"{speed:g} rad/s"
         )
+        if self._equilibria.is_refused_above(speed, load):
+            raise refused
         for ratio in _STARTS:
             try:
                 start = _Pads.of(self, speed, ratio * self.film.clearance * load / size)

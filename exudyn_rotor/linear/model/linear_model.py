@@ -323,16 +323,17 @@ class LinearModel:
                 return self.assembly(speeds[0]).system(speeds, frequencies), {}
             except NO_EQUATIONS:
                 pass  # one by one, then
-        found, refused = [], {}
+        found, refused = {}, {}
         rates = [None] * len(speeds) if frequencies is None else frequencies.tolist()
-        for place, pair in enumerate(zip(speeds.tolist(), rates, strict=True)):
+        for place in np.argsort(-np.abs(speeds), kind="stable").tolist():  # films carry more there
             try:
-                found.append(self.coefficients(*pair))
+                found[place] = self.coefficients(float(speeds[place]), rates[place])
             except NO_EQUATIONS as error:
                 refused[place] = error
         if not found:
             return None, refused
-        return self.at_points(np.delete(speeds, list(refused)), found), refused
+        known = sorted(found)
+        return self.at_points(speeds[known], [found[place] for place in known]), refused
 
     @property
     def pattern(self) -> tuple:
