@@ -110,6 +110,7 @@ from exudyn_rotor.reduction.selection import select_modes as select_modes
 from exudyn_rotor.results import Result as Result
 from exudyn_rotor.results import load_result as load_result
 from exudyn_rotor.ross import from_ross as from_ross
+from exudyn_rotor.rotor_example import rotor_example as rotor_example
 from exudyn_rotor.solid.carried_prestress import Prestress as Prestress
 from exudyn_rotor.solid.rigid_disc import PointMass as PointMass
 from exudyn_rotor.solid.rigid_disc import RigidDisc as RigidDisc

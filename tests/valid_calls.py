@@ -284,6 +284,7 @@ CALLS = {
     },
     "ShortJournalBearing": {"load": [0.0, -500.0]},
     "from_ross": lambda w: {"rotor": example()},
+    "rotor_example": lambda w: {"masses": (1.0, 3.0)},
     "SolidRotor.add_disc": {"position": 0.15, "mass": 1.0, "inertia": [0.02, 0.02], "width": 0.4},
     "SolidRotor.clamped": {"names": ["left"]},
     "SolidRotor.from_matrices": lambda w: {

@@ -70,7 +70,9 @@ class Equilibria(Generic[State]):
 
         Films carry less at slower speeds.
         """
-        own = [(key[0] / speed, one) for key, one in list(self._known.items()) if key[1:] == (*load,)]
+        own = [
+            (key[0] / speed, one) for key, one in list(self._known.items()) if key[1:] == (*load,)
+        ]
         refused = any(ratio > 1.0 and isinstance(one, _FAILED) for ratio, one in own)
         return refused and all(ratio > 1.0 or isinstance(one, _FAILED) for ratio, one in own)
 

@@ -124,12 +124,8 @@ def bearing_masses(rotor: ReducedRotor | SolidRotor, bearings: Sequence[str]) ->
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from exudyn_rotor import SolidRotor, bearing_masses
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # masses of 1 kg and 3 kg on a rod
-    >>> rotor = SolidRotor.from_matrices(np.diag([1.0] * 3 + [3.0] * 3), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> from exudyn_rotor import bearing_masses, rotor_example
+    >>> rotor = rotor_example((1.0, 3.0))  # masses of 1 kg and 3 kg on a rod
     >>> bearing_masses(rotor, ["left", "right"])
     array([1., 3.])
     """

@@ -216,12 +216,9 @@ def separation_margins(
     Examples
     --------
     >>> import numpy as np
-    >>> from exudyn_rotor import SolidRotor, Support, Unbalance, separation_margins
+    >>> from exudyn_rotor import Support, Unbalance, rotor_example, separation_margins
     >>> from exudyn_rotor import unbalance_response
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
-    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> rotor = rotor_example()  # two masses of 2 kg on a rod
     >>> supports = [Support(name, 2e4, damping=20.0) for name in ("left", "right")]  # ζ = 0.05
     >>> response = unbalance_response(rotor, np.linspace(0, 200, 21), [Unbalance("left", 1e-4)],
     ...                               supports=supports, refine=True)

@@ -93,12 +93,8 @@ def static_response(
     --------
     Two masses of 2 kg on three springs of 2e4 N/m, one of them in the middle:
 
-    >>> import numpy as np
-    >>> from exudyn_rotor import SolidRotor, Support, static_response
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]
-    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> from exudyn_rotor import Support, rotor_example, static_response
+    >>> rotor = rotor_example()  # two masses of 2 kg on a rod
     >>> rotor = rotor.with_interface("middle", [0, 1])
     >>> supports = [Support(name, 2e4) for name in ("left", "middle", "right")]
     >>> found = static_response(rotor, gravity=[0.0, -9.81, 0.0], supports=supports)
@@ -194,12 +190,8 @@ def bearing_loads(
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from exudyn_rotor import SolidRotor, bearing_loads
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # masses of 1 kg and 3 kg on a rod
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> rotor = SolidRotor.from_matrices(np.diag([1.0] * 3 + [3.0] * 3), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> from exudyn_rotor import bearing_loads, rotor_example
+    >>> rotor = rotor_example((1.0, 3.0))  # masses of 1 kg and 3 kg on a rod
     >>> print(bearing_loads(rotor, ["left", "right"], [0.0, -10.0, 0.0]).round(9))
     [[  0. -10.]
      [  0. -30.]]

@@ -63,12 +63,8 @@ class StaticResponse(AtPlaces):
     --------
     Two masses of 2 kg on a rod, each on a spring of 2e4 N/m:
 
-    >>> import numpy as np
-    >>> from exudyn_rotor import SolidRotor, Support, static_response
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]
-    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> from exudyn_rotor import Support, rotor_example, static_response
+    >>> rotor = rotor_example()  # two masses of 2 kg on a rod
     >>> supports = [Support(name, 2e4) for name in ("left", "right")]
     >>> found = static_response(rotor, gravity=[0.0, -9.81, 0.0], supports=supports)
     >>> print(found.reactions[:, 1].round(6))

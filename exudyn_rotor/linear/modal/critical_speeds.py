@@ -189,12 +189,8 @@ def critical_speeds(
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from exudyn_rotor import SolidRotor, Support, critical_speeds
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
-    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> from exudyn_rotor import Support, critical_speeds, rotor_example
+    >>> rotor = rotor_example()  # two masses of 2 kg on a rod
     >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
     >>> print(critical_speeds(rotor, supports=supports, nodal_diameters=[1]).table())
     undamped critical speeds of order 1
@@ -426,12 +422,8 @@ def critical_speed_map(
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from exudyn_rotor import SolidRotor, Support, critical_speed_map
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
-    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> from exudyn_rotor import Support, critical_speed_map, rotor_example
+    >>> rotor = rotor_example()  # two masses of 2 kg on a rod
     >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
     >>> critical_speed_map(rotor, ["left", "right"], [5e3, 2e4]).speeds.round(6)
     array([[ 50.,  50.,  50.,  50.],

@@ -86,11 +86,8 @@ def linear_model(
     Examples
     --------
     >>> import numpy as np
-    >>> from exudyn_rotor import SolidRotor, Support, campbell, linear_model, stability
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
-    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> from exudyn_rotor import Support, campbell, linear_model, rotor_example, stability
+    >>> rotor = rotor_example()  # two masses of 2 kg on a rod
     >>> supports = [Support(name, 2e4 * np.eye(3), 10.0 * np.eye(3)) for name in ("left", "right")]
     >>> model = linear_model(rotor, supports=supports)
     >>> campbell(model, [0.0, 50.0]).frequencies_inertial[1, :5].round(2)

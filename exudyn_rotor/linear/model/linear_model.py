@@ -106,12 +106,8 @@ class LinearModel:
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from exudyn_rotor import SolidRotor, Support, linear_model
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
-    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> from exudyn_rotor import Support, linear_model, rotor_example
+    >>> rotor = rotor_example()  # two masses of 2 kg on a rod
     >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
     >>> model = linear_model(rotor, supports=supports)
     >>> model

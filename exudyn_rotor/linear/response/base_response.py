@@ -181,11 +181,8 @@ def base_response(
     Examples
     --------
     >>> import numpy as np
-    >>> from exudyn_rotor import BaseRecord, SolidRotor, Support, base_response
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
-    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> from exudyn_rotor import BaseRecord, Support, base_response, rotor_example
+    >>> rotor = rotor_example()  # two masses of 2 kg on a rod
     >>> supports = [Support(name, 2e4) for name in ("left", "right")]
     >>> step = BaseRecord(np.linspace(0.0, 0.05, 101), np.tile([1.0, 0.0, 0.0], (101, 1)))
     >>> response = base_response(rotor, step, speed=50.0, supports=supports)

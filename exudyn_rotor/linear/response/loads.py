@@ -309,12 +309,8 @@ class BaseAcceleration:
     --------
     Weight in the direction −n2 makes a rotor of 4 kg sag by m g/k:
 
-    >>> import numpy as np
-    >>> from exudyn_rotor import BaseAcceleration, SolidRotor, Support, harmonic_response
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
-    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> from exudyn_rotor import BaseAcceleration, Support, harmonic_response, rotor_example
+    >>> rotor = rotor_example()  # two masses of 2 kg on a rod
     >>> supports = [Support(name, 2e4) for name in ("left", "right")]
     >>> weight = BaseAcceleration((0.0, +9.81))
     >>> response = harmonic_response(rotor, [0.0], weight, supports=supports)

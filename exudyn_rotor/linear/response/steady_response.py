@@ -113,12 +113,8 @@ def unbalance_response(
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from exudyn_rotor import SolidRotor, Support, Unbalance, unbalance_response
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
-    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> from exudyn_rotor import Support, Unbalance, rotor_example, unbalance_response
+    >>> rotor = rotor_example()  # two masses of 2 kg on a rod
     >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
     >>> unbalance = Unbalance("left", 1e-4)
     >>> response = unbalance_response(rotor, [50.0, 100.0, 150.0], unbalance, supports=supports)
@@ -179,11 +175,8 @@ def harmonic_response(
     Examples
     --------
     >>> import numpy as np
-    >>> from exudyn_rotor import SolidRotor, Support, HarmonicForce, harmonic_response
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
-    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> from exudyn_rotor import HarmonicForce, Support, harmonic_response, rotor_example
+    >>> rotor = rotor_example()  # two masses of 2 kg on a rod
     >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
     >>> force = HarmonicForce("left", (1.0, 0.0))  # 1 N along n1
     >>> response = harmonic_response(rotor, [50.0, 100.0], force, supports=supports)

@@ -179,12 +179,8 @@ def steady_state(
     the speed:
 
     >>> import exudyn
-    >>> import numpy as np
-    >>> from exudyn_rotor import SolidRotor, add_rotor, steady_state
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]
-    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> from exudyn_rotor import add_rotor, rotor_example, steady_state
+    >>> rotor = rotor_example()  # two masses of 2 kg on a rod
     >>> mbs = exudyn.SystemContainer().AddSystem()
     >>> body = add_rotor(
     ...     mbs, rotor.reduce(1), spin=50.0, translation="none", gravity=[0.0, -9.81, 0.0],

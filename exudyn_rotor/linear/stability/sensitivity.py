@@ -163,12 +163,9 @@ def sensitivity(
     Examples
     --------
     >>> import numpy as np
-    >>> from exudyn_rotor import LinearActuator, MagneticBearing, PIDController, SolidRotor
+    >>> from exudyn_rotor import LinearActuator, MagneticBearing, PIDController, rotor_example
     >>> from exudyn_rotor import sensitivity
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
-    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> rotor = rotor_example()  # two masses of 2 kg on a rod
     >>> controller = PIDController(
     ...     proportional=2e4, derivative=20.0, filter_frequency=2e4, amplifier_frequency=1e4
     ... )

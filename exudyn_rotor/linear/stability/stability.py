@@ -292,12 +292,8 @@ def stability(
     --------
     Damping in the rotor drives it unstable above its critical speed:
 
-    >>> import numpy as np
-    >>> from exudyn_rotor import SolidRotor, Support, stability
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
-    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> from exudyn_rotor import Support, rotor_example, stability
+    >>> rotor = rotor_example()  # two masses of 2 kg on a rod
     >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
     >>> inner = [Support(name, damping=5.0, frame="rotor") for name in ("left", "right")]
     >>> result = stability(rotor, [100.0, 400.0], supports=supports + inner)
@@ -543,12 +539,8 @@ def stability_map(
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from exudyn_rotor import SolidRotor, Support, linear_model, stability_map
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
-    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1]).reduce(1)
+    >>> from exudyn_rotor import Support, linear_model, rotor_example, stability_map
+    >>> rotor = rotor_example().reduce(1)  # two masses of 2 kg on a rod
     >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
     >>> def build(damping: float, speed: float) -> tuple:
     ...     inner = [Support(name, damping=damping, frame="rotor") for name in ("left", "right")]

@@ -309,12 +309,8 @@ def stability_threshold(
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from exudyn_rotor import SolidRotor, Support, stability_threshold
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
-    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> from exudyn_rotor import Support, rotor_example, stability_threshold
+    >>> rotor = rotor_example()  # two masses of 2 kg on a rod
     >>> def damped(inner: float) -> list:
     ...     outer = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
     ...     return outer + [Support(s.interface, damping=inner, frame="rotor") for s in outer]
@@ -434,12 +430,8 @@ def unstable_ranges(
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from exudyn_rotor import SolidRotor, Support, unstable_ranges
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
-    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> from exudyn_rotor import Support, rotor_example, unstable_ranges
+    >>> rotor = rotor_example()  # two masses of 2 kg on a rod
     >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
     >>> inner = [Support(name, damping=5.0, frame="rotor") for name in ("left", "right")]
     >>> unstable_ranges(rotor, [100.0, 250.0, 400.0], supports=supports + inner).round(3)

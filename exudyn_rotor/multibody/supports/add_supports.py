@@ -139,11 +139,8 @@ def add_supports(
     --------
     >>> import exudyn
     >>> import numpy as np
-    >>> from exudyn_rotor import SolidRotor, Support, add_rotor, add_supports
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
-    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> from exudyn_rotor import Support, add_rotor, add_supports, rotor_example
+    >>> rotor = rotor_example()  # two masses of 2 kg on a rod
     >>> mbs = exudyn.SystemContainer().AddSystem()
     >>> body = add_rotor(mbs, rotor.reduce(1), spin=50.0)
     >>> springs = [Support("left", 2e4 * np.eye(3)), Support("right", [[2e4, 1e3], [-1e3, 2e4]])]
