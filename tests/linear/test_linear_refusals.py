@@ -9,7 +9,6 @@ from matplotlib.figure import Figure
 from test_model import UNEVEN, flat
 from test_model import held as held_ends
 from test_scene_linear import in_a_list, on_springs
-from test_static_response import beam, films
 from test_structural_damping import ETA, K, one_mass
 
 import exudyn_rotor as er
@@ -21,16 +20,10 @@ MAGNET, FILM = er.Support("at", -5e3), er.Support("at", lambda speed: 1e4 + spee
 UNSTEADY = er.linear_model(flat(), supports=held_ends(UNEVEN))
 UNBALANCE = er.Unbalance("mid", 1e-4)
 OVER = er.Support.from_table("at", frequencies=[1.0, 3.0], stiffness=[np.eye(2), 3.0 * np.eye(2)])
-ALONG, ACROSS = {"8": [0.0, 0.0, 5.0]}, {"8": [0.0, 5.0, 0.0]}
 
 
 def forced(speed=100.0, own=True, loads=UNBALANCE, **options):
     return er.unbalance_response(rings(**options), [speed], loads, supports=held(), own=own)
-
-
-def static(loads, *supports, **options):
-    supports = supports or [er.Support(name, 1e7) for name in ("0", "16")]
-    return er.static_response(beam(), loads, supports=supports, **options)
 
 
 def scene(**options):
@@ -93,13 +86,6 @@ def map_of(stiffness=1e4, rotor=POINT, at="at"):
         (lambda: er.stability_threshold(POINT, 0.0, 1.0, supports=str), "needs the spin speed"),
         (lambda: er.stability_threshold(POINT, 0.0, 1.0, speed=3.0), "is the parameter.*leave it"),
         (lambda: er.static_response(scene(), gravity=[9, 0, 0]), "steady_state.body. finds"),
-        (lambda: static(ACROSS, *films("0"), frame="rotor", speed=9.0), "'0' stands still"),
-        (lambda: static(ACROSS).von_mises, "stress=True"),
-        (lambda: static(ALONG), "translation along axis.*no support holds"),
-        (lambda: static(ACROSS, er.Support("0", 1e7)), "no support holds"),
-        (lambda: static({"8": [1.0, 2.0]}), "needs 3 or 6 numbers"),
-        (lambda: static({"no": [1.0, 2.0, 3.0]}), "no such interface"),
-        (lambda: static([1.0, 2.0, 3.0]), "loads: needs a dictionary"),
     ],
 )
 def test_it_says_what_to_do(call, message):

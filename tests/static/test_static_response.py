@@ -270,3 +270,28 @@ def test_tables_and_pictures_show_it():
     assert "deflection" in ax.get_ylabel()
     assert len(ax.lines) > 4
     pyplot.close(ax.figure)
+
+
+ALONG, ACROSS = {"8": [0.0, 0.0, 5.0]}, {"8": [0.0, 5.0, 0.0]}
+
+
+def static(loads, *supports, **options):
+    supports = supports or [er.Support(name, 1e7) for name in ("0", "16")]
+    return er.static_response(beam(), loads, supports=supports, **options)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: static(ACROSS, *films("0"), frame="rotor", speed=9.0), "'0' stands still"),
+        (lambda: static(ACROSS).von_mises, "stress=True"),
+        (lambda: static(ALONG), "translation along axis.*no support holds"),
+        (lambda: static(ACROSS, er.Support("0", 1e7)), "no support holds"),
+        (lambda: static({"8": [1.0, 2.0]}), "needs 3 or 6 numbers"),
+        (lambda: static({"no": [1.0, 2.0, 3.0]}), "no such interface"),
+        (lambda: static([1.0, 2.0, 3.0]), "loads: needs a dictionary"),
+    ],
+)
+def test_it_says_what_to_do(call, message):
+    with pytest.raises((TypeError, ValueError), match=message):
+        call()
