@@ -206,7 +206,7 @@ class LinearModel:
         return AXES[1 + self.turns]
 
     def _assembled(self, turns: int, at_rest: bool = False, kind: str = "") -> Assembly:
-        elements, own = self._elements_for(turns, kind)
+        elements, own = self._elements_for(0 if at_rest else turns, kind)
         if not at_rest:
             for element in elements:
                 element.check_axes(turns)
