@@ -8,6 +8,7 @@ from exudyn_rotor import (
     Foundation,
     LinearModel,
     RotorTrain,
+    SeriesSupport,
     SolidRotor,
     Support,
     Unbalance,
@@ -55,11 +56,18 @@ def test_axes_are_those_in_which_equations_are_constant(made, supports, axes, co
     assert model.at(0.0).is_constant
 
 
-@pytest.mark.parametrize("supports", [held(), held(UNEVEN, np.diag([300.0, 900.0]))])
-def test_axes_do_not_change_motions_seen_from_outside(supports):
+RINGS = [
+    SeriesSupport(interface=inner.interface, inner=inner, outer=outer, mass=9.0)
+    for inner, outer in zip(held(), held(1e4 * np.eye(2)), strict=True)
+]
+
+
+@pytest.mark.parametrize("supports", [held(), held(UNEVEN, np.diag([300.0, 900.0])), RINGS])
+@pytest.mark.parametrize("speed", [0.0, 150.0])
+def test_axes_do_not_change_motions_seen_from_outside(supports, speed):
     rotor = flat(1e4)
     both = [
-        campbell(rotor, [150.0], supports=supports, axes=axes, accuracy=None, modes=6)
+        campbell(rotor, [speed], supports=supports, axes=axes, accuracy=None, modes=6)
         for axes in ("inertial", "rotor")
     ]
     for name in ("frequencies_inertial", "growth"):
