@@ -291,15 +291,13 @@ class FiniteElementRotor:
         beyond = max(heights.min(), -heights.max())
         radius = np.linalg.norm(self.axis.radial(placed.position))
         widest = np.linalg.norm(self.axis.radial(around), axis=1).max()
-        if max(placed.distance, beyond / _BESIDE) <= reach and radius <= (1.0 + _BESIDE) * widest:
-            return
-        raise ValueError(
-            f"position: needs a place on the mesh, got {placed.position.tolist()} m, from which "
-            f"the next node, at {np.round(self.nodes[placed.node], 9).tolist()} m, is "
-            f"{placed.distance:.3g} m away; a wheel that is not meshed has its mass by add_disc, "
-            "and its unbalance by Unbalance(…) at an interface, or by a mass on the shaft's "
-            "surface that is larger as its radius is smaller"
-        )
+        if max(placed.distance, beyond / _BESIDE) > reach or radius > (1.0 + _BESIDE) * widest:
+            raise ValueError(
+                f"position: needs a place on the mesh, got {placed.position.tolist()} m, "
+                f"{placed.distance:.3g} m from the next node; a wheel that is not meshed has its "
+                "mass by add_disc, and its unbalance by Unbalance(…) at an interface, or by a mass "
+                "on the shaft's surface that is larger as its radius is smaller"
+            )
 
     def with_interface(
         self: Rotor, name: str, nodes: Sequence[int], weights: Sequence[float] | None = None

@@ -49,7 +49,7 @@ def wheel() -> tuple[float, tuple[float, float]]:
         ("interface_at", ("seat", 0.2, 0.0), "width"),
         ("interface_at", ("seat", 0.9, 0.1), "position, width: no node of the outer .* 0 to 0.4"),
         ("interface_at", ("seat", np.nan, 0.1), "position"),
-        ("add_point_mass", ([OUTER, 0.0, 0.25], 0.005), "0.08 m away; a wheel that is not meshed"),
+        ("add_point_mass", ([1.5 * RADIUS, 0.0, 0.25], 0.005), "0.01 m from the next node; a w"),
         ("add_point_mass", ([0.0, 0.0, LENGTH + 0.02], 0.005), "position: needs a place on the m"),
         ("add_point_mass", ([1e3 * RADIUS, 0.0, 1e3 * LENGTH], 0.005), "position: needs a place"),
     ],
