@@ -50,8 +50,9 @@ class TiltingPadBearing(Bearing):
 
     With `pad_inertia` the pads' tilts are coordinates, in scenes and in linear analyses. Without it
     linear analyses have stiffness and damping of whirl at the spin speed, as by unbalance, the
-    tilts eliminated, and scenes, in which a tilt has a history, take :meth:`linearised`, about the
-    middle of the bearing.
+    tilts eliminated. Free motions and harmonic forces of other frequencies get them as well, with
+    dampings that may be wrong by a factor of two: they need `pad_inertia`, of which a small one
+    does. Scenes, in which a tilt has a history, take :meth:`linearised`, about the middle.
 
     Parameters
     ----------
