@@ -82,11 +82,11 @@ class Between:
         x_t[5] += end.speed
         return x, x_t
 
-    def rows(self) -> np.ndarray:
-        """Return the rows J (6, size) of the rotor's motion against the base."""
-        J = np.zeros((6, self.size))
-        J[:, : self._first] = self.end.rows()
-        J[:, self._first : self._second] = -self.base.rows()
+    def rows(self, count: int = 6) -> np.ndarray:
+        """Return the first rows J (count, size) of the rotor's motion against the base."""
+        J = np.zeros((count, self.size))
+        J[:, : self._first] = self.end.rows(count)
+        J[:, self._first : self._second] = -self.base.rows()[:count]
         return J
 
     def rate_rows(self) -> np.ndarray:
@@ -179,15 +179,13 @@ class Connector(Between, ABC):
         damping = J.T @ D
         K, D = J.T @ (K @ J) + damping @ L, damping @ J
         if self.has_mass:
-            L, momentum = self.rate_rows()[:2], self.added_mass() * self.rows()[:2].T
+            L, momentum = self.rate_rows()[:2], self.added_mass() * self.rows(2).T
             K, D = K + momentum @ (self.end.speed * QUARTER[:2, :2] @ L), D + 2.0 * momentum @ L
         return K, D
 
     def mass_matrix(self) -> np.ndarray:
         """Return the mass matrix (size, size) of what goes with the rotor."""
-        J = np.zeros((2, self.size))
-        J[:, : self._first] = self.end.rows(2)
-        J[:, self._first : self._second] = -self.base.rows()[:2]
+        J = self.rows(2)
         return self.added_mass() * J.T @ J
 
     def item(self, whole: Connector | None = None) -> ObjectGenericODE2:
