@@ -180,6 +180,7 @@ ELSEWHERE = {
     "linear/own_frequency.py:own_motions": "do not settle at their own frequency",
     "linear/model/linear_model.py:warn_beyond": "keeps its ends for motions of",
     "linear/over.py:warn_of": "do not converge for all motions",
+    "multibody/supports/add_supports.py:values": "of its connector was changed; the force",
 }
 TEXTS = {place: text for place, (_, _, text) in PLACES.items()} | ELSEWHERE
 # places that several kinds of bodies reach
