@@ -39,7 +39,7 @@ class Selection:
     invariants : Invariants
         In the basis Ψ, about the origin, mesh axes.
     source : ReducedRotor
-        The rotor that it was taken from, without shapes; see :meth:`is_of`.
+        The rotor that it was taken from; see :meth:`is_of`.
     """
 
     T: np.ndarray
@@ -110,7 +110,7 @@ def select_modes(reduced: ReducedRotor, formulation: Formulation) -> Selection:
         kinds=tuple(reduced.kinds[i] for i in columns),
         labels=tuple(reduced.labels[i] for i in columns),
         invariants=_without_noise(invariants),
-        source=reduced.without_shapes(),
+        source=reduced,
     )
 
 
