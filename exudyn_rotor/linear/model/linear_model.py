@@ -31,6 +31,7 @@ from exudyn_rotor.linear.model.assembly import (
     Assembly,
     Element,
     End,
+    Powers,
     elements_of,
     rotors_of,
     stacked_coefficients,
@@ -283,7 +284,11 @@ class LinearModel:
         NoCoefficientsError
             For a speed beyond a table, or at which a film carries nothing.
         """
-        return self.assembly(speed).system(float(speed), frequency)
+        return self.assembly(speed).system(float(speed), frequency, self._added(speed))
+
+    def _added(self, speed: float) -> Powers:
+        """Return what acts beside the elements, at rest or at any other speed."""
+        return {}
 
     def at_all(
         self, speeds: Sequence[float], frequencies: Sequence[float] | None = None
@@ -317,7 +322,8 @@ class LinearModel:
         """Return the stack at speeds (s,), all zero or none, and why there are none at some."""
         if self._is_list:
             try:
-                return self.assembly(speeds[0]).system(speeds, frequencies), {}
+                added = self._added(speeds[0])
+                return self.assembly(speeds[0]).system(speeds, frequencies, added), {}
             except NO_EQUATIONS:
                 pass  # one by one, then
         found, refused = {}, {}

@@ -24,7 +24,7 @@ from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, UnconvergedError, joined
-from exudyn_rotor.linear.model.assembly import Assembly, End, Powers, put
+from exudyn_rotor.linear.model.assembly import NO_EQUATIONS, Assembly, End, Powers, put
 from exudyn_rotor.linear.model.body import RotorAlone, RotorBody, StandingBody
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.scene.journal_start import journal_start
@@ -38,6 +38,8 @@ _WAVE_FREE = 0.99  # share of a held motion that must be no lateral wave
 _TOLERANCE, _SMALLEST = 1e-8, 1e-5  # of an equilibrium, and [m] of the least that counts as one
 _SAME_LOAD, _NO_LOAD = 1e-6, 1e-9  # of a load, and of the rotor's weight
 _SAME = 0.05  # share of the stiffness of motions by which the unevenness of a mesh may change it
+_PACES = 0.0, 1e-4, 1e-2, 1.0  # speeds that are compared, over a frequency of the scene
+_SAME_SLOPE, _NO_SLOPE = 1e-6, 1e-12  # shares of a stiffness that are rounding of a difference
 _ROUNDING = 1e-7  # share of a matrix of Exudyn's differences that is their rounding
 # y(θ) by constant coordinates of a model: rows of the unknowns y, places of the coordinates, terms
 Part = tuple[np.ndarray, slice, Terms]
@@ -80,8 +82,43 @@ class SceneModel(LinearModel):
 
     @property
     def _is_list(self) -> bool:
-        follow = any(_follows_load(one.support) for one in self.scene.body.supports)
-        return not follow and not self._has_foreign
+        return self._constant is not None
+
+    @cached_property
+    def _constant(self) -> tuple[Powers, Powers] | None:
+        """What foreign forces add at rest and at any speed; None where it depends on the speed.
+
+        Or where a law depends on its load. User functions and drives may depend on the speed in a
+        way that few speeds do not show; all other forces are compared at speeds far apart.
+        """
+        scene, name = self.scene, "UserFunction"
+        functions = [X for one in scene.foreign_items for n, X in one.items() if n.endswith(name)]
+        follow = any(_follows_load(one.support) for one in scene.body.supports)
+        if follow or scene.body.drives or any(functions):
+            return None
+        if not self._has_foreign:
+            return {}, {}
+        running, found = self.assembly(1.0), []
+        stiffness = np.abs(np.diag(running.K))
+        pace = np.sqrt(np.median(stiffness / np.maximum(np.diag(running.M), 1e-300))) or 1.0
+        try:
+            for speed in np.multiply(_PACES, pace).tolist():
+                with probing(scene, speed) as probe:
+                    state = self._equilibrium(probe)
+                    found.append(self._foreign(probe, state, self.assembly(speed)))
+        except NO_EQUATIONS:
+            return None
+        rest, first, *others = found
+        size = np.sqrt(stiffness + np.abs(np.diag(first["K", 0, 0])))
+        least = _SAME_SLOPE * np.outer(size, size) + _NO_SLOPE * size.max() ** 2
+        for key, X in first.items():
+            most = least / pace if key[0] == "D" else least
+            if any(np.any(np.abs(one[key] - X) > most) for one in others):
+                return None
+        return rest, first
+
+    def _added(self, speed: float) -> Powers:
+        return self._constant[bool(speed)]
 
     def _alone(self, name: str, whole: bool) -> RotorAlone:
         return self.scene.rotor(super()._alone(name, whole), whole)
@@ -97,10 +134,21 @@ class SceneModel(LinearModel):
     def _is_alike(self) -> bool:
         return not self._has_foreign and super()._is_alike
 
-    @property
+    @cached_property
     def stiffness_varies(self) -> bool:
-        """Whether a stiffness depends on the speed; a foreign one may, with the equilibrium."""
-        return self._has_foreign or super().stiffness_varies
+        """Whether a stiffness depends on the speed; a foreign one may, with the equilibrium.
+
+        A constant one counts as such, too, where it is negative for a motion: speeds are searched
+        one by one then.
+        """
+        if not self._has_foreign or not self._is_list or super().stiffness_varies:
+            return self._has_foreign or super().stiffness_varies
+        try:
+            rest, basis = self.at(0.0), self.moving_basis
+        except NO_EQUATIONS:
+            return True
+        K = rest.K[0] if basis is None else rest.projected(basis).K[0]
+        return bool(np.linalg.eigvalsh(0.5 * (K + K.T)).min(initial=1.0) <= 0.0)
 
     @property
     def richer(self) -> LinearModel | None:
