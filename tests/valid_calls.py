@@ -318,7 +318,7 @@ CALLS = {
     "Support": {"stiffness": 1e6 * np.eye(3), "damping": 100.0},
     "FloatingRingBearing": {"inner": _FILM, "outer": _FILM},
     "SeriesSupport": {"inner": er.Support("left", 1e6), "outer": er.Support("left", 1e6)},
-    "Support.from_columns": {"source": {"speed": [0.0, 9e3], "kxx": [1e6, 2e6]}},
+    "Support.from_columns": {"source": {"speed": [0.0, 9e3], "kzz": [1e6, 2e6]}},
     "Support.from_table": {
         "speeds": [0.0, 9e3],
         "frequencies": [0.0, 1e3],

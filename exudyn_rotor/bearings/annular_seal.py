@@ -166,7 +166,7 @@ class AnnularSeal(Bearing):
         ------
         TypeError, ValueError
         """
-        return self._terms(speed)[2]
+        return _of_leakage(self, checks.number(speed, "speed", "rad/s"))[2]
 
     def linearised(self) -> Support:
         """Return the support for linear analyses, with the inertia of the leakage."""
@@ -174,7 +174,7 @@ class AnnularSeal(Bearing):
 
     def _matrices(self, speed: float, load: np.ndarray) -> Pair:
         """Return stiffness and damping of (2), without its inertia."""
-        return _of_leakage(self, float(speed))
+        return _of_leakage(self, float(speed))[:2]
 
     def clearance_along(self, direction: np.ndarray | None = None) -> float:
         """Return the clearance [m], which is the same in all directions."""
@@ -182,20 +182,20 @@ class AnnularSeal(Bearing):
 
     def law(self, x: float, y: float, vx: float, vy: float, angle: float, speed: float) -> Force:
         """Return the force on the journal but for its inertia [N]."""
-        K, D = _of_leakage(self, speed)
-        fx, fy = -K @ (x, y) - D @ (vx, vy)
-        return float(fx), float(fy)
+        K, D, _ = _of_leakage(self, speed)
+        (k, c), (d, g) = K[0].tolist(), D[0].tolist()  # alike in all directions
+        return -k * x - c * y - d * vx - g * vy, c * x - k * y + g * vx - d * vy
 
     def slopes(self, x: float, y: float, vx: float, vy: float, angle: float, speed: float) -> Pair:
         """Return less the derivatives (2, 2) of :meth:`law` by place and by velocity."""
-        return _of_leakage(self, speed)
+        return _of_leakage(self, speed)[:2]
 
 
 @lru_cache(maxsize=64)
-def _of_leakage(seal: AnnularSeal, speed: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return stiffness and damping; one speed is asked for at many instants."""
+def _of_leakage(seal: AnnularSeal, speed: float) -> tuple[np.ndarray, np.ndarray, float]:
+    """Return stiffness, damping and mass; one speed is asked for at many instants."""
     k, d, m = seal._terms(speed)
     turn, half = np.array([[0.0, 1.0], [-1.0, 0.0]]), 0.5 * speed
     stiffness = (k - half**2 * m) * np.eye(2) + half * d * turn
     damping = d * np.eye(2) + 2.0 * half * m * turn
-    return checks.read_only(stiffness), checks.read_only(damping)
+    return checks.read_only(stiffness), checks.read_only(damping), m

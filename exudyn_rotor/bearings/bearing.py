@@ -101,8 +101,7 @@ class LoadedBearing(ABC):
     def __post_init__(self) -> None:
         checks.label(self.interface, "interface")
         if self.load is not None:
-            load = checks.read_only(checks.vector(self.load, "load", "N", size=2))
-            object.__setattr__(self, "load", load)
+            checks.keep(self, load=checks.vector(self.load, "load", "N", size=2))
 
     def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
         """Return where the journal rests under a static load [m], shape (2,).
@@ -355,11 +354,11 @@ def bearing_of(support: object) -> Bearing | None:
     return next((each.bearing for each in given if isinstance(each, Linearised)), None)
 
 
-def check_clearance(clearance: float, radius: float) -> None:
+def check_clearance(clearance: float, radius: float, name: str = "clearance") -> None:
     """Refuse a clearance as large as the radius: one of a diameter, or in other units."""
     if clearance >= radius:
         raise ValueError(
-            f"clearance: needs the radial clearance, far below the radius of {radius:g} m, got "
+            f"{name}: needs the radial clearance, far below the radius of {radius:g} m, got "
             f"{clearance:g} m"
         )
 

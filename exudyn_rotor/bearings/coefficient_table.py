@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -17,12 +17,19 @@ from scipy.interpolate import PchipInterpolator
 from exudyn_rotor import checks
 from exudyn_rotor.storage import read_rows
 
-_KINDS = {"k": "stiffness", "c": "damping", "d": "damping", "m": "mass"}
+_KINDS = {"k": "stiffness", "c": "damping", "m": "mass"}
 _AXES = dict.fromkeys(("speed", "speeds", "rpm", "w", "omega"), "speeds")
 _AXES |= dict.fromkeys(("frequency", "frequencies", "freq", "whirl"), "frequencies")
-_TO_RADIANS = {"rad/s": 1.0, "rpm": np.pi / 30.0, "hz": 2.0 * np.pi}
+_TO_RADIANS = dict.fromkeys(("rpm", "1/min", "min-1", "u/min", "r/min", "cpm"), np.pi / 30.0)
+_TO_RADIANS |= {"rad/s": 1.0, "hz": 2.0 * np.pi}
+_TO_SI = {  # of coefficients, those by or of rotations among them
+    "k": {"N/m": 1.0, "N/mm": 1e3, "kN/m": 1e3, "kN/mm": 1e6, "MN/m": 1e6, "N": 1.0, "Nm": 1.0},
+    "c": {"Ns/m": 1.0, "Ns/mm": 1e3, "kNs/m": 1e3, "Ns": 1.0, "Nms": 1.0},
+    "m": {"kg": 1.0, "kgm": 1.0, "kgm²": 1.0},
+}
 _ROUNDING = 1e-6  # of the largest speed of a table
 _LETTERS = "xyzabc"  # displacement along n1, n2, e, then rotation about them
+_TURNED = str.maketrans("xyab", "yxba")  # a quarter turn about the axis
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,18 +58,12 @@ class CoefficientTable:
         """Return a table of numbers or matrices of some `shapes`, checked under a `name`."""
         if speeds is None and frequencies is None:
             raise ValueError(f"{name}: needs speeds, frequencies, or both [rad/s]")
-        axes = [
-            given
-            if given is None
-            else checks.ascending(given, f"{name}: {axis} of its table", "rad/s")
-            for given, axis in ((speeds, "the speeds"), (frequencies, "the frequencies"))
-        ]
-        if axes[1] is not None and axes[1][0] < 0.0:
-            raise ValueError(
-                f"{name}: the frequencies of its table: needs values ≥ 0 [rad/s], got "
-                f"{axes[1][0]:g}: a motion of the frequency −ω has the coefficients of ω"
-            )
-        lengths = tuple(len(axis) for axis in axes if axis is not None)
+        if speeds is not None:
+            speeds = checks.ascending(speeds, f"{name}: the speeds of its table", "rad/s")
+        if frequencies is not None:
+            where = f"{name}: the frequencies of its table"
+            frequencies = checks.ascending_from_zero(frequencies, where, "ω in place of −ω")
+        lengths = tuple(len(axis) for axis in (speeds, frequencies) if axis is not None)
         kept = checks.array(values, f"{name}: the values of its table")
         if kept.shape[: len(lengths)] != lengths or kept.shape[len(lengths) :] not in shapes:
             raise ValueError(
@@ -70,7 +71,7 @@ class CoefficientTable:
                 f"{rows_of(shapes)} rows{' or numbers' if () in shapes else ''}, as many as "
                 f"points, got the shape {kept.shape}"
             )
-        return cls(*axes, kept)
+        return cls(speeds, frequencies, kept)
 
     def at(self, speed: ArrayLike, frequency: ArrayLike) -> float | np.ndarray:
         """Return the value at a spin speed and the frequency of a motion [rad/s], or at pairs."""
@@ -129,27 +130,30 @@ def _smooth(points: np.ndarray, values: np.ndarray) -> Callable[[float], np.ndar
     return lambda at: curve(np.minimum(np.maximum(at, low), high))  # np.clip is slow
 
 
-def read_columns(source: str | Path | Any) -> dict[str, np.ndarray | None]:
+def read_columns(source: str | Path | Any) -> dict[str, np.ndarray]:
     """Return axes and coefficients, named as for :meth:`Support.from_table`, of a table."""
     axes: dict[str, np.ndarray] = {}
-    entries: dict[tuple[str, int, int], np.ndarray] = {}
+    entries: dict[str, np.ndarray] = {}
     for header, values in _columns(source).items():
         name, _, unit = header.replace("[", "(").partition("(")
         name = re.sub(r"[\s_]", "", name).lower()
-        entry = re.fullmatch(f"([{''.join(_KINDS)}])([{_LETTERS}])([{_LETTERS}])", name)
         if name in _AXES:
             unit = unit.strip(" )]").lower() or ("rpm" if name == "rpm" else "rad/s")
             if unit not in _TO_RADIANS:
                 raise ValueError(f"source: {header!r}: needs rad/s, rpm or Hz, got {unit!r}")
             axes[_AXES[name]] = values * _TO_RADIANS[unit]
-        elif entry:
-            kind, row, column = entry.groups()
-            entries[_KINDS[kind], _LETTERS.index(row), _LETTERS.index(column)] = values
+        elif re.fullmatch(f"[kcdm][{_LETTERS}]{{2}}", name):
+            name = name.replace("d", "c")
+            known, unit = _TO_SI[name[0]], re.sub(r"[\s·*.)\]]|/rad", "", unit)
+            if unit and unit not in known:
+                raise ValueError(f"source: {header!r}: needs {', '.join(known)}, got {unit!r}")
+            entries[name] = values * known.get(unit, 1.0)
         else:
             raise ValueError(
                 f"source: {header!r} is neither speed, frequency, nor a coefficient as kxx, cxy or "
                 "myy; rename it or leave it out"
             )
+    _check_whole(entries)
     if not axes:
         raise ValueError("source: needs a column 'speed' or 'frequency'")
     names = [name for name in ("speeds", "frequencies") if name in axes]
@@ -161,13 +165,24 @@ def read_columns(source: str | Path | Any) -> dict[str, np.ndarray | None]:
             f"source: needs one row for each pair of its {' and '.join(names)}, {count} in all, "
             f"got {len(places[0])} rows"
         )
-    size = 1 + max((max(place) for _, *place in entries), default=0)
-    size = 2 if size <= 2 else 3 if size == 3 else 6
-    found: dict[str, np.ndarray | None] = dict.fromkeys(("speeds", "frequencies"))
-    found |= dict(zip(names, points, strict=True))
+    last = max((_LETTERS.index(letter) for name in entries for letter in name[1:]), default=0)
+    size = 2 if last < 2 else 3 if last == 2 else 6
+    found = dict(zip(names, points, strict=True))
     for (kind, *place), values in entries.items():
-        found.setdefault(kind, np.zeros((*lengths, size, size)))[(*places, *place)] = values
+        table = found.setdefault(_KINDS[kind], np.zeros((*lengths, size, size)))
+        table[(*places, *map(_LETTERS.index, place))] = values
     return found
+
+
+def _check_whole(names: Collection[str]) -> None:
+    """Refuse kxx without kyy, kxy without kyx, and so on: hardly one of them is zero."""
+    alike = {*names, *(name.translate(_TURNED) for name in names)}
+    missing = {kind + pair for kind, i, j in alike for pair in (i + j, j + i)}.difference(names)
+    if missing:
+        raise ValueError(
+            f"source: needs {', '.join(sorted(missing))} beside {', '.join(sorted(names))}; give "
+            "columns of zeros for what does not act"
+        )
 
 
 def _columns(source: str | Path | Any) -> dict[str, np.ndarray]:

@@ -190,6 +190,7 @@ class FloatingRingBearing:
     0.3281
     """
 
+    carries: ClassVar[bool] = True
     _tried: ClassVar[np.ndarray] = HIGHER
 
     interface: str
@@ -215,6 +216,14 @@ class FloatingRingBearing:
             For bad input, and a speed at which a film does not carry the load.
         """
         return _ring(self, checks.number(speed, "speed", "rad/s"))
+
+    def films(self, speed: float) -> list[tuple[ShortJournalBearing, float]]:
+        """Return the films about the equilibrium, each with the speed by which it carries [rad/s].
+
+        Errors are those of :meth:`ring`.
+        """
+        ring = self.ring(speed).speed
+        return [(self.inner, speed + ring), (self.outer, ring)]
 
     def _torque(self, speed: float, ring_speed: float) -> float:
         """Return the torque of both films on the ring [N m], from n1 to n2."""
@@ -276,8 +285,5 @@ class _OfFilm(Linearised):
     outer: bool = False
 
     def _value(self, speed: float) -> np.ndarray:
-        ring = self.bearing.ring(speed).speed
-        film, whirl = self.bearing.inner, speed + ring
-        if self.outer:
-            film, whirl = self.bearing.outer, ring
+        film, whirl = self.bearing.films(speed)[self.outer]
         return film.coefficients(whirl, self.bearing.load)[self.index]

@@ -22,12 +22,7 @@ from scipy.optimize import brentq
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Pair
-from exudyn_rotor.bearings.short_film import (
-    THINNEST,
-    ShortFilmBearing,
-    film_force,
-    film_tangent,
-)
+from exudyn_rotor.bearings.short_film import THINNEST, ShortFilmBearing, film_force, film_tangent
 
 _MOST = 1.0 - 1e-9  # eccentricity ratio of an equilibrium
 

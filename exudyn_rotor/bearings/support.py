@@ -168,11 +168,13 @@ class Support:
         """Return a support with the coefficients of a text file or a pandas table, by columns.
 
         Columns are ``speed``, ``frequency`` or both, with a unit in brackets, as in
-        ``speed [rpm]`` or ``frequency (Hz)``, rad/s by default, and coefficients in SI units:
+        ``speed [rpm]`` or ``frequency (Hz)``, rad/s by default, and coefficients, SI by default:
         ``kxx``, ``kxy``, …, ``cxx``, … and ``mxx``, …, with x, y, z along (n1, n2, e) and a, b, c
-        about them. ``rpm`` and ``w`` are speeds, too. Entries without a column are zero. So are
-        files of ROSS and of XLTRC; of ROSS's ``BearingElement`` the array ``frequency`` is the
-        spin speed in synchronous analyses: name its column ``speed``.
+        about them. ``rpm`` and ``w`` are speeds, too. Units in brackets, as in ``Kxx [kN/mm]``, are
+        read as well; other ones are refused. Without a column are zero: all of one kind, both
+        cross terms, what acts along the axis or on tilts; ``kxx`` without ``kyy`` is refused.
+        Files of ROSS and of XLTRC are such tables; of ROSS's ``BearingElement`` the array
+        ``frequency`` is the spin speed in synchronous analyses: name its column ``speed``.
 
         Parameters
         ----------

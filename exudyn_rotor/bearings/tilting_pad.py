@@ -50,8 +50,9 @@ class TiltingPadBearing(Bearing):
 
     With `pad_inertia` the pads' tilts are coordinates, in scenes and in linear analyses. Without it
     linear analyses have stiffness and damping of whirl at the spin speed, as by unbalance, the
-    tilts eliminated, and scenes, in which a tilt has a history, take :meth:`linearised`, about the
-    middle of the bearing.
+    tilts eliminated. Free motions and harmonic forces of other frequencies get them as well, with
+    dampings that may be wrong by a factor of two: they need `pad_inertia`, of which a small one
+    does. Scenes, in which a tilt has a history, take :meth:`linearised`, about the middle.
 
     Parameters
     ----------
@@ -184,6 +185,10 @@ class TiltingPadBearing(Bearing):
         soft = min(mass * speed**2, _HELD * float(np.abs(whole).max()))
         held = np.array([soft, 4.0 * np.sqrt(soft * mass)])  # overdamped: no vibration of its own
         return state.ports(held)
+
+    def static_stiffness(self, speed: float, load: np.ndarray) -> np.ndarray:
+        """Return the stiffness against slow changes of a load, (2, 2) [N/m], unchecked."""
+        return self._state(speed, load).impedance(0.0).real
 
     def _state(self, speed: float, load: np.ndarray) -> _Pads:
         """Return the pads in equilibrium."""

@@ -249,17 +249,11 @@ class Foundation:
         checks.instance(solid, "solid", (SolidRotor, ReducedRotor))
         mounts = checks.instances(mounts, "mounts", Mount)
         places = _positions(points, "points")
-        named = [("points", name) for name in points] + [("mounts", m.at) for m in mounts]
-        for what, name in named:
-            if not isinstance(name, str) or name not in solid.interfaces:
-                raise ValueError(
-                    f"{what}: {checks.shown(name)} is no interface of the solid; it has: "
-                    f"{', '.join(solid.interfaces) or 'none'}"
-                )
+        used = checks.labels(tuple(points), "points", solid.interfaces)
+        used += checks.labels([mount.at for mount in mounts], "mounts", solid.interfaces)
         if isinstance(solid, SolidRotor):
             count = checks.count(modes, "modes")
-            used = list(dict.fromkeys(name for _, name in named))
-            basis = craig_bampton_modes(solid, count, used, coupling="RBE3")
+            basis = craig_bampton_modes(solid, count, list(dict.fromkeys(used)), coupling="RBE3")
             solid = solid.reduce(basis, prestress=False).without_shapes()
         if solid.invariants.H is not None:
             raise ValueError(

@@ -45,12 +45,10 @@ class PointMass(Checked):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from exudyn_rotor import SolidRotor
-    >>> rotor = SolidRotor.from_matrices(np.eye(3), 1e6 * np.eye(3), [[0.1, 0, 0]], "z")
-    >>> placed = rotor.add_point_mass([0.1, 0.02, 0], 0.005).point_masses[0]
-    >>> placed.node, placed.mass, placed.distance
-    (0, 0.005, 0.02)
+    >>> from exudyn_rotor import rotor_example
+    >>> placed = rotor_example().add_point_mass([0, 0, 0.08], 0.005).point_masses[0]
+    >>> placed.node, placed.mass, round(placed.distance, 9)
+    (1, 0.005, 0.02)
     """
 
     position: np.ndarray = numbers(3)

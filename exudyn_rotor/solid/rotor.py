@@ -140,6 +140,8 @@ LOSS_LEFT_OUT = (
     "is viscous damping that is equal at the frequency ν [rad/s] seen in the rotor frame"
 )
 
+_BESIDE = 0.1  # of the elements' size and radius: how far beside a mesh a point mass may be
+
 AxisLike = SpinAxis | str | ArrayLike
 Rotor = TypeVar("Rotor", bound="FiniteElementRotor")
 
@@ -261,21 +263,41 @@ class FiniteElementRotor:
     def add_point_mass(self: Rotor, position: ArrayLike, mass: float) -> Rotor:
         """Return the rotor with `mass` [kg] added to the node next to `position` [m].
 
-        The distance to that node is kept in :attr:`point_masses`. A negative mass takes material
-        away.
+        The mass has the radius and the height of that node; the distance to it is kept in
+        :attr:`point_masses`. A negative mass takes material away.
 
         Raises
         ------
         ValueError
             If the mass is zero or not finite, more is taken away than the node carries, the
-            position is not finite, or the rotor carries a prestress, whose load would change.
+            position is not finite or not on the mesh, as the rim of a wheel of :meth:`add_disc`,
+            or the rotor carries a prestress, whose load would change.
         """
         check_unstressed(self)
         node = self.nearest_node(position)
         matrix = matrices.frozen(add_nodal_mass(self.mass, node, mass))
         distance = float(np.linalg.norm(self.nodes[node] - np.asarray(position, dtype=float)))
         placed = PointMass(position, node, mass, distance)
+        self._check_on_mesh(placed)
         return replace(self, mass=matrix, point_masses=(*self.point_masses, placed))
+
+    def _check_on_mesh(self, placed: PointMass) -> None:
+        """Raise ValueError if a mass is beyond the nodes that share an element with its node."""
+        rows = slice(3 * placed.node, 3 * placed.node + 3)
+        coupled = np.concatenate([self.mass[rows].indices, self.stiffness[rows].indices])
+        around = self.nodes[np.unique(coupled // 3)]
+        reach = np.linalg.norm(around - self.nodes[placed.node], axis=1).max()
+        heights = (around - placed.position) @ self.axis.direction
+        beyond = max(heights.min(), -heights.max())
+        radius = np.linalg.norm(self.axis.radial(placed.position))
+        widest = np.linalg.norm(self.axis.radial(around), axis=1).max()
+        if max(placed.distance, beyond / _BESIDE) > reach or radius > (1.0 + _BESIDE) * widest:
+            raise ValueError(
+                f"position: needs a place on the mesh, got {placed.position.tolist()} m, "
+                f"{placed.distance:.3g} m from the next node; a wheel that is not meshed has its "
+                "mass by add_disc, and its unbalance by Unbalance(…) at an interface, or by a mass "
+                "on the shaft's surface that is larger as its radius is smaller"
+            )
 
     def with_interface(
         self: Rotor, name: str, nodes: Sequence[int], weights: Sequence[float] | None = None
@@ -343,7 +365,7 @@ class FiniteElementRotor:
         The disc holds the outer surface rigid in a band, as a wheel that is shrunk on; its mass
         and inertia have all gyroscopic and centrifugal terms. It carries its own centrifugal load
         and stresses the rotor by its motion alone. Its centre is on the spin axis in the middle of
-        the band; unbalance is added by :meth:`add_point_mass`.
+        the band; its unbalance is an :class:`Unbalance` at `name`.
 
         Parameters
         ----------

@@ -3,7 +3,7 @@
 With the stiffness K of rotors and linear supports, the loads f, and forces R of the other bearings
 on journals that move by ``u = U y``, Newton's method solves both equations together,
 
-    K y − Σ Uᵀ R = f,    A u + A_s u_s + B R = c  (:mod:`exudyn_rotor.bearings.resting`).
+    K y − Σ Uᵀ R = f,    A u + A_s u_s + B R = c  (:mod:`exudyn_rotor.static.resting`).
 """
 
 from __future__ import annotations
@@ -13,7 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from exudyn_rotor.bearings.resting import (
+from exudyn_rotor.linear.equations import UnconvergedError, others
+from exudyn_rotor.linear.solve.forced import static_motion
+from exudyn_rotor.static.resting import (
     HELD,
     UNLOADED,
     Nonlinear,
@@ -22,8 +24,6 @@ from exudyn_rotor.bearings.resting import (
     resting,
     starting_place,
 )
-from exudyn_rotor.linear.equations import UnconvergedError, others
-from exudyn_rotor.linear.solve.forced import static_motion
 
 _MOST, _CONVERGED = 100, 1e-8  # of Newton's steps; of the largest force, of each place
 _LEAST = 1e-3  # of the largest place: a smaller one, as in a rigid bearing, is rounding of it

@@ -13,9 +13,9 @@ from functools import cached_property
 
 import numpy as np
 
+from exudyn_rotor.bearings.annular_seal import AnnularSeal
 from exudyn_rotor.bearings.given import Given, check_interfaces
-from exudyn_rotor.bearings.resting import Nonlinear, RigidBearing
-from exudyn_rotor.bearings.series import FloatingRingBearing, SeriesSupport
+from exudyn_rotor.bearings.series import SeriesSupport
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.equations import Terms, turned
 from exudyn_rotor.linear.model.assembly import Assembly
@@ -23,12 +23,21 @@ from exudyn_rotor.linear.model.body import RotorBody
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
-from exudyn_rotor.linear.response.loads import At, BaseAcceleration, HarmonicForce, places, total
+from exudyn_rotor.linear.response.loads import (
+    At,
+    BaseAcceleration,
+    HarmonicForce,
+    place,
+    places,
+    total,
+)
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.static.equilibrium import Journals, equilibrium
+from exudyn_rotor.static.resting import Nonlinear, RigidBearing
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_skew
 
 _ROUNDING = 1e-9  # share of a load that is none
+_BALANCED = 1e-3  # share of torques, and of forces at the radius of gyration, left over unnoticed
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,11 +46,13 @@ class Problem:
 
     The `model` has the linear supports; a bearing is a spring without stiffness there, its sensor
     another. What each element is stands in `acting`: a support or link, a bearing, or the number of
-    the element whose sensor it is.
+    the element whose sensor it is. The inner part of a bearing in series comes before the outer
+    one, whose numbers are `outer`; the place of its ring is among the coordinates.
     """
 
     model: LinearModel
     acting: tuple[object, ...]
+    outer: tuple[int, ...]
     speed: float
     frame: str
 
@@ -66,30 +77,27 @@ class Problem:
                 "target: needs a rotor, a train or a linear model of these; of a scene, "
                 "steady_state(body) finds the equilibrium"
             )
-        acting, plain = [], {}
+        acting, outer, plain = [], [], {}
         for name, given in model.supports.items():
             plain[name] = []
             for one in given:
-                if isinstance(one, SeriesSupport | FloatingRingBearing):
-                    one = Support(one.interface, one.linearised().static_stiffness)
-                linear = isinstance(one, Support)
-                if linear and (frame == "inertial" or not speed):  # what stands still has no mass
-                    one = replace(one.at_frequency(0.0), mass=0.0)
-                if not linear and frame == "rotor" and speed:
-                    raise ValueError(
-                        f"frame: the bearing at {one.interface!r} stands still, and its force is "
-                        "not proportional; loads that turn with the rotor need supports that are "
-                        "alike in all directions"
-                    )
-                plain[name].append(one if linear else Support(one.interface))
-                acting.append(one)
+                is_series = isinstance(one, SeriesSupport)
+                parts = (one.inner, one.outer) if is_series else (one,)
+                laws = [_law(part, frame == "rotor" and speed != 0.0) for part in parts]
+                springs = [x if isinstance(x, Support) else Support(x.interface) for x in laws]
+                acting += laws
+                if is_series:
+                    outer.append(len(acting) - 1)
+                    springs = [replace(one, inner=springs[0], outer=springs[1])]
+                plain[name] += springs
                 if getattr(one, "sensor", None):
                     plain[name].append(Support(one.sensor))
                     acting.append(len(acting) - 1)
         acting += model.links
         # at rest nothing is averaged, and all modes count, halves of pairs among them
         axes = "inertial" if frame == "inertial" and speed else "rotor"
-        return cls(replace(model, supports=plain, wanted_axes=axes), tuple(acting), speed, frame)
+        model = replace(model, supports=plain, wanted_axes=axes)
+        return cls(model, tuple(acting), tuple(outer), speed, frame)
 
     @property
     def _assembly(self) -> Assembly:
@@ -128,6 +136,7 @@ class Problem:
             HarmonicForce(at, wrench[:3] @ self.axes, wrench[3:] @ self.axes, self.frame)
             for at, wrench in loads.items()
         ]
+        self._check_torque(acting)
         if np.any(gravity):
             along = gravity @ self.axes
             if self._turns and np.abs(along[:2]).max() > _ROUNDING * np.linalg.norm(gravity):
@@ -136,6 +145,28 @@ class Problem:
         if acting:
             load += total(acting, self.model, self.speed)[0].real
         return load
+
+    def _check_torque(self, loads: Sequence[HarmonicForce]) -> None:
+        """Refuse a torque left over on a free spin of a train."""
+        model = self.model
+        spins = model.free_spins
+        if len(model.rotors) == 1 or not spins.shape[1] or not loads:
+            return
+        given = spins.T @ total(loads, model, self.speed)[0].real
+        turned_by = [
+            place(model, one.at, self.speed).seen[0][5].real @ spins @ given for one in loads
+        ]
+        most = int(np.argmax(np.abs(turned_by)))
+        size = sum(
+            np.linalg.norm(one.moment) + model.radius * np.linalg.norm(one.force) for one in loads
+        )
+        if given @ given > _BALANCED * size * abs(turned_by[most]):
+            raise ValueError(
+                f"loads: they leave a torque of {given @ given / turned_by[most]:.4g} N m over "
+                f"at {loads[most].at!r}, about the axis, on a spin that nothing holds; balance it, "
+                "name the rotor that a drive holds in RotorTrain(…, driven=[…]), or give a support "
+                "that holds the spin"
+            )
 
     @property
     def axes(self) -> np.ndarray:
@@ -176,7 +207,8 @@ class Problem:
                 )
         y, forces = equilibrium(self.stiffness, load, self._journals, model.free_spins)
         if y is None:
-            free = " or ".join(model.free_motions) or "a combination of rigid motions"
+            names = [name for name in model.free_motions if "spin" not in name]  # drives hold them
+            free = " or ".join(names) or "a combination of rigid motions"
             raise ValueError(
                 f"loads: one acts on {free}, a motion that no support holds; give one that does (a "
                 "3 × 3 stiffness acts along the axis, too)"
@@ -189,7 +221,11 @@ class Problem:
         motion = np.array([self._still(one.seen) @ y for one in observed])
         motion[[one.is_node for one in observed], 3:] = np.nan
         own = dict(zip(self._bearings, forces, strict=True))
-        shown = [i for i, one in enumerate(self.acting) if not isinstance(one, int)]
+        shown = [
+            i
+            for i, one in enumerate(self.acting)
+            if not isinstance(one, int) and i not in self.outer
+        ]
         reactions, moved = np.zeros((2, len(shown), 6))
         for row, i in enumerate(shown):
             u = self._motions[i] @ y
@@ -197,6 +233,8 @@ class Problem:
             K, D = elements[i].matrices(self.speed, 0.0)
             K = K + (self._turns - elements[i].turns) * self.speed * D @ axial_skew(len(D))
             moved[row], reactions[row] = u[:6], -(K @ u)[:6]
+            if i + 1 in self.outer:
+                moved[row] += self._motions[i + 1] @ y
             reactions[row, :2] += own.get(i, 0.0)
         names = [self._label(elements[i].ends) for i in shown]
         begins = [self._label(elements[i].ends[:1]) for i in shown]
@@ -245,6 +283,24 @@ class Problem:
             "displacement": (rotor.shapes.matrix @ x).reshape(-1, 3),
             "stress": rotor.shapes.stress @ x + rest if stress else None,
         }
+
+
+def _law(one: Given | RigidBearing, turns: bool) -> Support | Nonlinear:
+    """Return a linear support as it is for motions that stand still, or `turn` with the rotor.
+
+    A bearing that is not linear is returned as it is given.
+    """
+    if isinstance(one, AnnularSeal):
+        one = one.linearised()
+    if isinstance(one, Support):  # what stands still has no mass
+        return one if turns else replace(one.at_frequency(0.0), mass=0.0)
+    if turns:
+        raise ValueError(
+            f"frame: the bearing at {one.interface!r} stands still, and its force is not "
+            "proportional; loads that turn with the rotor need supports that are alike in all "
+            "directions"
+        )
+    return one
 
 
 def _different(names: Sequence[str]) -> tuple[str, ...]:

@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
-from exudyn_rotor.bearings.resting import RigidBearing
 from exudyn_rotor.linear.modal.basis_error import is_known, motion_error, warn
 from exudyn_rotor.linear.model.build import warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel
@@ -20,6 +19,7 @@ from exudyn_rotor.reduction.reduce import reduce, reduced_for_loads
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.static.problem import Problem
+from exudyn_rotor.static.resting import RigidBearing
 from exudyn_rotor.static.static_result import StaticResponse
 from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.theory.stiffening import CHOICES
@@ -44,7 +44,8 @@ def static_response(
     """Compute deflection and reactions under loads that stand still.
 
     Bearings need no static load here: their forces and the places of their journals are what is
-    found, of films, magnets and rolling elements as of springs. A film carries at a speed only.
+    found, of films, magnets and rolling elements as of springs, alone and in series. A film carries
+    at a speed only.
 
     Parameters
     ----------
@@ -80,14 +81,17 @@ def static_response(
     ------
     TypeError, ValueError
         For a target, load or support of another kind, an unknown place, a load on a motion that
-        nothing holds, a film that does not carry, and a moment at a node.
+        nothing holds, a torque left over on a free spin of a train, a film that does not carry, and
+        a moment at a node.
     UnconvergedError
         Where bearings have no equilibrium.
 
     Notes
     -----
-    A drive holds a spin that no support holds. The elements of a rolling bearing stand as at
-    θ = 0. An uneven rotor has at a speed the mean of its stiffness over a turn.
+    A drive holds the free spin of a single rotor, and its torque is the reaction; torques on a
+    train must balance where nothing holds its spin, or ``driven`` names the rotor with the drive.
+    The elements of a rolling bearing stand as at θ = 0. The ring of a bearing in series has no
+    weight here. An uneven rotor has at a speed the mean of its stiffness over a turn.
 
     Examples
     --------

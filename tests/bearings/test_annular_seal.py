@@ -1,28 +1,21 @@
 """Annular seal: coefficients against the perturbed bulk flow, and in a scene."""
 
 from dataclasses import replace
+from unittest.mock import patch
 
 import exudyn as exu
 import numpy as np
 import pytest
 from test_supports_in_scenes import SPEED, rings
 
-from exudyn_rotor import (
-    AnnularSeal,
-    Support,
-    add_rotor,
-    add_supports,
-    campbell,
-    linear_model,
-    recommended_settings,
-)
+import exudyn_rotor as er
 
 WATER = {"pressure_drop": 1.2e6, "density": 1000.0, "viscosity": 1e-3}
 SIZE = {"radius": 0.1, "length": 0.05, "clearance": 3e-4}
 
 
 def seal(**changes):
-    return AnnularSeal(interface="left", **(SIZE | WATER | changes))
+    return er.AnnularSeal(interface="left", **(SIZE | WATER | changes))
 
 
 def mean_pressure(s, sigma, xi):
@@ -82,19 +75,27 @@ def test_without_friction_nothing_centres_and_a_seal_carries_no_load():
 def test_inertia_of_a_fluid_is_that_of_a_mass_in_scenes_and_lists():
     """A rigid rotor between two springs k, with m at both: ω² = 2 k/(M + 2 m)."""
     reduced, k, m = rings(heavy=0.0, modes=0), 1e6, 3.0
-    supports = [Support(name, k, mass=m) for name in ("left", "right")]
+    supports = [er.Support(name, k, mass=m) for name in ("left", "right")]
     expected = np.sqrt(2.0 * k / (reduced.invariants.mass + 2.0 * m))
-    found = campbell(reduced, [0.0], supports=supports, accuracy=None).frequencies_rotor
+    found = er.campbell(reduced, [0.0], supports=supports, accuracy=None).frequencies_rotor
     assert np.abs(found - expected).min() < 1e-9 * expected
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, reduced, spin=0.0, initial_velocity=[0.1, 0.0, 0.0])
-    add_supports(body, supports)
+    body = er.add_rotor(mbs, reduced, spin=0.0, initial_velocity=[0.1, 0.0, 0.0])
+    er.add_supports(body, supports)
     mbs.Assemble()
-    settings = recommended_settings(end_time=0.5 * np.pi / expected, step=0.005 / expected)
+    settings = er.recommended_settings(end_time=0.5 * np.pi / expected, step=0.005 / expected)
     settings.solution.file.write = False
     mbs.SolveDynamic(settings)
     amplitude = 0.1 / expected
     assert body.coordinates()[0][0] == pytest.approx(amplitude, rel=1e-4)
+
+
+def test_the_leakage_is_found_once_for_a_speed():
+    with patch.object(er.AnnularSeal, "axial_velocity", return_value=10.0) as find:
+        one = seal()
+        for law in (one.added_mass, one.coefficients, lambda speed: one.law(*5 * [0.0], speed)):
+            law(SPEED)
+    assert find.call_count == 2  # and once at rest, for the Reynolds number
 
 
 @pytest.mark.parametrize("spin", [{"spin": SPEED}, {}], ids=["prescribed", "free"])
@@ -107,10 +108,10 @@ def test_whirl_in_a_seal_is_that_of_the_theory(spin):
     polynomial = [mass + 2 * m, 2 * (d - 2 * m * half), 2 * (k - d * half + m * half**2)]
     expected = np.roots(polynomial)
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, reduced, **spin)
-    add_supports(body, seals)
+    body = er.add_rotor(mbs, reduced, **spin)
+    er.add_supports(body, seals)
     mbs.Assemble()
-    for model in (linear_model(reduced, supports=seals), linear_model(mbs, body=body)):
+    for model in (er.linear_model(reduced, supports=seals), er.linear_model(mbs, body=body)):
         system = model.at(SPEED)
         M, D, K = system.matrices()
         A = np.block([[0 * M, np.eye(len(M))], [-np.linalg.solve(M, K), -np.linalg.solve(M, D)]])

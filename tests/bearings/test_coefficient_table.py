@@ -47,11 +47,15 @@ def text(separator, header, rows):
 
 
 HEADER = ("Speed (rpm)", "Kxx", "Kxy", "Kyx", "Kyy", "Cxx", "Cxy", "Cyx", "Cyy")
+UNITS = [f"{name} [{'kN/m' if name[0] == 'K' else 'N·s/mm'}]" for name in HEADER[1:]]
 ROWS = [(3000, 1e7, 2e6, -2e6, 3e7, 1e3, 0, 0, 2e3), (6000, 2e7, 3e6, -3e6, 4e7, 2e3, 1, 1, 3e3)]
 FILES = {
     "XLTRC": text("\t", HEADER, ROWS),
     "commas": text(",", HEADER, ROWS[::-1]),
     "semicolons": "# measured\n" + text(";", ("rpm", *HEADER[1:]), ROWS) + "\n\n",
+    "units": text(
+        "\t", ("speed [U/min]", *UNITS), [(row[0], *np.multiply(1e-3, row[1:])) for row in ROWS]
+    ),
     "hertz": text(
         ",", ("frequency [Hz]", *HEADER[1:]), [(row[0] / 60.0, *row[1:]) for row in ROWS]
     ),
@@ -72,7 +76,7 @@ def test_files_of_other_programs(kind, tmp_path):
 
 def test_a_grid_of_speeds_and_frequencies_in_any_order_of_rows():
     s, f = (X.ravel() for X in np.meshgrid(SPEEDS, FREQUENCIES))
-    table = {"w": s, "freq": f, "mzz": s + f, "kaa": s - f}
+    table = {"w": s, "freq": f, "mzz": s + f, "kaa": s - f, "kbb [N m/rad]": s}
     made = Support.from_columns("left", table)
     assert made.mass_matrix(200.0, 60.0)[2, 2] == pytest.approx(260.0)
     assert made.matrices(200.0, 60.0)[0][3, 3] == pytest.approx(140.0)

@@ -170,6 +170,7 @@ ELSEWHERE = {
     "linear/response/response.py:warn_of_undamped": "nothing damps the resonance at",
     "evaluation/separation.py:_warn_of_speeds_left_out": "count, and the response is known from",
     "linear/model/build.py:warn_of_omissions": "campbell finds modes without it",
+    "linear/model/build.py:_warn_of_mesh": "counts as uneven",
     "solvers/factor.py:_tell_of_mkl": "exudyn-rotor\\[mkl\\]",
     "solid/meshes/mesh_model.py:import_model": "taken as",
     "theory/stiffening.py:warn_of_left_out": "beyond 'tilt' is left out",
@@ -179,6 +180,7 @@ ELSEWHERE = {
     "linear/own_frequency.py:own_motions": "do not settle at their own frequency",
     "linear/model/linear_model.py:warn_beyond": "keeps its ends for motions of",
     "linear/over.py:warn_of": "do not converge for all motions",
+    "multibody/supports/add_supports.py:values": "of its connector was changed; the force",
 }
 TEXTS = {place: text for place, (_, _, text) in PLACES.items()} | ELSEWHERE
 # places that several kinds of bodies reach

@@ -80,7 +80,7 @@ def test_bad_foundations_are_refused():
         (lambda: Foundation.from_modes([1.0], 2.0, one), "damping_ratios: needs .* ≥ 0 and ≤ 1"),
         (lambda: Foundation.from_modes([1.0], 0.0, one, masses=[[1.0], 2.0]), "masses: needs"),
         (lambda: Mount("left", -1.0), "stiffness: needs a finite number"),
-        (lambda: Foundation.from_solid(holed, POINTS), "'left' is no interface of the solid"),
+        (lambda: Foundation.from_solid(holed, POINTS), "points: 'left' is unknown; there are"),
         (lambda: Foundation.from_solid(rings().with_damping(loss=0.1), POINTS), "is for steady"),
         (lambda: Foundation.rigid(1.0, [1] * 3, [0] * 3, [Mount("left", 1.0)], {}), "needs places"),
         (lambda: Foundation(unit, unit, unit, points).motion("top", [0] * 3), "only for: left"),

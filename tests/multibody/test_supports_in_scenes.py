@@ -140,9 +140,21 @@ def test_a_film_takes_the_rotor_that_carries_it_along(driven):
     assert reduced.invariants.Theta * (speed - start) == pytest.approx(torque * 0.05, rel=2e-3)
 
 
-def test_a_support_that_was_deleted_is_named():
-    mbs, body, added = on_supports(rings(), [er.Support("left", 1e6, 50.0), HELD], spin=SPEED)
-    mbs.DeleteObject(added[0].objects[0], suppressWarnings=True)
+@pytest.mark.parametrize("change", [{"stiffness": [4e6] * 3}, {"activeConnector": False}])
+def test_a_connector_that_was_changed_or_deleted_is_named(change):
+    """What analyses of a model that was made before do to the scene leaves it changed."""
+    stop = er.ClearanceStop(interface="right", radius=0.1, clearance=1e-3, stiffness=1e6)
+    mbs, body, added = on_supports(rings(), [er.Support("left", 1e6), HELD, stop], spin=SPEED)
+    (number,), ((name, value),) = added[0].objects, change.items()
+    before = er.linear_model(mbs, body=body)
+    mbs.SetObjectParameter(number, name, value)
+    before.at(SPEED)
+    np.testing.assert_array_equal(mbs.GetObjectParameter(number, name), value)
+    with pytest.raises(ValueError, match=f"'left': {name} of its connector was changed"):
+        er.linear_model(mbs, body=body)
+    with pytest.warns(UserWarning, match=f"'left': {name} of its"):
+        assert np.isnan(added[0].values()[2]).all()
+    mbs.DeleteObject(number, suppressWarnings=True)
     mbs.Assemble()
     with pytest.raises(ValueError, match=r"'rotor' under its numbers: left by .* build the scene"):
         er.linear_model(mbs, body=body)

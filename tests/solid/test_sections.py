@@ -43,17 +43,20 @@ def wheel() -> tuple[float, tuple[float, float]]:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "words"),
+    ("call", "arguments", "words"),
     [
-        (("left", 0.2, 0.1), "exists already"),
-        (("seat", 0.2, 0.0), "width"),
-        (("seat", 0.9, 0.1), r"position, width: no node of the outer .* from 0 to 0.4"),
-        (("seat", np.nan, 0.1), "position"),
+        ("interface_at", ("left", 0.2, 0.1), "exists already"),
+        ("interface_at", ("seat", 0.2, 0.0), "width"),
+        ("interface_at", ("seat", 0.9, 0.1), "position, width: no node of the outer .* 0 to 0.4"),
+        ("interface_at", ("seat", np.nan, 0.1), "position"),
+        ("add_point_mass", ([1.5 * RADIUS, 0.0, 0.25], 0.005), "0.01 m from the next node; a w"),
+        ("add_point_mass", ([0.0, 0.0, LENGTH + 0.02], 0.005), "position: needs a place on the m"),
+        ("add_point_mass", ([1e3 * RADIUS, 0.0, 1e3 * LENGTH], 0.005), "position: needs a place"),
     ],
 )
-def test_bands_that_hold_nothing_are_refused(arguments, words):
+def test_places_beside_the_rotor_are_refused(call, arguments, words):
     with pytest.raises(ValueError, match=words):
-        shaft().interface_at(*arguments)
+        getattr(shaft(), call)(*arguments)
 
 
 def test_disc_adds_its_mass_and_moments():

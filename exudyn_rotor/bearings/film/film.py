@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.bearing import check_clearance
 from exudyn_rotor.bearings.film.grid import Axial, Grid
 from exudyn_rotor.bearings.film.pads import Pad
 from exudyn_rotor.bearings.film.reynolds import CAVITATION, Equation, Solution
@@ -194,11 +195,7 @@ class OilFilm:
         if self.axial_nodes == 1:
             raise ValueError("axial_nodes: needs 0 (one profile), or 2 nodes or more, got 1")
         pads = _in_order(checks.instances(self.pads, "pads", Pad))
-        widest = max(pad.clearance for pad in pads)
-        if widest >= self.radius:
-            raise ValueError(
-                f"pads: need clearances far below the radius of {self.radius:g} m, got {widest:g} m"
-            )
+        check_clearance(max(pad.clearance for pad in pads), self.radius, "pads")
         half = 0.5 * self.length / self.radius
         axial = Axial.volumes(half, self.axial_nodes) if self.axial_nodes else Axial.profile(half)
         checks.keep(self, pads=pads, grid=Grid(pads, self.nodes, axial))

@@ -7,12 +7,15 @@ The spring is relaxed where the interface stands at rest with its centre on the 
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass
 
 import exudyn
 import numpy as np
 
+from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing, bearing_of
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
 from exudyn_rotor.bearings.magnetic import MagneticBearing
@@ -20,6 +23,7 @@ from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.series import FloatingRingBearing, SeriesSupport
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
+from exudyn_rotor.calls import user_level
 from exudyn_rotor.multibody.supports.connector import (
     CURRENT,
     PYTHON,
@@ -36,6 +40,7 @@ from exudyn_rotor.multibody.supports.ends import Base, RotorEnd, Seat
 from exudyn_rotor.multibody.supports.native import native_parts
 
 _PARALLEL = 1e-9  # of the cosine between axes of two rotors
+_OF_NO_FORCE = "objectType", "name", "markerNumbers", "nodeNumber", "V"  # parameters of connectors
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +62,36 @@ class SceneSupport(SceneLaw):
     support: Given
     base: Base | None = None
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        checks.keep(self, _made=self._parameters())
+
+    def _parameters(self) -> dict[str, list]:
+        """Return what connectors of Exudyn have for this support, each name's values in a list."""
+        found: dict[str, list] = {}
+        for number, by in zip(self.objects, self.evaluation, strict=True):
+            for name, value in () if by == PYTHON else self.body.mbs.GetObject(number).items():
+                if not name.startswith(_OF_NO_FORCE):
+                    value = value.tolist() if isinstance(value, np.ndarray) else value
+                    found.setdefault(name, []).append(value)
+        return found
+
+    def check_present(self) -> None:
+        """Raise ValueError where objects were deleted, switched off, or got other parameters."""
+        super().check_present()
+        if changed := self._changed():
+            raise ValueError(
+                f"{changed}, which analyses do not follow: build the scene anew with the Support "
+                "that is meant, or without what is switched off"
+            )
+
+    def _changed(self) -> str:
+        """Return which parameters of its connectors is not as it was added; nothing where none."""
+        now, where = self._parameters(), f"support at {self.support.interface!r}"
+        names = ", ".join(each for each in now if now[each] != self._made.get(each))
+        named = f"mbs: rotor {self.body.name!r}, {where}: {names} of its connector was changed"
+        return named if names else ""
+
     def own_coordinates(self, mbs: exudyn.MainSystem) -> np.ndarray:
         """Return where coordinates of its own are in an assembled system, shape (p,); else none."""
         made = self.connector
@@ -68,13 +103,18 @@ class SceneSupport(SceneLaw):
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return displacement [m], velocity [m/s] and force [N] on the rotor there, each (3,).
 
-        Along (n1, n2, e). Displacement and velocity are those against the base.
+        Along (n1, n2, e). Displacement and velocity are those against the base. The force is NaN,
+        with a warning, where parameters of its connectors are not as they were added.
         """
         self.body.check_assembled()
         made, mbs = self.connector, self.body.mbs
         made.read(*made.state(mbs, configuration))
         place, rate = (each[:3] for each in made.motion)
-        return place, rate, np.array(made.wrench(mbs.systemData.GetTime(configuration))[:3])
+        force = np.array(made.wrench(mbs.systemData.GetTime(configuration))[:3])
+        if changed := self._changed():
+            warnings.warn(f"{changed}; the force of the Support is NaN", stacklevel=user_level())
+            force[:] = np.nan
+        return place, rate, force
 
     def __str__(self) -> str:
         """Return interface and who evaluates it."""
@@ -235,7 +275,8 @@ def _added(body: Body, support: Given, seat: Seat, sensed: Seat) -> SceneSupport
         on_rotor = seat.rotor is not None
         made = SupportConnector(support, end, base, on_rotor)
         if left is not None:
-            rest = made if left is support else SupportConnector(left, end, base, on_rotor)
+            ends = copy(end), copy(base)  # of its own: each knows what it has read last
+            rest = made if left is support else SupportConnector(left, *ends, on_rotor)
             parts.append((mbs.AddObject(rest.item(made)), PYTHON))
         objects, evaluation = zip(*parts, strict=True) if parts else ((), ())
         return SceneSupport(body, objects, evaluation, made, support, seat.base)

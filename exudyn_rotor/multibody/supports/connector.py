@@ -15,6 +15,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from math import cos, hypot, sin
 from typing import Any
 
@@ -50,6 +51,8 @@ Tangent = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 class Between:
     """The motion of the end of a rotor against that of its base, by the coordinates of both."""
 
+    _read: tuple[list[float], list[float]] | None = None  # the last coordinates and rates
+
     def __init__(self, end: RotorEnd, base: BaseEnd) -> None:
         self.end, self.base = end, base
         self._first, self._second = end.size, end.size + base.size
@@ -79,11 +82,11 @@ class Between:
         x_t[5] += end.speed
         return x, x_t
 
-    def rows(self) -> np.ndarray:
-        """Return the rows J (6, size) of the rotor's motion against the base."""
-        J = np.zeros((6, self.size))
-        J[:, : self._first] = self.end.rows()
-        J[:, self._first : self._second] = -self.base.rows()
+    def rows(self, count: int = 6) -> np.ndarray:
+        """Return the first rows J (count, size) of the rotor's motion against the base."""
+        J = np.zeros((count, self.size))
+        J[:, : self._first] = self.end.rows(count)
+        J[:, self._first : self._second] = -self.base.rows()[:count]
         return J
 
     def rate_rows(self) -> np.ndarray:
@@ -164,11 +167,11 @@ class Connector(Between, ABC):
 
     def forces(self, t: float) -> list[float]:
         """Return the forces on all coordinates where the ends have been read."""
-        found = self.pull(*self.wrench(t))
+        fx, fy, *others = self.wrench(t)
         if self.has_mass:  # and of the mass, what its acceleration has by the rates alone
-            turning = self.rate_rows()[:2] @ self._read[1]
-            found = (found - self.added_mass() * turning @ self.rows()[:2]).tolist()
-        return found
+            mass, (ax, ay) = self.added_mass(), self.end.turning
+            fx, fy = fx - mass * ax, fy - mass * ay
+        return self.pull(fx, fy, *others)
 
     def slopes(self, t: float) -> tuple[np.ndarray, np.ndarray]:
         """Return less the derivatives of the forces, by the coordinates and by their rates."""
@@ -176,13 +179,13 @@ class Connector(Between, ABC):
         damping = J.T @ D
         K, D = J.T @ (K @ J) + damping @ L, damping @ J
         if self.has_mass:
-            L, momentum = self.rate_rows()[:2], self.added_mass() * self.rows()[:2].T
+            L, momentum = self.rate_rows()[:2], self.added_mass() * self.rows(2).T
             K, D = K + momentum @ (self.end.speed * QUARTER[:2, :2] @ L), D + 2.0 * momentum @ L
         return K, D
 
     def mass_matrix(self) -> np.ndarray:
         """Return the mass matrix (size, size) of what goes with the rotor."""
-        J = self.rows()[:2]
+        J = self.rows(2)
         return self.added_mass() * J.T @ J
 
     def item(self, whole: Connector | None = None) -> ObjectGenericODE2:
@@ -193,10 +196,14 @@ class Connector(Between, ABC):
             given[name] = block_diag(outer, own)
         none, resists_nothing = [0.0] * self.size, np.zeros((self.size, self.size))
 
+        def see(*state):
+            if state != self._read:  # Exudyn asks for mass and forces of one state
+                self.read(*state)
+
         def force(mbs, t, item, q, q_t):
             if whole.probed is not None:
                 return none
-            self.read(q, q_t)
+            see(q, q_t)
             found = self.forces(t)
             if self.outside and self.guard is not None:
                 self.guard(mbs)
@@ -205,12 +212,12 @@ class Connector(Between, ABC):
         def jacobian(mbs, t, item, q, q_t, factor_q, factor_v):
             if whole.probed is not None:
                 return resists_nothing
-            self.read(q, q_t)
+            see(q, q_t)
             K, D = self.slopes(t)
             return factor_q * K + factor_v * D
 
         def mass(mbs, t, item, q, q_t):
-            self.read(q, q_t)
+            see(q, q_t)
             return self.mass_matrix()
 
         if self.has_mass:
@@ -237,6 +244,7 @@ class SupportConnector(Connector):
         self.has_mass, self._varies = acts(support.mass), support.varies
         self._between = on_rotor  # tables are over the difference of both speeds
         self._known = None, None  # the last speed, and matrices
+        self._mass = lru_cache(maxsize=1)(support.mass_matrix)
 
     @property
     def _speed(self) -> float:
@@ -258,7 +266,7 @@ class SupportConnector(Connector):
 
     def added_mass(self) -> float:
         """Return the mass that goes with the rotor at its speed [kg]."""
-        return float(self.support.mass_matrix(self._speed)[0, 0])
+        return float(self._mass(self._speed)[0, 0])
 
     def wrench(self, t: float) -> tuple:
         """Return force and moment on the rotor."""

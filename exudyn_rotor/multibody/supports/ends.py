@@ -237,9 +237,16 @@ class RotorEnd:
         loads += [C * fx + S * fy, C * fy - S * fx, fz, C * mx + S * my, C * my - S * mx, mz]
         return loads
 
-    def rows(self) -> np.ndarray:
-        """Return the rows J (6, size) of displacement and rotation: the forces of unit wrenches."""
-        return np.array([self._loads(*one[:3], one[3:]) for one in _WRENCHES]) @ self._pull.T
+    @property
+    def turning(self) -> tuple[float, float]:
+        """Acceleration across the axis by the rates alone, at a constant spin speed [m/s²]."""
+        (x, y, _), (vx, vy), speed = self._arm, self._within, self.speed
+        return -speed * (2.0 * vy + speed * x), speed * (2.0 * vx - speed * y)
+
+    def rows(self, count: int = 6) -> np.ndarray:
+        """Return the rows J of displacement and rotation, the first of six: (count, size)."""
+        wrenches = _WRENCHES[:count]  # what they pull at the coordinates are the rows
+        return np.array([self._loads(*one[:3], one[3:]) for one in wrenches]) @ self._pull.T
 
     def rate_rows(self) -> np.ndarray:
         """Return the derivative (6, size) of the rate by the coordinates: J turns with the spin."""

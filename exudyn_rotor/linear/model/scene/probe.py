@@ -232,14 +232,15 @@ def probing(scene: LinearScene, speed: float) -> Iterator[Probe]:
     Objects of the laws are without force meanwhile, and those that Exudyn evaluates inactive.
     """
     body, mbs = scene.body, scene.body.mbs
-    numbers = [number for one in body.supports for number in one.objects]
-    native = [number for number in numbers if "activeConnector" in mbs.GetObject(number)]
+    items = {number: mbs.GetObject(number) for one in body.supports for number in one.objects}
+    name = "activeConnector"
+    active = {number: item[name] for number, item in items.items() if name in item}
 
     def probe(angle: float | None) -> None:
         for one in body.supports:
             one.connector.probed = angle
-        for number in native:
-            mbs.SetObjectParameter(number, "activeConnector", angle is None)
+        for number, given in active.items():
+            mbs.SetObjectParameter(number, name, given and angle is None)
 
     probe(body.placement.angle)
     try:

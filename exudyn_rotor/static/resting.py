@@ -5,13 +5,14 @@ Where a bearing has the force R on the journal, which rests at u (and u_s at a s
     A u + A_s u_s + B R = c.
 
 A film has the equation of its compliance, about its equilibrium under the load −R: films stiffen so
-much that Newton's method in the place would overshoot the clearance. All others have the equation
-of their force at the place.
+much that Newton's method in the place would overshoot the clearance. The two films of a floating
+ring carry the same load: their places and compliances add up, beside one speed of the ring. All
+others have the equation of their force at the place.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -20,6 +21,7 @@ from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.rolling import RollingBearing
+from exudyn_rotor.bearings.series import FloatingRingBearing
 from exudyn_rotor.bearings.short_journal import ShortJournalBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 
@@ -50,8 +52,7 @@ class RigidBearing:
     interface: str
 
 
-Nonlinear = Bearing | MagneticBearing | RigidBearing
-
+Nonlinear = Bearing | MagneticBearing | FloatingRingBearing | RigidBearing
 
 HELD = Resting(np.eye(2), _NONE, _NONE, np.zeros(2), is_rigid=True)  # in the centre
 UNLOADED = Resting(_NONE, _NONE, np.eye(2), np.zeros(2))
@@ -79,17 +80,26 @@ def resting(
         return HELD
     if isinstance(bearing, MagneticBearing):
         return _of_magnets(bearing, place, sensed)
+    if isinstance(bearing, FloatingRingBearing):
+        films = replace(bearing, load=-force).films(speed)
+        rest = sum(film.equilibrium(whirl, -force) for film, whirl in films)
+        stiffnesses = [film.coefficients(whirl, -force)[0] for film, whirl in films]
+        return _of_compliance(rest, sum(map(np.linalg.inv, stiffnesses)), force)
     if isinstance(bearing, _FILMS):
-        stiffness = bearing.coefficients(speed, -force)[0]
-        if isinstance(bearing, TiltingPadBearing):  # against slow changes of its load
-            stiffness = bearing._state(speed, -force).impedance(0.0).real
-        compliance = np.linalg.inv(stiffness)
-        rest = bearing.equilibrium(speed, -force)
-        return Resting(np.eye(2), _NONE, compliance, rest + compliance @ force)
+        if isinstance(bearing, TiltingPadBearing):
+            stiffness = bearing.static_stiffness(speed, -force)
+        else:
+            stiffness = bearing.coefficients(speed, -force)[0]
+        return _of_compliance(bearing.equilibrium(speed, -force), np.linalg.inv(stiffness), force)
     still = 0.0, 0.0, 0.0, speed
     at = np.array(bearing.law(*place, *still))
     tangent = bearing.slopes(*place, *still)[0]
     return Resting(tangent, _NONE, np.eye(2), at + tangent @ place)
+
+
+def _of_compliance(rest: np.ndarray, compliance: np.ndarray, force: np.ndarray) -> Resting:
+    """Return the equation of what rests at a place (2,) under less the force (2,) on it."""
+    return Resting(np.eye(2), _NONE, compliance, rest + compliance @ force)
 
 
 def _of_magnets(bearing: MagneticBearing, place: np.ndarray, sensed: np.ndarray) -> Resting:
