@@ -136,23 +136,20 @@ class ModelResult(Result):
     axes : {'inertial', 'rotor'}
         In which the equations were solved.
     unevenness : float
-        Largest share of a rotor that differs around its axis, as that of a mesh, and was averaged
-        over a turn.
+        Largest share of a rotor that differs around its axis, as that of a mesh: in inertial axes
+        it was averaged over a turn, in the axes of the rotor it counts.
     """
 
     stiffening: str | None = one_of(LEVELS, default=None, kw_only=True)
     axes: str = one_of(AXES[1:], default="inertial", kw_only=True)
     unevenness: float = field(default=0.0, kw_only=True)
 
-    @property
-    def _uneven(self) -> str:
-        return "unevenness of the mesh, averaged"
-
     def _closing(self, errors: np.ndarray | None) -> list[str]:
         """Return the last lines of a table; `errors` of the basis, None where not known."""
         lines = [f"stiffening: {self.stiffening}"] if self.stiffening else []
-        if self.unevenness > _SHOWN:
-            lines.append(f"{self._uneven}: {self.unevenness:.2g}")
+        if _SHOWN < self.unevenness < np.inf:
+            what = "the mesh, averaged" if self.axes == "inertial" else "the rotor"
+            lines.append(f"unevenness of {what}: {self.unevenness:.2g}")
         return lines if errors is not None else [*lines, NOT_KNOWN]
 
 

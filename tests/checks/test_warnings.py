@@ -170,6 +170,7 @@ ELSEWHERE = {
     "linear/response/response.py:warn_of_undamped": "nothing damps the resonance at",
     "evaluation/separation.py:_warn_of_speeds_left_out": "count, and the response is known from",
     "linear/model/build.py:warn_of_omissions": "campbell finds modes without it",
+    "linear/model/build.py:_warn_of_mesh": "counts as uneven",
     "solvers/factor.py:_tell_of_mkl": "exudyn-rotor\\[mkl\\]",
     "solid/meshes/mesh_model.py:import_model": "taken as",
     "theory/stiffening.py:warn_of_left_out": "beyond 'tilt' is left out",

@@ -8,6 +8,7 @@ from exudyn_rotor import (
     Foundation,
     LinearModel,
     RotorTrain,
+    SeriesSupport,
     SolidRotor,
     Support,
     Unbalance,
@@ -55,11 +56,18 @@ def test_axes_are_those_in_which_equations_are_constant(made, supports, axes, co
     assert model.at(0.0).is_constant
 
 
-@pytest.mark.parametrize("supports", [held(), held(UNEVEN, np.diag([300.0, 900.0]))])
-def test_axes_do_not_change_motions_seen_from_outside(supports):
+RINGS = [
+    SeriesSupport(interface=inner.interface, inner=inner, outer=outer, mass=9.0)
+    for inner, outer in zip(held(), held(1e4 * np.eye(2)), strict=True)
+]
+
+
+@pytest.mark.parametrize("supports", [held(), held(UNEVEN, np.diag([300.0, 900.0])), RINGS])
+@pytest.mark.parametrize("speed", [0.0, 150.0])
+def test_axes_do_not_change_motions_seen_from_outside(supports, speed):
     rotor = flat(1e4)
     both = [
-        campbell(rotor, [150.0], supports=supports, axes=axes, accuracy=None, modes=6)
+        campbell(rotor, [speed], supports=supports, axes=axes, accuracy=None, modes=6)
         for axes in ("inertial", "rotor")
     ]
     for name in ("frequencies_inertial", "growth"):
@@ -70,7 +78,6 @@ def test_axes_do_not_change_motions_seen_from_outside(supports):
 def test_meshs_own_unevenness_is_averaged_and_told():
     model = linear_model(disc(), supports=held(UNEVEN))
     assert 1e-5 < model.unevenness < 1e-2
-    assert linear_model(disc(), supports=held(UNEVEN), axes="rotor").unevenness == 0.0
     result = campbell(disc(), [100.0], supports=held(UNEVEN), accuracy=None)
     assert result.unevenness == model.unevenness
     assert "unevenness of the mesh" in result.table()
@@ -78,6 +85,12 @@ def test_meshs_own_unevenness_is_averaged_and_told():
     turning = unbalance_response(disc(), [100.0], Unbalance("left", 1e-4), **given)
     assert turning.unevenness == model.unevenness
     assert f"unevenness of the rotor: {model.unevenness:.2g}" in turning.table()
+
+
+def test_a_rotor_that_is_all_but_round_is_told():
+    with pytest.warns(UserWarning, match="counts as uneven: 1.*axes='inertial'"):
+        result = campbell(flat(1.03e4), [100.0], supports=held(UNEVEN), accuracy=None)
+    assert "unevenness of the rotor" in result.table()
 
 
 def test_rotor_and_train_of_one_are_the_same():

@@ -335,15 +335,15 @@ class Search:
         conjugate of another motion.
         """
         content, p = self.content, self.order
-        energies = content.energies(vectors[None])[0]
-        energy, standing = energies[:, :-5], energies[:, -1]
-        total = np.maximum(energies[:, -2].sum(axis=0), 1e-300)
+        energy, directions, beside = content.parts(content.energies(vectors[None])[:, 0])
+        total = np.maximum(directions[3].sum(axis=0), 1e-300)
         seen = multiples[:, None] + content.shifts  # from outside, over Ω
         meets = np.isin(np.abs(content.waves), self.diameters) & _is_order(seen, p)
-        turning = np.sum(energy * meets[..., None], axis=(0, 1))
+        turning = np.einsum("hw,whn->n", meets, energy)
         # what stands still beside the rotor answers to all
-        turning += _is_order(multiples, p) @ standing
-        mean = np.einsum("hw,hwn->n", seen, energy)
+        answers = _is_order(np.add.outer(content.beside, multiples), p)
+        turning += np.einsum("ph,phn->n", answers, beside)
+        mean = np.einsum("hw,whn->n", seen, energy)
         return (turning >= _SHARE * total) & (mean >= -_CONJUGATE * (p or 1.0) * total)
 
     # ------------------------------------------------------------------ what is left out

@@ -21,7 +21,7 @@ from scipy.optimize import linear_sum_assignment
 
 from exudyn_rotor.calls import kept
 from exudyn_rotor.linear.model.assembly import OwnBody
-from exudyn_rotor.linear.model.body import RotorAlone, RotorBody
+from exudyn_rotor.linear.model.body import RotorAlone, RotorBody, StandingBody
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.turning import compressed, rotor_points, wave_amplitudes
 from exudyn_rotor.linear.solve.motions import Motions
@@ -134,9 +134,12 @@ class Content:
         By how many Ω its frequency seen from outside is above the harmonic's.
     spins : ndarray of float, shape (w,)
         n times the speed ratio of its rotor: how many Ω lie between both frames.
+    beside : ndarray of float, shape (p,)
+        By how many Ω the frequency of what is beside the rotors is above the harmonic's: 0 of
+        coordinates that stand still, ±1 of the two senses in which a pair turns in turning axes.
     rows : sequence of ndarray, shape (r, k)
         R of each wave, then of the motion along the axis, along the circumference, along the
-        radius, of all motion of the rotors, and of what stands still beside them.
+        radius, of all motion of the rotors, and of each part of what is beside them.
     integrating : ndarray, shape (k,)
         Of coordinates of controllers, :attr:`OwnBody.integrating`; 0 for others.
     """
@@ -144,6 +147,7 @@ class Content:
     waves: np.ndarray
     shifts: np.ndarray
     spins: np.ndarray
+    beside: np.ndarray
     rows: Sequence[np.ndarray]
     integrating: np.ndarray
 
@@ -152,7 +156,8 @@ class Content:
         """Build the content of a model from mode shapes, or from its interfaces."""
         assembly = model.assembly(1.0)
         k, found, share = assembly.size, [], 0.0
-        directions: list[list[np.ndarray]] = [[] for _ in range(5)]
+        directions: list[list[np.ndarray]] = [[] for _ in range(4)]
+        beside: dict[int, list[np.ndarray]] = {}
         integrating = np.zeros(k)
         for body, place in zip(assembly.bodies, assembly.slices, strict=True):
             if isinstance(body, RotorBody):
@@ -166,25 +171,32 @@ class Content:
         for body, place in zip(assembly.bodies, assembly.slices, strict=True):
             if not isinstance(body, RotorBody) and body.size:  # as heavy as the rotor where alike
                 rows = np.sqrt(share) * np.linalg.cholesky(body.M).T
-                directions[4].append(assembly.wide({0: rows}, place)[0])
+                for sense, part in _senses(body).items():
+                    wide = assembly.wide({0: part @ rows}, place)[0]
+                    beside.setdefault(sense, []).append(wide)
             if isinstance(body, OwnBody):
                 integrating[place] = body.integrating
         found = found or [(0, 0.0, 0.0, np.zeros((1, k)))]  # no point that moves: no whirl
         waves, shifts, spins, rows = zip(*found, strict=True)
-        none = np.zeros((1, k))
-        rows = [*rows, *(np.vstack(each or [none]) for each in directions)]
-        return cls(np.array(waves), np.array(shifts), np.array(spins), rows, integrating)
+        beside = beside or {0: [np.zeros((1, k))]}
+        rows = [*rows, *map(np.vstack, (*directions, *beside.values()))]
+        numbers = (np.array(each) for each in (waves, shifts, spins, list(beside)))
+        return cls(*numbers, rows, integrating)
+
+    def parts(self, energy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return of energies or forms, by the first axis, waves, directions and what is beside."""
+        return tuple(np.split(energy, [len(self.waves), len(self.waves) + 4]))
 
     @cached_property
     def _forms(self) -> np.ndarray:
-        """Energy ``xᴴ F x`` of each part, in the order of the rows, (w + 5, k, k)."""
+        """Energy ``xᴴ F x`` of each part, in the order of the rows, (w + 4 + p, k, k)."""
         return np.array([R.conj().T @ R for R in self.rows])
 
     def energies(self, vectors: np.ndarray) -> np.ndarray:
-        """Return the energies (s, h, w + 5, k) of harmonics (s, h, c, k)."""
+        """Return the energies (w + 4 + p, s, h, k) of harmonics (s, h, c, k)."""
         begins = np.cumsum([0, *map(len, self.rows[:-1])])
         moved = np.vstack(self.rows) @ vectors
-        return np.add.reduceat(moved.real**2 + moved.imag**2, begins, axis=2)
+        return np.moveaxis(np.add.reduceat(moved.real**2 + moved.imag**2, begins, axis=2), 2, 0)
 
     def named(self, motions: Motions, *, apart: bool = False) -> Named:
         """Return motions with their names; repeated ones are waves of one sense where `apart`."""
@@ -196,11 +208,11 @@ class Content:
         mirrored = values.imag < 0.0
         if np.any(mirrored):
             vectors = np.where(mirrored[:, None, None], vectors[:, ::-1].conj(), vectors)
-        energy = self.energies(vectors)
-        directions = energy[:, :, -5:].sum(axis=1).transpose(1, 0, 2)  # (5, s, k)
-        whole, standing = directions[3:]
+        energy, directions, beside = self.parts(self.energies(vectors))
+        *directions, whole = directions.sum(axis=2)  # (s, k) each
         # equal but for rounding is equal
-        energy = np.round(energy[:, :, :-5] / np.maximum(whole, 1e-300)[:, None, None], _DIGITS)
+        energy = np.moveaxis(energy, 0, 2) / np.maximum(whole, 1e-300)[:, None, None]
+        energy = np.round(energy, _DIGITS)
         above = (orders[:, None] + self.shifts).ravel()  # of all waves in all harmonics
         by_wave = energy.sum(axis=1)
         energy = energy.reshape(len(values), len(above), values.shape[1])
@@ -220,18 +232,22 @@ class Content:
         place = best % len(self.waves)
         rotor, wave = np.abs(heard - self.spins[place] * speeds), self.waves[place]
         codes = np.where((turning == 0.0) & (wave != 0), STATIC, codes)
-        named = np.array([AXIAL, TORSIONAL, RADIAL])[np.argmax(directions[:3], axis=0)]
+        named = np.array([AXIAL, TORSIONAL, RADIAL])[np.argmax(directions, axis=0)]
         codes = np.where(wave == 0, named, codes)
         fitted = by_wave.sum(axis=1)
         unseen = whole <= 1e-12 * np.max(whole, axis=1, keepdims=True, initial=0.0)
-        unseen |= (fitted < _NOT_FITTED) & (np.max(directions[:3], axis=0) < 0.5 * whole)
+        unseen |= (fitted < _NOT_FITTED) & (np.max(directions, axis=0) < 0.5 * whole)
+        other = nu[:, None] + np.add.outer(self.beside, orders)[:, None, :, None] * speeds[:, None]
         if np.any(self.integrating):
-            swings = heard > _SWINGS * np.abs(values.real)
-            standing = np.where(swings, self._standing_by_rate(vectors, values), standing)
-        stands = standing > whole
+            swings = np.abs(heard) > _SWINGS * np.abs(values.real)
+            by_rate = self._beside_by_rate(vectors, np.hypot(values.real[:, None], other))
+            beside = np.where(swings[:, None], by_rate, beside)
+        stands = beside.sum(axis=(0, 2)) > whole
+        other = _of_most(np.abs(other), beside)
         codes = np.where(stands, FOUNDATION, np.where(unseen, UNKNOWN, codes))
         main = orders[np.argmax(np.sum(np.abs(vectors) ** 2, axis=2), axis=1)]
-        inertial = np.where(unseen | stands, np.abs(nu + main * speeds), np.abs(heard))
+        inertial = np.where(unseen, np.abs(nu + main * speeds), np.abs(heard))
+        inertial = np.where(stands, other, inertial)
         rotor = np.where(unseen | stands, nu, rotor)
         diameters = np.where(stands, 0, self._diameters(by_wave))
         lost = np.isnan(motions.bounds)[:, None] | np.isnan(motions.values)
@@ -239,14 +255,16 @@ class Content:
         codes, diameters = np.where(lost, UNKNOWN, codes), np.where(lost, -1, diameters)
         return _still(Named(motions, inertial, rotor, codes.astype(np.int64), diameters))
 
-    def _standing_by_rate(self, vectors: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Return the energy (s, k) of what stands still, of integrals that of their rates.
+    def _beside_by_rate(self, vectors: np.ndarray, rates: np.ndarray) -> np.ndarray:
+        """Return the energy (p, s, h, k) of what is beside the rotors, of integrals by `rates`.
 
         The integral of a slow oscillation is large, whatever it does.
         """
-        rates = np.abs(np.nan_to_num(values))[:, None, None] * self.integrating[:, None]
-        moved = self.rows[-1] @ (np.where(self.integrating[:, None] > 0.0, rates, 1.0) * vectors)
-        return np.sum(np.abs(moved) ** 2, axis=(1, 2))
+        found, integral = [], self.integrating[:, None] > 0.0
+        for rows, rate in zip(self.rows[-len(rates) :], np.nan_to_num(rates), strict=True):
+            scale = np.where(integral, rate[:, :, None] * self.integrating[:, None], 1.0)
+            found.append(np.sum(np.abs(rows @ (scale * vectors)) ** 2, axis=2))
+        return np.array(found)
 
     def _diameters(self, energy: np.ndarray) -> np.ndarray:
         """Return n where ±n hold most of the energy (s, w, k), of which 1 is all; −1 elsewhere."""
@@ -285,9 +303,10 @@ class Content:
         flat = flat / np.abs(flat).max(axis=1, keepdims=True)
         span, lengths, _ = np.linalg.svd(flat, full_matrices=False)
         span = span.reshape(vectors.shape)
-        across, forms = np.swapaxes(span.conj(), 2, 3), self._forms
-        every, weights = forms[-2] + forms[-1], self.waves if weights is None else weights
-        mean = np.tensordot(weights, forms[:-5], 1) + 0.4 * forms[-5]
+        across = np.swapaxes(span.conj(), 2, 3)
+        waves, (axial, *_, whole), beside = self.parts(self._forms)
+        every, weights = whole + beside.sum(axis=0), self.waves if weights is None else weights
+        mean = np.tensordot(weights, waves, 1) + 0.4 * axial
         form, whole = (np.sum(across @ F @ span, axis=1) for F in (mean, every))
         # what moves nothing that has waves has the mean zero
         floor = 1e-9 * np.abs(whole).max(axis=(1, 2), keepdims=True)
@@ -300,6 +319,17 @@ class Content:
         # a defective eigenvalue has one shape only
         defective = lengths[:, -1] < 1e-3 * lengths[:, 0]
         return np.where(defective[:, None, None, None], vectors, turned)
+
+
+def _senses(body: StandingBody | OwnBody) -> dict[int, np.ndarray]:
+    """Return the parts of a body that is no rotor by which sense they turn in, (r, k) each.
+
+    Seen from outside, a pair ``(1, −i) exp(iνt)`` in turning axes has the frequency ν + Ω.
+    """
+    if not body.turns:
+        return {0: np.eye(body.size)}
+    pair = {sense: np.array([[1.0, 1j * sense]]) / np.sqrt(2.0) for sense in (1, -1)}
+    return {sense: np.kron(np.eye(body.size // 2), row) for sense, row in pair.items()}
 
 
 @kept
@@ -338,6 +368,13 @@ def _strongest(energy: np.ndarray, multiples: np.ndarray) -> np.ndarray:
     alike = (place == np.arange(known.size)[:, None]).astype(float)
     first = np.argmax(np.round(alike @ energy, _DIGITS), axis=1)
     return np.argmax(np.where(place[:, None] == first[:, None], energy, -1.0), axis=1)
+
+
+def _of_most(values: np.ndarray, energy: np.ndarray) -> np.ndarray:
+    """Return of values (p, s, h, k) the one with the most energy in each motion, (s, k)."""
+    p, s, h, k = energy.shape
+    values, energy = (np.moveaxis(X, 0, 1).reshape(s, p * h, k) for X in (values, energy))
+    return np.take_along_axis(values, np.argmax(energy, axis=1)[:, None], 1)[:, 0]
 
 
 def _still(found: Named) -> Named:

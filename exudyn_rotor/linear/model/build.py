@@ -195,6 +195,18 @@ def warn_of_omissions(model: LinearModel, speed: float = 0.0, what: str = "") ->
     """
     if what and model.has_structural_damping:
         warnings.warn(LOSS_LEFT_OUT.format(what), UserWarning, stacklevel=user_level())
+    _warn_of_mesh(model)
     if model.stiffening_asked == "auto":
         for rotor in model.rotors.values():
             warn_of_left_out(rotor.invariants, speed, user_level() + 1)
+
+
+def _warn_of_mesh(model: LinearModel) -> None:
+    """Warn of a mesh that may be too coarse to be round."""
+    if model.may_be_round:
+        warnings.warn(
+            f"the rotor counts as uneven: {model.unevenness:.1%} of it differs around its axis; "
+            "where that is its mesh, make it finer, or average it by axes='inertial'",
+            UserWarning,
+            stacklevel=user_level(),
+        )

@@ -53,6 +53,7 @@ from exudyn_rotor.theory.stiffening import LEVELS
 
 AXES = ("auto", "inertial", "rotor")
 ON_FOUNDATION = "{} (foundation)"
+_MESH = 0.05  # unevenness up to which a coarse mesh may be its cause
 _HELD = 1e-10  # share of the largest stiffness per unit mass that counts as none
 _ALONE = 1.0 - 1e-6  # share of a free motion's energy in one rigid motion, but for rounding
 
@@ -456,16 +457,17 @@ class LinearModel:
         """Bodies at a speed."""
         return self._running.bodies
 
-    @cached_property
-    def unevenness(self) -> float:
-        """Largest share of a rotor that differs around its axis and is averaged over a turn."""
-        averaged = [b.name for b in rotors_of(self.bodies) if b.mean]
-        return max((self._own_unevenness[name] for name in averaged), default=0.0)
-
     @property
-    def largest_own_unevenness(self) -> float:
+    def unevenness(self) -> float:
         """Largest share of a rotor that differs around its axis, averaged or not."""
         return max(self._own_unevenness.values())
+
+    @property
+    def may_be_round(self) -> bool:
+        """Whether the axes turn with a rotor that a finer mesh may show to be round."""
+        cut = any(self._alone(name, False).has_halves for name in self._used)  # told by `reduce`
+        limit, turns = self.largest_unevenness, self.wanted_axes == "auto" and self.turns
+        return bool(turns) and limit < self.unevenness <= _MESH and not cut
 
     @cached_property
     def complete_up_to(self) -> float:

@@ -74,11 +74,8 @@ class Response(AtPlaces, ModelResult):
         not known.
     radius : float
         The rotor's radius of gyration, at which a rotation counts as a displacement [m].
-    stiffening, axes
+    stiffening, axes, unevenness
         See :class:`Stability`.
-    unevenness : float
-        Largest share of a rotor that differs around its axis, as that of a mesh: in the axes of the
-        rotor it counts, in inertial axes it was averaged over a turn.
     """
 
     orders: np.ndarray = numbers("orders", dtype=int)
@@ -94,10 +91,6 @@ class Response(AtPlaces, ModelResult):
     def abscissa(self) -> np.ndarray:
         """What the response was computed over, shape (s,) [rad/s]."""
         return getattr(self, self._over)
-
-    @property
-    def _uneven(self) -> str:
-        return super()._uneven if self.axes == "inertial" else "unevenness of the rotor"
 
     @property
     def _rounding(self) -> np.ndarray:

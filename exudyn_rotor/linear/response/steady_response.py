@@ -250,7 +250,7 @@ class _Sweep:
             "stiffening": model.stiffening,
             "radius": model.radius,
             "axes": model.axes,
-            "unevenness": model.largest_own_unevenness,
+            "unevenness": model.unevenness,
         }
 
     def _motions(self, model: LinearModel, values: np.ndarray) -> tuple[Harmonics, np.ndarray]:

@@ -86,7 +86,8 @@ class Stability(OfMotions, ModelResult):
     axes : {'inertial', 'rotor'}
         Axes in which the equations were solved.
     unevenness : float
-        Largest share of a rotor that differs around its axis and is averaged over a turn.
+        Largest share of a rotor that differs around its axis, as that of a mesh: in inertial axes
+        it was averaged over a turn, in the axes of the rotor it counts.
 
     Examples
     --------
