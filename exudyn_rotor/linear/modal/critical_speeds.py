@@ -165,7 +165,7 @@ def critical_speeds(
         Excitation order p ≥ 0 in the inertial frame; 1 for unbalance, 0 for a load at rest.
     max_speed : float, optional
         Largest speed of interest [rad/s]; needed where a stiffness depends on the speed, as of
-        tables, films, forces in scenes and an initial displacement: there zeros are bracketed at 200
+        tables, films, forces in scenes, an initial displacement: there zeros are bracketed at 200
         speeds up to it, and two of one mode that are closer than a 200th of it may be missed.
         Speeds beyond tables, and those at which a film carries nothing, are left out, with a
         warning.
