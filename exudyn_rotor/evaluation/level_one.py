@@ -7,21 +7,20 @@ API 617 asks for the same.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.modal.whirl import Content, damping_of
+from exudyn_rotor.evaluation.coupled_modes import MULTIPLES, CoupledModes
+from exudyn_rotor.linear.modal.whirl import damping_of
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.over import motions_over
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, storable, text_table
 from exudyn_rotor.units import Units
@@ -30,13 +29,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 MACHINES = {"centrifugal": 3.0, "axial": 1.5}  # factor of the anticipated cross-coupling
-_MULTIPLES = np.linspace(0.0, 10.0, 11)  # of the anticipated cross-coupling
 _LEAST_DECREMENT = 0.1  # log decrement, API 617
 _LEAST_RATIO, _LARGE_RATIO = 2.0, 10.0  # of Q₀ to Q_A
-_ROUNDING = 1e-9  # growth over the frequency that is none
-_STILL = 1e-3  # of the speed: a frequency below is that of a motion that does not whirl
-_RESONANT = np.sqrt(0.5)  # damping ratio above which a mode has no resonance
-_FED = 1e-6  # share of the power to a mode that is none: orbits in planes, nodes
 
 
 def anticipated_cross_coupling(
@@ -100,7 +94,7 @@ class StabilityLevelOne(Result):
     applied : ndarray, shape (q,)
         Sum of the cross-coupled stiffnesses Q, from 0 to 10 Q_A [N/m].
     log_decrement : ndarray, shape (q,)
-        Infinite where the mode decays without oscillating.
+        Infinite where the mode decays without oscillating, NaN where it is not known.
     frequencies : ndarray, shape (q,)
         Of the mode in the inertial frame [rad/s].
     anticipated : float
@@ -134,7 +128,7 @@ class StabilityLevelOne(Result):
 
     applied: np.ndarray = numbers("applied", least=0.0)
     log_decrement: np.ndarray = numbers("applied", finite=False)
-    frequencies: np.ndarray = numbers("applied")
+    frequencies: np.ndarray = numbers("applied", finite=False)
     anticipated: float
     speed: float
     machine: str = checks.one_of(MACHINES)
@@ -248,11 +242,12 @@ def stability_level_one(
 ) -> StabilityLevelOne:
     """Compute the log decrement of the first forward mode from no cross-coupling to 10 Q_A.
 
-    Cross-coupling Q gives the forces ``(−Q u_n2, Q u_n1)``, which feed forward whirl. The mode is
-    the lowest lateral one that whirls forward where they act; where none does, as all move in
-    planes, it is the lowest one. Modes of a damping ratio above 0.7, which have no resonance, are
-    passed over where there is another. Where higher forward modes become unstable first, the lowest
-    unstable one counts.
+    Cross-coupling Q gives the forces ``(−Q u_n2, Q u_n1)``, which feed forward whirl. One mode is
+    followed over Q: the lateral one that becomes unstable first, at Q₀, or, where Q₀ is above
+    10 Q_A, a lower one that whirls forward at Q₀. On supports that differ in two directions modes
+    move in planes at less Q, and their sense of whirl tells little there; it decides where no mode
+    becomes unstable up to 1000 Q_A. Modes of a damping ratio above 0.7, which have no resonance,
+    are passed over where there is another.
 
     Parameters
     ----------
@@ -321,49 +316,12 @@ def stability_level_one(
         ]
         return linear_model(target, supports=(*supports, *added), stiffening=stiffening)
 
-    content = Content.of(coupled(0.0))
-
-    def growth(multiple: float) -> float:
-        return _first_forward(coupled(multiple), content, speed, coupling)[0]
-
-    found = [_first_forward(coupled(each), content, speed, coupling) for each in _MULTIPLES]
-    rates, frequencies = np.array(found).T
-    decrement = damping_of(rates, frequencies)[1]
-    decrement = np.where(np.isnan(decrement), np.copysign(np.inf, -rates), decrement)
-    total, threshold = float(amounts.sum()), None
-    unstable = np.flatnonzero(decrement <= 0.0)
-    if unstable.size:
-        last = unstable[0]
-        threshold = total * brentq(growth, *_MULTIPLES[last - 1 : last + 1]) if last else 0.0
+    found, limit = CoupledModes(coupled, speed, coupling).first_forward()
+    decrement = damping_of(found.real, found.imag)[1]
+    still = np.isnan(decrement) & np.isfinite(found)
+    decrement = np.where(still, np.copysign(np.inf, -found.real), decrement)
+    total = float(amounts.sum())
     return StabilityLevelOne(
-        total * _MULTIPLES, decrement, frequencies, total, speed, machine, threshold,
-        critical_speed_ratio, gas_density,
+        total * MULTIPLES, decrement, found.imag, total, speed, machine,
+        None if limit is None else total * limit, critical_speed_ratio, gas_density,
     )  # fmt: skip
-
-
-def _first_forward(
-    model: LinearModel, content: Content, speed: float, coupling: Mapping[str, float]
-) -> tuple[float, float]:
-    """Return growth [1/s] and frequency [rad/s] of the first forward mode of a coupled rotor."""
-    named = content.named(motions_over(model, [speed], held=True)).rows(0)
-    motions, frequencies = named.motions, named.inertial
-    growth, fed = motions.values.real, 0.0  # power that the coupling feeds to each
-    for name, amount in coupling.items():
-        orbits: dict[int, np.ndarray] = {}
-        for m, U in model.seen(name, speed).items():
-            for n, X in zip(motions.orders.tolist(), motions.vectors, strict=True):
-                orbits[m + n] = orbits.get(m + n, 0.0) + U[:2] @ X
-        for n, (a, b) in orbits.items():
-            fed = fed - amount * (motions.values.imag + n * speed) * (a.conj() * b).imag
-    lateral = (named.diameters == 1) & np.isfinite(motions.values)
-    if not np.any(lateral):
-        raise ValueError(f"target: has no lateral mode at {speed:g} rad/s")
-    forward = lateral & (fed > max(_FED * fed[lateral].max(), 0.0))
-    swings = (damping_of(growth, frequencies)[0] < _RESONANT) & (frequencies > _STILL * speed)
-    unstable = forward & swings & (growth > _ROUNDING * frequencies)
-    for chosen in (unstable, forward & swings, lateral & swings):
-        if np.any(chosen):
-            mode = int(np.argmin(np.where(chosen, frequencies, np.inf)))
-            return float(growth[mode]), float(frequencies[mode])
-    mode = int(np.argmax(np.where(forward if np.any(forward) else lateral, growth, -np.inf)))
-    return float(growth[mode]), float(frequencies[mode])

@@ -195,23 +195,34 @@ def test_threshold_of_a_jeffcott_rotor(coupling, damping, axis):
     assert found.log_decrement[0] == pytest.approx(2 * np.pi * ratio / np.sqrt(1 - ratio**2))
 
 
-def test_the_forward_mode_is_followed_and_unstable_beyond_the_threshold():
-    """Gyroscopic moments part forward and backward whirl; `stability` knows nothing of modes."""
-    rotor = ring_rotor(0.3, 0.2, 10.0).with_interface("left", range(5))
+GYROSCOPIC = (0.3, 0.2, 10.0), 1e5, 4e5
+UNEQUAL = (0.1, 0.3, 6.0), np.diag([1e6, 1.6e6]), np.diag([8e5, 1.5e6])
+
+
+@pytest.mark.parametrize(
+    ("shape", "left", "right", "damping", "place", "coupling", "mode"),
+    [
+        (*GYROSCOPIC, 40.0, "left", 4e3, 3),
+        (*GYROSCOPIC, 40.0, "right", 4e3, 5),  # the second forward mode
+        (*UNEQUAL, 45.0, "right", 2e4, 4),
+        (*UNEQUAL, 150.0, "right", 2e4, 4),
+    ],
+)
+def test_one_mode_is_followed_to_its_limit(shape, left, right, damping, place, coupling, mode):
+    """Up to 10 or 20 Q_A alike; `campbell` and `stability` know nothing of it."""
+    rotor = ring_rotor(*shape).with_interface("left", range(5))
     rotor = rotor.with_interface("right", range(5, 10)).reduce(0)
-    held = [Support("left", 1e5, damping=40.0), Support("right", 4e5, damping=40.0)]
+    held = [Support("left", left, damping), Support("right", right, damping)]
+    given = {"at": place, "supports": held}
+    few, found = (stability_level_one(rotor, 300.0, q * coupling, **given) for q in (1.0, 2.0))
+    np.testing.assert_allclose(few.log_decrement[::2], found.log_decrement[:6], rtol=1e-9)
     modes = campbell(rotor, 300.0, supports=held)
-    forward = modes.frequencies_inertial[modes.whirl == "forward"].min()
-    backward = modes.frequencies_inertial[modes.whirl == "backward"].min()
-    assert backward < 0.9 * forward
-    # at the right end the second forward mode, 389 rad/s, loses its damping first
-    for place in ("left", "right"):
-        found = stability_level_one(rotor, 300.0, 4e3, place, supports=held)
-        assert found.frequencies[0] == pytest.approx(forward, rel=1e-9)
-        for share, stable in ((0.999, True), (1.001, False)):
-            q = share * found.threshold
-            coupled = [*held, Support(place, [[0.0, q], [-q, 0.0]])]
-            assert stability(rotor, 300.0, supports=coupled).stable.tolist() == [stable]
+    assert found.frequencies[0] == pytest.approx(modes.frequencies_inertial[0, mode], rel=1e-9)
+    assert found.log_decrement[0] == pytest.approx(modes.log_decrement[0, mode], rel=1e-7)
+    for share, stable in ((0.999, True), (1.001, False)):
+        q = share * found.threshold
+        coupled = [*held, Support(place, [[0.0, q], [-q, 0.0]])]
+        assert stability(rotor, 300.0, supports=coupled).stable.tolist() == [stable]
 
 
 def test_when_level_two_is_required():

@@ -30,7 +30,7 @@ MAY_BE_NAN = {
 }
 # results whose rows are NaN where nothing could be computed
 WITH_GAPS = (
-    "Campbell", "CriticalSpeedMap", "PeriodicResponse",
+    "Campbell", "CriticalSpeedMap", "PeriodicResponse", "StabilityLevelOne",
     "SeparationMargins", "Sensitivity", "Stability", "StabilityMap", "StaticResponse",
 )  # fmt: skip
 
