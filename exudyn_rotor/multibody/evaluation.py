@@ -59,5 +59,5 @@ def constraint_rows(
     # cleared by hand: Exudyn's own way evaluates forces, which this state may lie out of range of
     total = size + solver.GetAEsize()
     solver.SetSystemJacobian(np.zeros((total, total)))
-    solver.ComputeJacobianAE(mbs, 1.0, 0.0, 0.0, False)
+    solver.ComputeJacobianAE(mbs, 1.0, 1.0, 0.0, False)  # of places or of rates
     return np.array(solver.GetSystemJacobian())[size:, :size]

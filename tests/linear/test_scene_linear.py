@@ -6,13 +6,17 @@ import pytest
 from apart import distance, exponents
 from asymmetric import LENGTH, asymmetric_shaft
 from exudyn.itemInterface import (
+    CoordinateConstraint,
     CoordinateSpringDamper,
     MarkerNodeCoordinate,
+    Node1D,
     NodePointGround,
+    Rotor1D,
     SensorNode,
 )
 from exudyn.rigidBodyUtilities import InertiaCuboid
 from point_rotors import ring_rotor
+from run_scenes import solve
 
 from exudyn_rotor import (
     PrescribedMotion,
@@ -21,6 +25,8 @@ from exudyn_rotor import (
     add_supports,
     campbell,
     linear_model,
+    stability,
+    steady_state,
 )
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.over import motions_over
@@ -29,28 +35,27 @@ BEARING = np.array([2.0e6, 1.2e6, 3e6]), np.array([300.0, 200.0, 100.0])
 SPEED = 200.0
 
 
-def rings(modes=2):
+def rings(modes=2, unbalance=1e-3):
     """Return a slightly eccentric rotor with two flexible modes, z from −0.15 to 0.15 m.
 
     These are half of a pair each; without them the rotor is round but for its eccentric mass.
     """
-    rotor = ring_rotor(0.1, 0.15, 5.0).add_point_mass([0.1, 0.0, 0.15], 1e-3)
+    rotor = ring_rotor(0.1, 0.15, 5.0).add_point_mass([0.1, 0.0, 0.15], unbalance)
     rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10))
     return rotor.reduce(modes)
 
 
-def on_springs(markers="position", rotation=None, law=None, modes=2, **options):
+def on_springs(markers="position", law=None, modes=2, reduced=None, **options):
     """Return an mbs with the rings on two springs to the ground, and the body."""
-    reduced = rings(modes)
+    reduced = reduced or rings(modes)
     mbs = exu.SystemContainer().AddSystem()
     kinds = dict.fromkeys(reduced.interfaces, markers)
-    body = add_rotor(mbs, reduced, markers=kinds, rotation=rotation, **options)
-    turn = np.eye(3) if rotation is None else rotation
+    body = add_rotor(mbs, reduced, markers=kinds, **options)
     ground = mbs.CreateGround()
     for name in reduced.interfaces:
         mbs.CreateCartesianSpringDamper(
             itemNumbers=[ground, body.marker(name)],
-            localPosition0=list(turn @ reduced.interfaces[name].reference),
+            localPosition0=list(reduced.interfaces[name].reference),
             stiffness=list(BEARING[0]),
             damping=list(BEARING[1]),
             springForceUserFunction=law or 0,
@@ -59,12 +64,10 @@ def on_springs(markers="position", rotation=None, law=None, modes=2, **options):
     return mbs, body
 
 
-def in_a_list(turn=None, modes=2):
-    """Return the rings on the same springs; `turn` takes mesh axes to inertial axes."""
-    turn = np.eye(3) if turn is None else turn
-    K, D = (turn.T @ np.diag(values) @ turn for values in BEARING)
-    supports = [Support(name, K, D) for name in ("left", "right")]
-    return linear_model(rings(modes), supports=supports)
+def in_a_list(modes=2, rotor=None):
+    """Return the rings, or another rotor, on the same springs."""
+    supports = [Support(name, *map(np.diag, BEARING)) for name in ("left", "right")]
+    return linear_model(rotor or rings(modes), supports=supports)
 
 
 @pytest.mark.parametrize(
@@ -99,16 +102,13 @@ def test_interface_motion_and_unbalance_agree_with_the_list(modes):
     assert max(np.abs(each).max() for each in load.values()) > 1e-6
 
 
-def foundation_scene(speed, node=exu.NodeType.RotationRxyz):
-    """Return an asymmetric shaft on anisotropic bearings on a sprung block, and the body.
-
-    The block is a rigid body with rotation parameters `node`.
-    """
+def foundation_scene(speed):
+    """Return an asymmetric shaft on anisotropic bearings on a sprung block, and the body."""
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(
-        mbs, asymmetric_shaft(), spin=speed, translation="none", markers=POSITION_MARKERS
-    )
+    markers = {"left": "position", "right": "position"}
+    body = add_rotor(mbs, asymmetric_shaft(), spin=speed, translation="none", markers=markers)
     block = InertiaCuboid(density=2500.0, sideLengths=[0.3, 0.1, 0.5])
+    node = exu.NodeType.RotationRxyz
     base = mbs.CreateRigidBody(inertia=block, referencePosition=[0, -0.2, 0], nodeType=node)
     ground = mbs.CreateGround()
     for x, z in ((-0.15, -0.25), (-0.15, 0.25), (0.15, -0.25), (0.15, 0.25)):
@@ -138,9 +138,6 @@ def foundation_scene(speed, node=exu.NodeType.RotationRxyz):
     return mbs, body
 
 
-POSITION_MARKERS = {"left": "position", "right": "position"}
-
-
 def measured_growth(mbs, body, speed, steps, size=1e-5, revolutions=20):
     """Return growth [1/s] of the least stable motion in the transient simulation.
 
@@ -166,14 +163,8 @@ def measured_growth(mbs, body, speed, steps, size=1e-5, revolutions=20):
     mbs.systemData.SetODE2Coordinates(q, exu.ConfigurationType.Initial)
     mbs.systemData.SetODE2Coordinates_t(q_t, exu.ConfigurationType.Initial)
     period = 2.0 * np.pi / speed
-    settings = exu.SimulationSettings()
-    settings.timeIntegration.numberOfSteps = revolutions * steps
-    settings.timeIntegration.endTime = revolutions * period
-    settings.timeIntegration.newton.useModifiedNewton = True
-    settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write = False
-    settings.solution.sensors.writePeriod = period
-    mbs.SolveDynamic(settings, solverType=exu.DynamicSolverType.TrapezoidalIndex2)
+    rule = exu.DynamicSolverType.TrapezoidalIndex2
+    solve(mbs, revolutions * steps, revolutions * period, period, solverType=rule)
     data = mbs.GetSensorStoredData(0)
     shape = (T @ y)[: data.shape[1] - 1]
     plane = np.column_stack([shape.real, -shape.imag])
@@ -205,18 +196,8 @@ def hardening(mbs, t, item, displacement, velocity, stiffness, damping, offset):
 
 def test_nonlinear_bearings_are_linearised_at_the_sag():
     # the sag y of m g / 2 = k y + k₃ y³; tangent k + 3 k₃ y²
-    rotor = ring_rotor(0.1, 0.15, 5.0).with_interface("left", range(5))
-    reduced = rotor.with_interface("right", range(5, 10)).reduce(0)
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, reduced, gravity=[0.0, -WEIGHT, 0.0], markers=POSITION_MARKERS)
-    ground = mbs.CreateGround()
-    for name, z in (("left", -0.15), ("right", 0.15)):
-        mbs.CreateCartesianSpringDamper(
-            itemNumbers=[ground, body.marker(name)],
-            localPosition0=[0, 0, z],
-            springForceUserFunction=hardening,
-        )
-    mbs.Assemble()
+    reduced = rings(0, unbalance=1e-9)
+    mbs, body = on_springs(law=hardening, reduced=reduced, gravity=[0.0, -WEIGHT, 0.0])
     sag = np.roots([HARDENING, 0.0, 2e4, -2.5 * WEIGHT])
     sag = sag[np.abs(sag.imag) < 1e-12].real[0]
     tangent = np.diag([2e4, 2e4 + 3.0 * HARDENING * sag**2, 2e4])
@@ -236,16 +217,48 @@ def test_refused_scenes():
         linear_model(mbs, body=body)
 
 
-def test_what_acts_otherwise_as_the_rotor_turns_is_refused():
-    mbs, body = on_springs(modes=0)
-    point = mbs.AddNode(NodePointGround())
-    ground = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=point, coordinate=0))
-    mode = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=body.nodes["modes"], coordinate=1))
-    mbs.AddObject(CoordinateSpringDamper(markerNumbers=[ground, mode], stiffness=1e6))
+def with_item(item, node="rigid", coordinate=5, inertia=0.0, **options):
+    """Return rings with an item between a coordinate, the spin, and the ground or a flywheel."""
+    mbs, body = on_springs("rigid", modes=0, initial_speed=SPEED)
+    first = mbs.AddNode(Node1D(referenceCoordinates=[0.0]) if inertia else NodePointGround())
+    if inertia:
+        mbs.AddObject(Rotor1D(inertia=inertia, nodeNumber=first))
+    places = {first: 0, body.nodes[node]: coordinate}.items()
+    ends = [mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=n, coordinate=c)) for n, c in places]
+    mbs.AddObject(item(markerNumbers=ends, **options))
     mbs.Assemble()
-    with pytest.raises(ValueError, match="otherwise as the rotor turns"):
+    return mbs, body
+
+
+def test_what_acts_otherwise_as_the_rotor_turns_is_refused():
+    mbs, body = with_item(CoordinateSpringDamper, "modes", 1, stiffness=1e6)
+    with pytest.raises(ValueError, match=r"otherwise as the rotor turns.*add_disc"):
         linear_model(mbs, body=body).matrices(SPEED)
     assert not linear_model(mbs, body=body, axes="rotor").at(SPEED).is_constant
+
+
+def test_forces_on_a_free_spin():
+    held = with_item(CoordinateSpringDamper, stiffness=50.0)
+    flywheel = with_item(CoordinateSpringDamper, stiffness=50.0, inertia=0.02)
+    driven = with_item(CoordinateConstraint, velocityLevel=True, offset=SPEED)
+    both = [0.0, 50.0 * (1.0 / rings(0).invariants.Theta + 1.0 / 0.02)]
+    for (mbs, body), speed, squares in (
+        (held, 0.0, [50.0 / rings(0).invariants.Theta]),
+        (flywheel, 0.0, both),
+        (flywheel, SPEED, both),
+        (driven, SPEED, []),
+    ):
+        lateral = campbell(in_a_list(modes=0), [speed]).frequencies_inertial[0, 1:]
+        found = campbell(mbs, [speed], body=body).frequencies_inertial[0]
+        np.testing.assert_allclose(found, np.sort([*np.sqrt(squares), *lateral]), rtol=1e-6)
+    mbs, body = held
+    for analysis in (lambda: stability(mbs, [SPEED], body=body), lambda: steady_state(body)):
+        with pytest.raises(ValueError, match="winds up"):
+            analysis()
+    mbs.CreateTorque(itemNumber=body.marker("left"), loadVector=[0.0, 0.0, 1.0])
+    mbs.Assemble()
+    with pytest.raises(ValueError, match="1 N m twist"):
+        steady_state(body, 0.0)
 
 
 # ------------------------------------------------------------------ as in lists
@@ -253,18 +266,15 @@ def test_what_acts_otherwise_as_the_rotor_turns_is_refused():
 
 def on_two_supports(rotor, **options):
     """Return a scene and a list of a rotor on two supports."""
-    K, D = (np.diag(values) for values in BEARING)
-    supports = [Support(name, K, D) for name in ("left", "right")]
-    mbs = exu.SystemContainer().AddSystem()
+    mbs, in_list = exu.SystemContainer().AddSystem(), in_a_list(rotor=rotor)
     body = add_rotor(mbs, rotor, **options)
-    add_supports(body, supports)
+    add_supports(body, in_list.supports[""])
     mbs.Assemble()
-    return linear_model(mbs, body=body), linear_model(rotor, supports=supports)
+    return linear_model(mbs, body=body), in_list
 
 
 def test_what_the_basis_leaves_out_is_known_in_scenes():
-    rotor = rings(0)
-    models = on_two_supports(rotor, spin=SPEED)
+    models = on_two_supports(rings(0), spin=SPEED)
     errors = [campbell(model, [SPEED]).basis_errors[0] for model in models]
     errors = [np.sort(each[np.isfinite(each)])[-4:] for each in errors]
     assert errors[1].max() > 1e-6

@@ -36,10 +36,9 @@ def journal_start(scene: LinearScene, speed: float, orders: np.ndarray) -> np.nd
     loads = _static_loads(scene.body)
     harmonics[at[0]] = scene.N.T @ _tilts(scene, speed, loads)
     # where the origin is the centre of mass, its displacement is from its place at rest
-    apart = scene.axes.T @ scene.body.axis.radial(scene.body.frame.origin)
-    back = into_rotor_frame(-apart - scene.moved)  # from where the given state has it
-    for n, shift in ((0, apart), *back.items()):
-        harmonics[at[n]] += scene.N[: scene.count].T @ shift[: scene.count]
+    back = into_rotor_frame(-scene.apart - scene.moved)  # from where the given state has it
+    for n, shift in ((0, scene.apart), *back.items()):
+        harmonics[at[n]] += scene.translation(shift)
     cage = scene.body.placement.angle
     places = {one.interface: _place(one, load, speed, cage) for one, load in loads.items()}
     places = {name: place for name, place in places.items() if np.any(place)}

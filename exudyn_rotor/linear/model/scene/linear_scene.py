@@ -2,7 +2,7 @@
 
 The unknowns are the rotor's translations in axes that turn with it, its modal coordinates, and the
 coordinates of everything else as they are in the scene: foundations stay inertial. The spin is
-prescribed, θ = Ωt.
+θ = Ωt; deviations of a free spin are in the rotor's columns alone.
 
 Neglected: the change of mass matrices and constraint directions along small steady motions.
 """
@@ -20,6 +20,8 @@ from exudyn_rotor import checks
 from exudyn_rotor.calls import kept
 from exudyn_rotor.linear.equations import others
 from exudyn_rotor.linear.model.body import RotorAlone
+from exudyn_rotor.linear.model.spin import ARM
+from exudyn_rotor.linear.model.turning import interface_motion
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.plan import turned_origin
@@ -28,12 +30,13 @@ from exudyn_rotor.multibody.rotor.rotor_items import known_rotors
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 from exudyn_rotor.multibody.supports.ends import BaseEnd
 from exudyn_rotor.theory.axis import SpinAxis, skew
-from exudyn_rotor.theory.rotating_axes import axes_of
+from exudyn_rotor.theory.rotating_axes import axes_of, axial_skew
 
 # objects without forces: grounds and constraints
 _FORCELESS = ("Ground", "ConnectorCoordinate", "ConnectorCoordinateVector", "ConnectorDistance")
 _HELD = 1e-8  # share of a motion of the rotor that is none of the scene
 _TOUCHED = 1e-14  # entry of a constraint below which it is none of a coordinate
+_TURNED = 1e-3  # share of a constraint by which it is one of the spin
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,12 +52,15 @@ class LinearScene:
         Motions that the scene's constraints allow.
     rest : ndarray
         All coordinates of the given state.
+    is_spin_free : bool
+        Whether the spin is a coordinate of linear equations.
     """
 
     body: RotorBody
     free: np.ndarray
     N: np.ndarray
     rest: np.ndarray
+    is_spin_free: bool
 
     @classmethod
     def of_rotor(cls, body: RotorBody) -> LinearScene:
@@ -64,7 +70,7 @@ class LinearScene:
         # translations, then modes
         own = np.delete(body.layout.unknowns, [count] if body.formulation.has_spin else [])
         free = np.asarray(body.mbs.systemData.GetObjectLTGODE2(body.objects["physics"]))[own]
-        made = cls(body, free, np.eye(len(free)), rest)
+        made = cls(body, free, np.eye(len(free)), rest, body.formulation.has_spin)
         rest[free[count:]] = 0.0
         # where the rotor is when it has turned back
         turned = turned_origin(body.selection, body.placement.rotation, rest[made.spin_coordinate])
@@ -81,32 +87,42 @@ class LinearScene:
         ------
         TypeError, ValueError
             For a system that is not assembled, a body of another system, a second rotor,
-            coordinates of first order, and constraints that turn with the rotor.
+            coordinates of first order, and constraints that turn with the rotor or tie its free
+            spin to something.
         """
         check_scene(mbs, body)
         alone = cls.of_rotor(body)
         rotor = mbs.systemData.GetObjectLTGODE2(body.objects["physics"])
         free = np.r_[alone.free, np.setdiff1d(np.arange(len(alone.rest)), rotor)]
-        scene = cls(body, free, np.eye(len(free)), alone.rest)
+        scene = cls(body, free, np.eye(len(free)), alone.rest, alone.is_spin_free)
         with evaluating(mbs) as solver:
-            C = [scene._constraints(solver, angle) for angle in (0.0, 1.0, 2.5)]
+            found = [scene._constraints(solver, angle) for angle in (0.0, 1.0, 2.5)]
+        sizes, turned = np.abs(found[0][:, :-1]).max(axis=1, initial=0.0), np.abs(found[0][:, -1])
+        holds_spin = turned > _TURNED * sizes
+        C = [X[np.abs(X).max(axis=1, initial=0.0) > _TOUCHED] for X in (X[:, :-1] for X in found)]
         if any(X.shape != C[0].shape or np.abs(X - C[0]).max(initial=0.0) > 1e-6 for X in C):
             raise ValueError(
                 "linear scene: a constraint turns with the rotor; hold the rotor by springs "
-                "(bearings) instead of joints"
+                "(bearings) instead of joints, and give a part that turns with it to the rotor, "
+                "add_disc(…) or add_point_mass(…) of SolidRotor"
+            )
+        if scene.is_spin_free and np.any(holds_spin & (sizes > _TURNED * turned)):
+            raise ValueError(
+                "linear scene: a constraint ties the free spin to another coordinate; use springs, "
+                "or connect_rotors(…) to a second rotor"
             )
         # coordinates that no constraint touches stay as they are
         N = others(C[0].T) if len(C[0]) else scene.N
-        return cls(body, free, N, scene.rest)
+        return cls(body, free, N, scene.rest, scene.is_spin_free and not np.any(holds_spin))
 
     def _constraints(self, solver: exudyn.MainSolverStatic, theta: float) -> np.ndarray:
-        """Return the constraints' Jacobian by the free coordinates, rows that are zero left out."""
+        """Return the constraints' Jacobian by the free coordinates as unknowns, and the spin."""
         q, mbs = self.rest.copy(), self.body.mbs
         q[self.spin_coordinate] = theta
         mbs.systemData.SetODE2Coordinates(q)
         mbs.systemData.SetODE2Coordinates_t(0.0 * q)
-        C = constraint_rows(mbs, solver, len(q))[:, self.free] @ self.turn(theta)[0]
-        return C[np.abs(C).max(axis=1, initial=0.0) > _TOUCHED]
+        C = constraint_rows(mbs, solver, len(q))
+        return np.column_stack([C[:, self.free] @ self.turn(theta)[0], C[:, self.spin_coordinate]])
 
     # ------------------------------------------------------------------ the rotor
 
@@ -143,6 +159,11 @@ class LinearScene:
         return axes_of(SpinAxis(self.body.motion.invariants.direction))
 
     @cached_property
+    def apart(self) -> np.ndarray:
+        """Place of the rotor's origin off the axis, along (n1, n2, e) that turn, (3,)."""
+        return self.axes.T @ self.body.axis.radial(self.body.frame.origin)
+
+    @cached_property
     def moved(self) -> np.ndarray:
         """Displacement of the rotor, turned back, in the given state [m].
 
@@ -150,6 +171,10 @@ class LinearScene:
         """
         given = self.body.motion.free_directions @ self.rest[self.free[: self.count]]
         return self.body.standing_axes.T @ given
+
+    def translation(self, x: np.ndarray) -> np.ndarray:
+        """Return the unknowns (k,) of a displacement of the rotor's origin (3,)."""
+        return self.N[: self.count].T @ x[: self.count]
 
     @cached_property
     def touching(self) -> np.ndarray:
@@ -166,7 +191,7 @@ class LinearScene:
     @cached_property
     def _with_spin(self) -> np.ndarray:
         """The :attr:`columns`, then that of a free spin."""
-        if not self.body.formulation.has_spin:
+        if not self.is_spin_free:
             return self.columns
         source = self.body.selection.source
         center = source.center_of_mass
@@ -186,6 +211,30 @@ class LinearScene:
     def by_columns(self) -> np.ndarray:
         """Unknowns that move the rotor by the coordinates of the reduced rotor, (r, n)."""
         return np.linalg.pinv(self._with_spin)[: self.columns.shape[1]]
+
+    @cached_property
+    def spin_by_columns(self) -> np.ndarray:
+        """Turn of a free spin by the coordinates of the reduced rotor, (1, n); else (0, n)."""
+        return np.linalg.pinv(self._with_spin)[self.columns.shape[1] :]
+
+    @cached_property
+    def centring(self) -> np.ndarray:
+        """Unknowns (k,) that keep interfaces on the axis as the rotor turns by one rad.
+
+        The origin moves about the axis, and what is off the axis by the mesh alone is kept there,
+        as by :meth:`Spin.centred`.
+        """
+        source, about = self.body.selection.source, axial_skew(3)
+        found = self.translation(about @ self.apart)
+        if not self.is_spin_free or not source.interfaces:
+            return found
+        U = np.array([interface_motion(source, name)[:2] for name in source.interfaces])
+        about_axis = self._with_spin[:, -1]
+        arms = U @ about_axis
+        near = self.mass * np.sum(arms**2, axis=1) <= ARM * (about_axis @ about_axis)
+        across = (U[near] @ self.columns).reshape(-1, self.columns.shape[1])
+        found[self.touching] -= np.linalg.pinv(across) @ arms[near].ravel()
+        return found
 
     @kept
     def held(self, alone: RotorAlone) -> np.ndarray:

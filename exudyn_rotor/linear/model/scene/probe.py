@@ -1,7 +1,7 @@
 """Exudyn's forces and masses at chosen states of a scene, and the laws that are attached to it.
 
-Linear equations have a prescribed spin, and leave out moments of a static force F₀ by small motions
-u: that it turns with what carries the bearing, and that friction on this changes, by about F₀ u.
+Linear equations leave out moments of a static force F₀ by small motions u, on the spin, too: that
+it turns with what carries the bearing, and that friction on this changes, by about F₀ u.
 """
 
 from __future__ import annotations
@@ -23,6 +23,9 @@ from exudyn_rotor.theory.stiffening import stiffening
 
 _KEPT = 48  # angles whose terms of the rotor, and whose turned axes, are kept
 _LOADS = 2  # Exudyn's word for loads that depend on places and rates
+_SLOW = (
+    1e-6  # share of a lateral stiffness per mass, or 1/s², below which one on the spin is rounding
+)
 
 
 class Forces(NamedTuple):
@@ -158,13 +161,38 @@ class Probe:
                 D[places[:, None], places] += by_rate
         return Forces(force[self.scene.free], self._of_free(K), self._of_free(D))
 
-    def _exudyn_slopes(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return less the derivatives of Exudyn's forces at the present state."""
+    def on_spin(self, theta: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return stiffness and damping by Exudyn's forces on and by a free spin, (f + 1, f + 1).
+
+        Of the free coordinates, then the spin; zero between the former. They are those of the
+        undeformed state without loads: moments of static forces by small motions are left out.
+        """
+        scene, T, found = self.scene, self.turn(theta)[0], []
+        lateral = T[:, scene.touching] / self.metres[scene.touching]
+        places = np.r_[scene.free, self.spin]
+        centred = np.eye(len(places))
+        centred[:-1, -1] = T @ scene.centring
+        apart, moved = (scene.translation(x) for x in (scene.apart, scene.moved))
+        x = T @ apart - self.turn(0.0)[0] @ (apart + moved)
+        self._set(theta, x, self.turn(theta)[1] @ apart)
+        for X in self._exudyn_slopes(loads=0):
+            X = centred.T @ X[np.ix_(places, places)] @ centred
+            most = np.abs(np.einsum("ij,ik,kj->j", lateral, X[:-1, :-1], lateral)).max(initial=0.0)
+            least = _SLOW * max(most / scene.mass, 1.0) * scene.body.motion.invariants.Theta
+            X[:-1, :-1] = 0.0
+            found.append(X if abs(X[-1, -1]) > least else 0.0 * X)
+        return tuple(found)
+
+    def _exudyn_slopes(self, loads: int = _LOADS) -> tuple[np.ndarray, np.ndarray]:
+        """Return less the derivatives of Exudyn's forces at the present state.
+
+        Without those of `loads` where these are 0.
+        """
         size = len(self.scene.rest)
         whole, found = np.zeros((size + self.solver.GetAEsize(),) * 2), []
         for by_place, by_rate in ((-1.0, 0.0), (0.0, -1.0)):
             self.solver.SetSystemJacobian(whole)
-            self.solver.ComputeJacobianODE2RHS(self.mbs, by_place, by_rate, 0.0, _LOADS)
+            self.solver.ComputeJacobianODE2RHS(self.mbs, by_place, by_rate, 0.0, loads)
             found.append(np.array(self.solver.GetSystemJacobian())[:size, :size])
         return tuple(found)
 

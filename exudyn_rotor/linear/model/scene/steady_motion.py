@@ -35,6 +35,14 @@ _ROUGH = 1e-3  # share of the motion that the highest may have,
 _SLOWLY = 0.01  # where twice the samples leave more of them than this share
 _SOLVED = 0.01  # of what the harmonics leave out, beyond which more iterations are of no use
 
+WINDS_UP = (
+    "linear scene at {:g} rad/s: a spring of Exudyn about the axis winds up as the rotor turns, "
+    "for what it is on stands still here; give a flywheel as a second rotor, "
+    "connect_rotors(FlexibleCoupling(…), …), and for a spring to the ground analyse the reduced "
+    "rotor with supports=[…, Support(…, tilt_stiffness=…)]; a run shows what they do"
+)
+_TWISTED = 1e-6  # rad
+_WINDING = 1e-3  # mean over a turn as a share of stiffness about the axis, but for the mesh
 _UNHELD = 1e-6  # m/s² by which loads may accelerate what nothing holds: round-off
 _BALANCED = 1e-8  # m/s² that may be left where a contact resists with the square of its depth,
 _FEW_ITERATIONS, _MOST_ITERATIONS = 4, 60  # after these
@@ -66,15 +74,47 @@ def steady_motion(
     ------
     UnconvergedError
         Where no steady motion is found, or 192 angles do not resolve it, where loads do not
-        repeat with every revolution, and where nothing holds the own spin of a rotor with an
-        elastic drive against a torque.
+        repeat with every revolution, where nothing holds the own spin of a rotor with an elastic
+        drive against a torque, and where springs on the spin wind up.
     """
     with probing(scene, checks.number(speed, "speed", "rad/s")) as probe:
         _check_period(probe)
         if not speed:
             search = _Search(probe, _AT_REST, tolerance)
-            return search.orders, search.found(None if start is None else start[1])[0]
+            motion = search.orders, search.found(None if start is None else start[1])[0]
+            _check_untwisted(probe, *motion)
+            return motion
+        _check_unwound(probe)
         return _turning(probe, tolerance, start)
+
+
+def _check_unwound(probe: Probe) -> None:
+    """Refuse springs of Exudyn about the axis."""
+    angles = 2.0 * np.pi * np.arange(3) / 3.0
+    if winds_up([probe.on_spin(angle)[0][-1, -1] for angle in angles]):
+        raise UnconvergedError(WINDS_UP.format(probe.speed))
+
+
+def winds_up(stiffness: Sequence[float]) -> bool:
+    """Return whether stiffnesses on the spin, at angles, are those of a spring about the axis.
+
+    One at a point off the axis has none in the mean.
+    """
+    return abs(sum(stiffness)) > _WINDING * sum(map(abs, stiffness))
+
+
+def _check_untwisted(probe: Probe, orders: np.ndarray, harmonics: np.ndarray) -> None:
+    """Refuse a moment on a free spin at rest that springs of Exudyn hold."""
+    angle = probe.scene.body.placement.angle
+    stiffness = probe.on_spin(angle)[0][-1, -1] if probe.scene.is_spin_free else 0.0
+    x = probe.turn(angle)[0] @ (np.exp(1j * orders * angle) @ harmonics).real
+    probe.forces(angle, x, 0.0 * x, slopes=False)
+    moment = np.array(probe.solver.GetSystemResidual())[probe.spin]
+    if stiffness and abs(moment) > _TWISTED * abs(stiffness):
+        raise UnconvergedError(
+            f"linear scene at rest: {moment:g} N m twist the spring on the free spin; "
+            "mbs.SolveStatic finds this equilibrium"
+        )
 
 
 def _turning(probe: Probe, tolerance: float, start: Motion | None) -> Motion:
