@@ -18,7 +18,15 @@ import numpy as np
 from scipy.optimize import brentq
 
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, difference
-from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, Content, Named, damping_of, matched
+from exudyn_rotor.linear.modal.whirl import (
+    BACKWARD,
+    FORWARD,
+    Content,
+    Named,
+    damping_of,
+    likenesses,
+    matched,
+)
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import motions_in, motions_over, warn_of
 
@@ -31,6 +39,9 @@ _STILL = 1e-3  # of the speed: a frequency below is that of a motion that does n
 _RESONANT = np.sqrt(0.5)  # damping ratio above which a mode has no resonance
 _FED = 1e-6  # share of the power to a mode that is none: orbits in planes, nodes
 _HALVES = 10  # how often a step is halved
+_UNLIKE = 0.01  # likeness of shapes below which a mode cannot be the other one
+_TIE = 1.5  # ways of two modes over each other that are alike
+_JOINED = 0.05  # share of a place by which a mode goes at most in the shortest step
 _APART = 4.0  # how much farther than a mode goes in a step another one is at its end
 
 
@@ -150,7 +161,7 @@ class CoupledModes:
         if limit is not None and limit <= MULTIPLES[-1]:
             return self._course(start, grows), limit
         modes = self.at(start)
-        found = modes.swings & (modes.named.codes[0] == FORWARD)
+        found = modes.swings & modes.forward & (modes.named.codes[0] == FORWARD)
         if grows is not None:
             found[grows] = True
         if np.any(found):
@@ -205,17 +216,22 @@ class CoupledModes:
 
         The step is taken in halves where another mode is near at its end.
         """
-        first, last = self.at(start), self.at(end)
-        later = int(matched(first.named, last.named, self._model.mass_matrix)[0][0, mode])
-        gone = np.abs(last.places[later] - first.places[mode])
+        first, last, M = self.at(start), self.at(end), self._model.mass_matrix
+        later = int(matched(first.named, last.named, M)[0][0, mode])
+        shapes = (each.named.motions.main for each in (first, last))
+        gone = np.abs(last.places - first.places[mode])
         near = np.abs(last.places - last.places[later])
         opposite = {FORWARD: BACKWARD, BACKWARD: FORWARD}.get(int(first.named.codes[0, mode]))
         rivals = last.lateral & (last.named.codes[0] != opposite)
-        is_one = bool(rivals[later])
-        rivals[later] = False
-        is_one = is_one and _APART * gone <= np.min(near[rivals], initial=np.inf)
-        if is_one or not halves or np.isnan(gone):
+        rivals &= likenesses(*shapes, M)[0, mode] > _UNLIKE
+        is_one, others = bool(rivals[later]), rivals.copy()
+        others[later] = False
+        is_one = is_one and _APART * gone[later] <= np.min(near[others], initial=np.inf)
+        if is_one or np.isnan(gone[later]):
             return later
+        if not halves:  # two modes that join: the lower one where they part alike
+            joins = rivals[later] and gone[later] <= _JOINED * np.abs(first.places[mode])
+            return last.lowest(rivals & (gone <= _TIE * gone[later])) if joins else later
         middle = float(np.sqrt(start * end)) or 0.5 * (start + end)
         return self._followed(
             self._followed(mode, start, middle, halves - 1), middle, end, halves - 1

@@ -106,6 +106,8 @@ class Invariants:
     H: Matrix | None = None
     K0: Matrix | None = None
 
+    __repr__ = checks.Checked.__repr__  # arrays by their shapes
+
     def __post_init__(self) -> None:
         direction = checks.vector(self.direction, "direction")
         if abs(np.linalg.norm(direction) - 1.0) > _UNIT:

@@ -68,6 +68,7 @@ def test_anisotropic_bearings_raise_the_threshold(q):
     apart = found.applied < 1e3
     growth = found.log_decrement * found.frequencies / (2.0 * np.pi)
     np.testing.assert_allclose(growth[apart], 10.0, rtol=1e-9)
+    assert found.frequencies[0] == pytest.approx(np.sqrt(0.9e4 - 100.0), rel=1e-6)  # the lower one
     if 10.0 * q < limit:
         assert found.threshold is None
     else:

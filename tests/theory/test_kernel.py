@@ -6,23 +6,14 @@ import exudyn
 import numpy as np
 import pytest
 from point_rotors import random_invariants, random_spd, ring_rotor
-from scipy.spatial.transform import Rotation
+from test_motion import ORIENTATION, SHAKE, SWING
 
-from exudyn_rotor import Formulation, Motion, PrescribedMotion, select_modes
+from exudyn_rotor import Formulation, Motion, select_modes
 from exudyn_rotor.multibody.solver_settings import recommended_settings
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.kernel import Kernel
 from exudyn_rotor.theory.stiffening import stiffening
 
-ORIENTATION = Rotation.from_rotvec([0.3, -0.5, 0.8]).as_matrix()
-SHAKE = PrescribedMotion(
-    lambda t: np.array([0.3, -0.2, 0.4]) * np.sin(2 * t),
-    lambda t: np.array([0.3, -0.2, 0.4]) * 2 * np.cos(2 * t),
-    lambda t: np.array([0.3, -0.2, 0.4]) * -4 * np.sin(2 * t),
-)
-SWING = PrescribedMotion(
-    lambda t: 0.5 * t + np.sin(t), lambda t: 0.5 + np.cos(t), lambda t: -np.sin(t)
-)
 ANGLE = Formulation("none", "free")
 FORMULATIONS = {
     "free spin": ANGLE,

@@ -486,7 +486,7 @@ def matched(
     share `spread` of itself, the growth and the sense. A motion and its conjugate are one.
     """
     first, second = before.motions, after.motions
-    likeness, bounds = _likeness(first.main, second.main, M), first.bounds[:, None, None]
+    likeness, bounds = likenesses(first.main, second.main, M), first.bounds[:, None, None]
     heard = before.inertial[:, :, None], after.inertial[:, None]
     jump, turned = np.abs(heard[1] - heard[0]), np.abs(second.speeds - first.speeds)
     allowed = _STEEPEST * turned[:, None, None] + spread * np.maximum(*heard) + bounds
@@ -512,7 +512,7 @@ def matched(
     return chosen, same | ((first.values == 0.0) & (np.take_along_axis(later, chosen, 1) == 0.0))
 
 
-def _likeness(before: np.ndarray, after: np.ndarray, M: np.ndarray) -> np.ndarray:
+def likenesses(before: np.ndarray, after: np.ndarray, M: np.ndarray) -> np.ndarray:
     """Return the criterion of all pairs of shapes (s, c, k) and (s, c, l), or their conjugates."""
     before, after = np.nan_to_num(before), np.nan_to_num(after)
     norms = [np.sum(x.conj() * (M @ x), axis=1).real for x in (before, after)]

@@ -206,7 +206,8 @@ def _warn_of_mesh(model: LinearModel) -> None:
     if model.may_be_round:
         warnings.warn(
             f"the rotor counts as uneven: {model.unevenness:.1%} of it differs around its axis; "
-            "where that is its mesh, make it finer, or average it by axes='inertial'",
+            "where that is its mesh, make it finer, or average it by axes='inertial'; where it is "
+            "meant, give axes='rotor'",
             UserWarning,
             stacklevel=user_level(),
         )

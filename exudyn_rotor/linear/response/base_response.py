@@ -203,9 +203,9 @@ def base_response(
             "target: a motion of the ground needs a reduced rotor on supports, and a foundation "
             "with its participation; in a scene, use add_base_motion"
         )
-    warn_of_omissions(model, speed, "base_response computes motion over time")
     model.check_without_frequency("a motion of the ground")
     model = model.for_responses
+    warn_of_omissions(model, speed, "base_response computes motion over time")
     observed = places(model, at, speed)
     time, motion = _ShakenRotor.of(model, speed, record, observed).converged(end, tolerance)
     motion[:, [one.is_node for one in observed], 3:] = np.nan

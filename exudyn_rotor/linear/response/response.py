@@ -420,7 +420,9 @@ class Response(AtPlaces, ModelResult):
 
     def _nearest(self, value: float) -> int:
         """Return the number of the computed speed or frequency nearest to a value [rad/s]."""
-        return int(np.argmin(np.abs(self.abscissa - checks.number(value, "value", "rad/s"))))
+        at = self.abscissa
+        value = checks.number(value, "value", "rad/s", least=at[0], most=at[-1])
+        return int(np.argmin(np.abs(at - value)))
 
     def _title(self, place: str, order: int) -> str:
         return f"{place}, order {order}, {self.frame} frame"

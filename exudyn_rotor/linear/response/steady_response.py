@@ -125,9 +125,9 @@ def unbalance_response(
     unbalances = checks.instances(unbalances, "unbalances", Unbalance)
     options = at, frame, tolerance, refine, accuracy
     sweep = _OverSpeed(*options, unbalances=unbalances, own=checks.flag(own, "own"))
-    model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
+    model = linear_model(target, supports=supports, body=body, stiffening=stiffening).for_responses
     warn_of_omissions(model, np.abs(values).max())
-    values, found = sweep.over(model.for_responses, values)
+    values, found = sweep.over(model, values)
     loads = in_words(model, unbalances, own)
     return UnbalanceResponse(frame=frame, speeds=values, loads=loads, **found)
 
@@ -189,9 +189,9 @@ def harmonic_response(
     speed = checks.number(speed, "speed", "rad/s")
     loads = checks.instances(loads, "loads", (HarmonicForce, BaseAcceleration))
     sweep = _OverFrequency(at, frame, tolerance, refine, accuracy, loads=loads, speed=speed)
-    model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
+    model = linear_model(target, supports=supports, body=body, stiffening=stiffening).for_responses
     warn_of_omissions(model, speed)
-    values, found = sweep.over(model.for_responses, values)
+    values, found = sweep.over(model, values)
     return HarmonicResponse(frame=frame, frequencies=values, speed=speed, **found)
 
 

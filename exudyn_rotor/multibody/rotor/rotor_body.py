@@ -486,8 +486,8 @@ class RotorBody(SceneBody):
         Parameters
         ----------
         state : StartState
-            Of this system: ``steady_state(body).state()``, or ``response.state(speed, body)`` of a
-            linear response.
+            Of this system: ``steady_state(body).state()``, or ``state(point, body)`` of the result
+            of :func:`periodic_response`.
 
         Raises
         ------
