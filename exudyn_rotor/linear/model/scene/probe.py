@@ -23,9 +23,8 @@ from exudyn_rotor.theory.stiffening import stiffening
 
 _KEPT = 48  # angles whose terms of the rotor, and whose turned axes, are kept
 _LOADS = 2  # Exudyn's word for loads that depend on places and rates
-_SLOW = (
-    1e-6  # share of a lateral stiffness per mass, or 1/s², below which one on the spin is rounding
-)
+# share of a lateral stiffness per mass, or 1/s², below which one on the spin is rounding
+_SLOW = 1e-6
 
 
 class Forces(NamedTuple):
