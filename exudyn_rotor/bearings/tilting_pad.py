@@ -186,9 +186,12 @@ class TiltingPadBearing(Bearing):
         held = np.array([soft, 4.0 * np.sqrt(soft * mass)])  # overdamped: no vibration of its own
         return state.ports(held)
 
-    def static_stiffness(self, speed: float, load: np.ndarray) -> np.ndarray:
-        """Return the stiffness against slow changes of a load, (2, 2) [N/m], unchecked."""
-        return self._state(speed, load).impedance(0.0).real
+    def static_stiffness(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
+        """Return the stiffness against slow changes of a load, shape (2, 2) [N/m].
+
+        Parameters and errors are those of :meth:`equilibrium`.
+        """
+        return self._state(speed, self._static_load(load)).impedance(0.0).real
 
     def _state(self, speed: float, load: np.ndarray) -> _Pads:
         """Return the pads in equilibrium."""

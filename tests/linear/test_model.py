@@ -95,6 +95,7 @@ def test_a_rotor_that_is_all_but_round_is_told():
 
 def test_rotor_and_train_of_one_are_the_same():
     supports, speeds = held(UNEVEN), [0.0, 100.0, 400.0]
+    assert linear_model(RotorTrain({"r": flat(1.03e4).reduce(3)}, {"r": 1.0})).axes == "rotor"
     alone = stability(disc(), speeds, supports=supports, accuracy=None)
     train = RotorTrain({"r": disc()}, {"r": 1.0}, {"r": supports})
     np.testing.assert_allclose(

@@ -13,8 +13,10 @@ from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
 from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.drives.gear_mesh import GearMesh
+from exudyn_rotor.linear.model.body import EVEN
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
+_EVEN_ENOUGH = 0.05  # unevenness up to which one of several rotors counts as round
 _SAME = 1e-9  # relative slip of gears that is rounding
 
 
@@ -124,7 +126,8 @@ class RotorTrain:
         Share of a rotor's matrices, and of the motions of its interfaces, that may differ around
         the axis, as that of a mesh does; weighted by what slow motions see. Up to it a rotor of
         another ratio than 1, or any beside gears or anisotropic supports at rest, counts as
-        axisymmetric, by its mean over a turn.
+        axisymmetric, by its mean over a turn. 0.05 by default, of one rotor alone 0.01 as without a
+        train.
     driven : sequence of str, optional
         Rotors whose drive holds their speed: the mean rotation about the axis is the angle of Ω
         times the ratio, and no coordinate. The spins of all others are, and what nothing holds of
@@ -168,7 +171,7 @@ class RotorTrain:
     ratios: Mapping[str, float]
     supports: Mapping[str, Sequence[Given]] = field(default_factory=dict)
     links: Sequence[Link] = ()
-    largest_unevenness: float = 0.05
+    largest_unevenness: float | None = None
     driven: Sequence[str] = ()
 
     def __post_init__(self) -> None:
@@ -186,7 +189,10 @@ class RotorTrain:
                 checks.choice(interface, f"links: interface of {name!r}", rotors[name].interfaces)
             link._check_ratios(ratios)
         driven = checks.labels(self.driven, "driven", rotors)
-        uneven = checks.number(self.largest_unevenness, "largest_unevenness", least=0.0, most=1.0)
+        uneven = self.largest_unevenness
+        if uneven is None:
+            uneven = EVEN if len(rotors) == 1 else _EVEN_ENOUGH
+        uneven = checks.number(uneven, "largest_unevenness", least=0.0, most=1.0)
         for name, value in {
             "rotors": checks.read_only_mapping(rotors),
             "ratios": checks.read_only_mapping(ratios),

@@ -328,8 +328,8 @@ class BaseAcceleration:
         loads = model.base_loads(speed)
         if loads is None:
             raise ValueError(
-                "base acceleration needs a rotor with supports, and a foundation with its "
-                "participation; in a scene, put a force on the moving parts"
+                "gravity, or ground that moves, needs a rotor with supports, and a foundation with "
+                "its participation; in a scene, put a force on the moving parts"
             )
         return {n: each.T @ self.acceleration for n, each in loads.items()}
 

@@ -378,8 +378,8 @@ def check_scene(mbs: exudyn.MainSystem, body: RotorBody) -> None:
     if second:
         raise ValueError(
             f"linear scene: a second rotor in this system, {second[0]!r}; one revolution is a "
-            "period for one spin speed only. Give body=[…] with all rotors, on supports of "
-            "add_supports and linked by these and connect_rotors; or give linear analyses a "
-            "RotorTrain of the reduced rotors and their supports, with gears and couplings as "
-            "Link(…)"
+            "period for one spin speed only, which steady_state needs. Linear analyses take "
+            "body=[…] with all rotors, on supports of add_supports and linked by these and "
+            "connect_rotors, or a RotorTrain of the reduced rotors and their supports, with gears "
+            "and couplings as Link(…)"
         )
