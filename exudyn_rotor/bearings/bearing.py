@@ -55,13 +55,17 @@ class Equilibria(Generic[State]):
             raise type(found)(*found.args)
         return found
 
+    def _under(self, load: np.ndarray) -> list[tuple[float, State | Exception]]:
+        """Return the speeds at which something is known under a load, and what it is."""
+        wanted = (*load.tolist(),)
+        return [(key[0], found) for key, found in list(self._known.items()) if key[1:] == wanted]
+
     def beside(self, speed: float, load: np.ndarray) -> State | None:
         """Return what is known at the nearest speed of the same sense, if any."""
         known = [
-            (abs(key[0] - speed), found)
-            for key, found in list(self._known.items())
-            if key[0] * speed > 0.0 and key[1:] == (*load.tolist(),)
-            if not isinstance(found, _FAILED)
+            (abs(other - speed), found)
+            for other, found in self._under(load)
+            if other * speed > 0.0 and not isinstance(found, _FAILED)
         ]
         return min(known, key=lambda each: each[0])[1] if known else None
 
@@ -70,9 +74,7 @@ class Equilibria(Generic[State]):
 
         Films carry less at slower speeds.
         """
-        own = [
-            (key[0] / speed, one) for key, one in list(self._known.items()) if key[1:] == (*load,)
-        ]
+        own = [(other / speed, found) for other, found in self._under(load)]
         refused = any(ratio > 1.0 and isinstance(one, _FAILED) for ratio, one in own)
         return refused and all(ratio > 1.0 or isinstance(one, _FAILED) for ratio, one in own)
 

@@ -148,8 +148,11 @@ class SceneModel(LinearModel):
         A constant one counts as such, too, where it is negative for a motion: speeds are searched
         one by one then.
         """
-        if not self._has_foreign or not self._is_list or super().stiffness_varies:
-            return self._has_foreign or super().stiffness_varies
+        varies = super().stiffness_varies
+        if varies or not self._has_foreign:
+            return varies
+        if not self._is_list:
+            return True
         try:
             rest, basis = self.at(0.0), self.moving_basis
         except NO_EQUATIONS:
