@@ -195,8 +195,12 @@ class Content:
     def energies(self, vectors: np.ndarray) -> np.ndarray:
         """Return the energies (w + 4 + p, s, h, k) of harmonics (s, h, c, k)."""
         begins = np.cumsum([0, *map(len, self.rows[:-1])])
-        moved = np.vstack(self.rows) @ vectors
-        return np.moveaxis(np.add.reduceat(moved.real**2 + moved.imag**2, begins, axis=2), 2, 0)
+        used = np.any(vectors, axis=(2, 3))  # at most speeds far fewer than at the slowest
+        moved = np.vstack(self.rows) @ vectors[used]
+        energies = np.zeros((len(begins), *used.shape, vectors.shape[3]))
+        squares = np.add.reduceat(moved.real**2 + moved.imag**2, begins, axis=1)
+        energies[:, used] = np.swapaxes(squares, 0, 1)
+        return energies
 
     def named(self, motions: Motions, *, apart: bool = False) -> Named:
         """Return motions with their names; repeated ones are waves of one sense where `apart`."""

@@ -8,21 +8,22 @@ harmonic, as λ + inΩ: of these copies the one whose harmonics lie around zero 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 
 from exudyn_rotor.linear.equations import PeriodicSystem, States
+from exudyn_rotor.linear.solve.harmonics import chain_of, edge_energy, with_all_harmonics
 
-_SIZES = (2, 3, 4, 5, 6)  # harmonics on either side, in steps of the coefficients
-_LARGEST, _MOST = 250, 1000  # unknowns beyond which fast motions are not waited for, and none
+_LARGEST = 750  # unknowns of a first guess
+_AROUND = 2  # times the speed: harmonics of the smallest one
 SLOW = 20.0  # |λ| over Ω up to which motions are waited for
-_NEAR = 1e-2  # of |λ|: by how much more one that is known about may grow
 _FAST = 30.0  # decay over Ω above which a motion is over before the coefficients change
 _OVER = 3.0  # decay over Ω, and over the own frequency, beyond which nobody looks at a motion
 # energy at the edge of the sum that counts as none, over the tolerance of λ, which errs by less
 # than a tenth of it; and energy that is too much
-_EDGE, _LOST = 10.0, 3e-3
+_EDGE, _LOST = 10.0, 1e-4
 _COPY, _ALIKE = 1e-6, 0.7  # of pΩ, and of a shape: how near a copy of a motion is
 
 
@@ -46,46 +47,73 @@ class Exponents(NamedTuple):
     lost: np.ndarray
 
 
-def hill_motions(
-    system: PeriodicSystem,
-    made: States,
-    tolerance: float,
-    begin: int = 0,
-    neutral: float | None = None,
-) -> tuple[Exponents, int]:
-    """Return the motions of a system, and with how many harmonics to begin at the next speed.
+class Beside(NamedTuple):
+    """All motions at another speed, with the states that they are in."""
 
-    Harmonics are added until those at the edge of the sum hold next to nothing of each motion. Fast
-    decays are not waited for, and of many coordinates only what slow motions need to be known at
-    all. Where only the growth of the least stable motion is asked for, slow motions that decay
-    faster than it need no more, either. Growth up to `neutral` [1/s] then counts as none. Exponents
-    that do not get there are NaN.
+    motions: Exponents
+    made: States
+
+
+def hill_motions(
+    system: PeriodicSystem, made: States, tolerance: float, beside: Beside | None = None
+) -> tuple[Exponents, bool]:
+    """Return the motions of a system, and whether all are known.
+
+    Guesses are the motions `beside`, as those at a speed before, then the eigenvalues of a sum of
+    few harmonics, and of more where motions are missing. Each motion then gets as many harmonics as
+    it has. As many different ones as there are coordinates are all. Fast decays are not waited for.
+    Exponents that do not get there are NaN.
     """
-    k, speed = system.size, abs(system.speed)
-    unknowns = [2 * k * (2 * size + 1) for size in (*_SIZES, np.inf)]
-    for place in range(begin, len(_SIZES)):
-        orders = system.step * np.arange(-_SIZES[place], _SIZES[place] + 1)
+    k, speed, least = system.size, abs(system.speed), _EDGE * tolerance
+    chain = chain_of(system, made)
+    for values, states, orders in _guesses(system, made, beside):
+        is_sum = orders is not None
+        edges = edge_energy(states) if is_sum else np.full(k, np.inf)
+        better, states, orders, edges = with_all_harmonics(chain, values, states, edges, least)
+        fast = -better.real > _FAST * speed
+        waited = is_sum & (fast | (np.abs(better) > SLOW * speed))
+        chosen = one_of_each_family(better, states, orders, system, made)
+        same = np.sum(_is_own(better, system)) == np.sum(_is_own(values, system))
+        is_whole = bool(len(chosen) == k and same and np.all((edges <= least) | waited))
+        if is_whole:
+            break
+    found = (fast | (edges <= _LOST)) & np.isin(np.arange(k), chosen)
+    kept = np.where(found, better, np.nan)
+    exponents = Exponents(kept, states, orders, lost_of(values[~found], system))
+    return exponents, is_whole and bool(np.all(found))
+
+
+def _guesses(
+    system: PeriodicSystem, made: States, beside: Beside | None
+) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray | None]]:
+    """Yield exponents, states and orders of guesses; those of motions beside have no orders."""
+    k = system.size
+    if beside is not None and beside.motions.states.shape[1:] == (2 * k, k):
+        yield *_carried(beside, system, made), None
+    size = -(-_AROUND // system.step)
+    while True:
+        orders = system.step * np.arange(-size, size + 1)
         values, states = _solved(made, orders, system.speed)
         chosen = one_of_each_family(values, states, orders, system, made)
-        values, states = values[chosen], states[:, :, chosen]
-        energy, growth = shares(states), values.real
-        fast, slow = -growth > _FAST * speed, np.abs(values) <= SLOW * speed
-        allowed = np.where(fast, np.inf, _EDGE * tolerance)
-        if neutral is not None:
-            least = growth[np.abs(growth) > neutral].max(initial=-np.inf)
-            near = slow & (growth >= least - _NEAR * np.abs(values))
-            allowed[growth < least] = np.inf
-            allowed[near & (growth < least)] = _LOST
-        few = np.where(slow, allowed if neutral is not None else _LOST, np.inf)
-        edges = energy[0] + energy[-1]
-        wanted = few if unknowns[place + 1] > _LARGEST else allowed
-        if np.all(edges <= wanted) or unknowns[place + 1] > _MOST:
-            break
-    wanted = few if unknowns[place] > _LARGEST else allowed
-    fewer = np.all(energy[1] + energy[-2] <= wanted)
-    found = fast | (edges <= _LOST)
-    kept = np.where(found, values, np.nan)
-    return Exponents(kept, states, orders, lost_of(values[~found], system)), max(place - fewer, 0)
+        yield values[chosen], states[:, :, chosen], orders
+        size += 1
+        if 2 * k * (2 * size + 1) > _LARGEST:
+            return
+
+
+def _carried(beside: Beside, system: PeriodicSystem, made: States) -> tuple[np.ndarray, np.ndarray]:
+    """Return exponents and states of the motions beside, in the states of a system."""
+    (values, states, orders, _), k = beside.motions, system.size
+    moved = np.linalg.solve(made.shape[:, :k], beside.made.shape @ states)
+    rates = values + 1j * system.speed * orders[:, None, None]
+    return values, np.hstack([moved, rates * moved / made.A[0][:k, k:].diagonal()[:, None]])
+
+
+def _is_own(values: np.ndarray, system: PeriodicSystem) -> np.ndarray:
+    """Return which motions may be their own conjugates: Im λ is a multiple of pΩ/2."""
+    half = 0.5 * abs(system.step * system.speed)
+    away = values.imag - half * np.round(values.imag / half)
+    return np.abs(away) <= _COPY * (np.abs(values) + half)
 
 
 def lost_of(values: np.ndarray, system: PeriodicSystem) -> np.ndarray:

@@ -21,7 +21,7 @@ from exudyn_rotor.linear.equations import (
     states_of,
 )
 from exudyn_rotor.linear.solve.floquet import floquet_motions
-from exudyn_rotor.linear.solve.hill import Exponents, hill_motions
+from exudyn_rotor.linear.solve.hill import Beside, Exponents, hill_motions
 
 METHODS = ("auto", "hill", "floquet")
 _ROUNDING = 100.0 * EPSILON  # of the size of a state matrix: what a real part may be off by
@@ -51,6 +51,8 @@ class Motions:
     lost : sequence of (float, float)
         Speeds [rad/s] at which motions did not converge that are no decays over at once, and about
         the lowest frequency of these [rad/s].
+    beside : Beside, optional
+        All motions at the last speed of periodic equations, from which a search near it can begin.
     """
 
     speeds: np.ndarray
@@ -59,6 +61,7 @@ class Motions:
     orders: np.ndarray
     bounds: np.ndarray
     lost: Sequence[tuple[float, float]] = ()
+    beside: Beside | None = None
 
     @property
     def known(self) -> np.ndarray:
@@ -105,7 +108,7 @@ def motions_of(
     method: str = "auto",
     tolerance: float = 1e-6,
     *,
-    least_stable: bool = False,
+    beside: Beside | None = None,
     told: Callable[[int], object] | None = None,
 ) -> Motions:
     """Return the motions of a stack of equations; NaN where it has none.
@@ -119,8 +122,8 @@ def motions_of(
         where these miss a slow motion that grows.
     tolerance : float
         Largest relative error of λ by harmonics that are left out.
-    least_stable : bool
-        Whether harmonics need to suffice for the least stable motion only.
+    beside : Beside, optional
+        See :attr:`Motions.beside`: of periodic equations much like these.
     told : callable, optional
         Is told of how many speeds more are solved.
     """
@@ -129,7 +132,7 @@ def motions_of(
     if reduced.is_constant:
         parts = _constant(reduced, told)
     else:
-        parts = _periodic(reduced, method, tolerance, least_stable, told)
+        parts = _periodic(reduced, method, tolerance, beside, told)
     found = joined_motions(stack.speed, [(known[places], part) for places, part in parts])
     return found if basis is None else found.in_all(basis, free)
 
@@ -171,11 +174,11 @@ def _periodic(
     stack: PeriodicSystem,
     method: str,
     tolerance: float,
-    least_stable: bool,
+    beside: Beside | None,
     told: Callable[[int], object] | None,
 ) -> list[tuple[np.ndarray, Motions]]:
     """Return the motions of equations that repeat every revolution, one speed after the other."""
-    parts, size = [], 0
+    parts = []
     for place in range(len(stack.speed)):
         places, system = np.array([place]), stack[place]
         if system.is_constant:  # at rest
@@ -188,8 +191,8 @@ def _periodic(
         if method == "floquet":
             exponents = floquet_motions(system, made)
         else:
-            neutral = bound if least_stable else None
-            exponents, size = hill_motions(system, made, tolerance, size, neutral)
+            exponents, is_whole = hill_motions(system, made, tolerance, beside)
+            beside = Beside(exponents, made) if is_whole else None
             most = max(np.nanmax(exponents.values.real, initial=-np.inf), bound)
             # a slow motion that Hill's method has lost may be the one that grows
             slow = exponents.lost[np.abs(exponents.lost) <= _SOUGHT * abs(system.speed)]
@@ -197,7 +200,8 @@ def _periodic(
                 other = floquet_motions(system, made)
                 if np.nanmax(other.values.real, initial=-np.inf) > most:
                     exponents = other
-        parts.append((places, _ascending(system.speed, exponents, made, bound)))
+        ascending = _ascending(system.speed, exponents, made, bound)
+        parts.append((places, replace(ascending, beside=beside)))
         if told is not None:
             told(1)
     return parts
@@ -225,7 +229,8 @@ def joined_motions(speeds: np.ndarray, parts: Sequence[tuple[np.ndarray, Motions
     for places, part in parts:
         values[places], bounds[places], vectors[places] = part.values, part.bounds, 0.0
         vectors[np.ix_(places, np.searchsorted(orders, part.orders))] = part.vectors
-    return Motions(speeds, values, vectors, orders, bounds, [v for _, p in parts for v in p.lost])
+    lost = [v for _, part in parts for v in part.lost]
+    return Motions(speeds, values, vectors, orders, bounds, lost, parts[-1][1].beside)
 
 
 def _bounds(made: States) -> np.ndarray:

@@ -580,7 +580,7 @@ def stability_map(
         places, models, speeds, coefficients = zip(*points, strict=True)
         model, content = models[0], Content.of(models[0])
         stack = model.at_points(np.array(speeds), coefficients)
-        motions = motions_in(model, stack, "auto", tolerance, held=True, least_stable=True)
+        motions = motions_in(model, stack, "auto", tolerance, held=True)
         found = of_motions(model, content, motions, None)
         rows, at = (np.arange(len(points)), found.least_stable), tuple(np.array(places).T)
         neutral = np.abs(found.growth) <= found.bounds

@@ -25,6 +25,7 @@ from exudyn_rotor.linear.model.assembly import NO_EQUATIONS
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel, warn_of_refused
 from exudyn_rotor.linear.over import NOT_KNOWN, basis_column, motions_in, table_lines
+from exudyn_rotor.linear.solve.hill import Beside
 from exudyn_rotor.linear.solve.motions import Motions
 from exudyn_rotor.linear.stability.stability import WHAT, check_options, of_motions
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
@@ -168,6 +169,7 @@ class _Margin:
     known: dict[float, float] = field(default_factory=dict)
     seen: dict[float, Motions] = field(default_factory=dict)
     resting: int | None = None
+    beside: Beside | None = None
 
     def at(self, points: Sequence[float]) -> None:
         """Compute the margin at points, with one warning where there are no coefficients."""
@@ -188,12 +190,14 @@ class _Margin:
         self.known |= {point: self.of(growth, bound) for point, growth, bound in found}
 
     def motions(self, points: Sequence[float], richer: bool = False) -> Motions:
-        """Return the motions at points of one model, or of a richer one; the least stable right."""
+        """Return the motions at points of one model, or of a richer one."""
         built = [self.model_at(point) for point in points]
         model, speeds = built[0][0], [speed for _, speed in built]
         model = model.richer if richer else model
-        how = {"held": True, "least_stable": True, "warns": False}
-        return motions_in(model, model.at_all(speeds), "auto", self.tolerance, **how)
+        how = {"held": True, "warns": False, "beside": None if richer else self.beside}
+        found = motions_in(model, model.at_all(speeds), "auto", self.tolerance, **how)
+        self.beside = self.beside if richer else found.beside
+        return found
 
     def of(self, growth: np.ndarray, bound: float) -> float:
         """Return the margin of the growth of all motions, (k,)."""
