@@ -21,7 +21,7 @@ from matplotlib.figure import Figure
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.storage import write_text
+from exudyn_rotor.storage import write_bytes
 from exudyn_rotor.units import Units
 
 _SHARPNESS = 110  # dots per inch
@@ -122,7 +122,8 @@ def report(
     body = "\n".join(["<nav><ol>", *links, "</ol></nav>", *parts])
     day = date.today().isoformat()
     made_by = f"exudyn_rotor {sys.modules[__package__].__version__}, Exudyn {exudyn.__version__}"
-    write_text(path, _PAGE.format(title=escape(title), day=day, made_by=made_by, body=body))
+    page = _PAGE.format(title=escape(title), day=day, made_by=made_by, body=body)
+    write_bytes(path, page.encode())
 
 
 def _sections(contents: Any) -> list[tuple[str, list[Any]]]:

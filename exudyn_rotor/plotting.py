@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.solid.matrices import as_triangles
+from exudyn_rotor.solid.surface import flat_triangles
 from exudyn_rotor.storage import write_bytes
 
 if TYPE_CHECKING:
@@ -190,13 +191,6 @@ def draw_surface(
     ax.set_box_aspect(np.ptp([low - around, high + around], axis=0), zoom=_ZOOM)
     ax.figure.colorbar(mapped, ax=ax, label=label, pad=0.15, shrink=0.8)
     return ax
-
-
-def flat_triangles(triangles: np.ndarray) -> np.ndarray:
-    """Return triangles (t, 3) with straight sides, four for each one of six nodes."""
-    if triangles.shape[1] == 3:
-        return triangles
-    return triangles[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
 
 
 def keep_apart(labels: Sequence[Annotation]) -> None:

@@ -22,7 +22,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.checks import FIELD_CHECKS, Checked, field_types
 from exudyn_rotor.checks import numbers as numbers
 from exudyn_rotor.checks import words as words
-from exudyn_rotor.storage import plain, read_arrays, write_arrays, write_text
+from exudyn_rotor.storage import plain, read_arrays, write_arrays, write_bytes
 
 _KIND = "result"
 _REGISTERED: dict[str, type[Result]] = {}
@@ -136,7 +136,7 @@ class Result(Checked):
         writer = csv.writer(text)
         writer.writerow(columns)
         writer.writerows(zip(*(values.tolist() for values in columns.values()), strict=True))
-        write_text(path, text.getvalue())
+        write_bytes(path, text.getvalue().encode())
 
     @classmethod
     def load(cls: type[Kind], path: str | PathLike) -> Kind:

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.plotting import COLORS, draw_surface, flat_triangles
+from exudyn_rotor.plotting import COLORS, draw_surface
 from exudyn_rotor.results import Result, numbers, storable, text_table, words
 from exudyn_rotor.solid.rotor import Interface
+from exudyn_rotor.solid.surface import flat_triangles
 from exudyn_rotor.storage import write_bytes
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.rotating_axes import axes_of

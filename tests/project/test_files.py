@@ -163,14 +163,6 @@ def test_objects_are_neither_read_nor_written(tmp_path):
 # ------------------------------------------------------------------ other files
 
 
-def test_files_of_development_versions_load(tmp_path):
-    path, data = saved("ReducedRotor", tmp_path)
-    np.savez(path, **data | {"sha256": np.array("0" * 64)})
-    again = ReducedRotor.load(path)
-    again.save(path)
-    assert_same(entries(path), data)
-
-
 def test_other_files_are_told_apart(tmp_path):
     path = tmp_path / "other.npz"
     np.savez(path, K=np.eye(3))
