@@ -125,7 +125,7 @@ def _check_stiffness(stiffness: sp.csr_array) -> None:
 
 def as_node_numbers(name: str, nodes: Any, node_count: int | None = None) -> np.ndarray:
     """Return the node numbers of interface `name`, shape (k,), below `node_count` if given."""
-    most = checks.MOST if node_count is None else node_count - 1
+    most = np.inf if node_count is None else node_count - 1
     numbers = checks.whole_numbers(nodes, f"interface {name!r}: nodes", most=most)
     if numbers.size == 0:
         raise ValueError(f"interface {name!r} has no nodes; check the face name or the node list")
