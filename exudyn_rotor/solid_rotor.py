@@ -99,8 +99,8 @@ class SolidRotor(FiniteElementRotor):
         ----------
         mesh : ngsolve.Mesh
             Gets mid nodes on the geometry (``SecondOrder``) if `order` is 2 and it has none yet;
-            they replace the curved elements of ``mesh.Curve``, as a warning says. Node numbers are
-            those of the Netgen mesh and of Exudyn's FEMinterface, counted from zero.
+            they replace the curved elements of ``mesh.Curve``. Node numbers are those of the
+            Netgen mesh and of Exudyn's FEMinterface, counted from zero.
         materials : mapping
             Region name → ``{'youngsModulus': Pa, 'poissonsRatio': 1, 'density': kg/m³}``; one
             such dict by itself for a mesh with one material.

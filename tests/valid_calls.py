@@ -254,10 +254,6 @@ CALLS = {
         "amplifier_frequency": 1e4,
     },
     "Pad": {"start": 0.2, "arc": 1.5},
-    "Prestress.from_matrix": lambda w: {
-        "matrix": w.Prestress.matrix,
-        "nodes": w.SolidRotor.nodes,
-    },
     "RollingBearing": {
         "count": 8,
         "pitch_radius": 0.0326,

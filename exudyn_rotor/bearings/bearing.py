@@ -138,14 +138,13 @@ class LoadedBearing(ABC):
         Parameters
         ----------
         speeds, frequencies : array_like, shape (s,), (f,)
-            Ascending spin speeds, and frequencies > 0 of the motion [rad/s]. Speeds at which the
-            bearing has no equilibrium are left out with a warning.
+            Ascending spin speeds, and frequencies > 0 of the motion [rad/s].
 
         Raises
         ------
         TypeError, ValueError
-            For bad input, a missing load, no speed with an equilibrium, and sensors elsewhere than
-            where the bearing acts.
+            For bad input, a missing load, a speed without an equilibrium, as films at rest, and
+            sensors elsewhere than where the bearing acts.
 
         Examples
         --------

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -14,7 +13,6 @@ from exudyn.FEM import FEMinterface
 from scipy.sparse.csgraph import connected_components
 
 from exudyn_rotor import checks
-from exudyn_rotor.calls import user_level
 from exudyn_rotor.solid.elements import SolidElements
 from exudyn_rotor.theory.axis import coupled, rigid_motions
 
@@ -93,8 +91,7 @@ _KEYS = ("youngsModulus", "poissonsRatio", "density")
 # With a wide margin: bar wave speed √(E/ρ) [m/s], soft foam has 30 and diamond 18 000; mass over
 # bounding box [kg/m³], a bladed wheel may fill a thousandth of its box and osmium has 22 600.
 _WAVE_SPEEDS, _MEAN_DENSITIES = (10.0, 1e5), (1e-2, 1e5)
-# [kg]; the heaviest turbine-generator rotors have two million, few others half of one
-_LARGEST_MASS, _USUAL_MASS = 1e7, 5e5
+_LARGEST_MASS = 5e5  # kg, of nearly all rotors; a mesh in mm has more
 _ADVICE = (
     "convert to SI (m, kg, s, N, Pa), or pass check_units=False if the units of all inputs agree"
 )
@@ -123,19 +120,13 @@ def materials_by_region(
 
 
 def check_model_units(nodes: np.ndarray, total_mass: float) -> None:
-    """Raise ValueError if size [m] and mass [kg] of a model cannot be in SI, warn if hardly."""
+    """Raise ValueError if size [m] and mass [kg] of a model cannot be in SI."""
     extent = np.ptp(nodes, axis=0)
     size = f"{total_mass:.3g} kg in a box of {box(nodes)}"
     if total_mass > _LARGEST_MASS:
         raise ValueError(
-            f"units: {size} cannot be a rotor; lengths in mm, as Netgen reads all STEP files? "
-            f"shape.Scale(Pnt(0, 0, 0), 1e-3) has metres; {_ADVICE}"
-        )
-    if total_mass > _USUAL_MASS:
-        warnings.warn(
-            f"units: {size}: few rotors are that heavy; lengths in mm? Arrays are in m, kg, s; "
-            "check_units=False takes them as they are",
-            stacklevel=user_level(),
+            f"units: {size}: few rotors are that heavy; lengths in mm, as Netgen reads all STEP "
+            f"files? shape.Scale(Pnt(0, 0, 0), 1e-3) has metres; {_ADVICE}"
         )
     volume = float(np.prod(extent))
     if volume <= 1e-12 * np.max(extent) ** 3:

@@ -192,7 +192,7 @@ def test_a_film_from_that_of_the_speed_beside_is_the_film():
         expected = film().equilibrium(speed, bearing.load).position
         np.testing.assert_allclose(bearing.equilibrium(speed), expected, rtol=1e-6)
     petroff = 2.0 * np.pi * 0.02 * SPEED**2 * 0.05**3 * 0.05 / 1e-4 * 320.0 / 360.0
-    assert film().state(STILL, STILL, SPEED).power_loss == pytest.approx(petroff, rel=1e-3)
+    assert SPEED * film().state(STILL, STILL, SPEED).torque == pytest.approx(petroff, rel=1e-3)
 
 
 def test_coefficients_over_the_speed_alone_are_those_at_every_frequency():

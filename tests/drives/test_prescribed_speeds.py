@@ -77,7 +77,6 @@ REFUSED = [
     (lambda: mesh(variation=[0.6, 0.5], teeth=[5, 8]), "variation: needs amplitudes whose sum"),
     (lambda: mesh(backlash=-1e-4), "backlash: needs a finite number"),
     (lambda: mesh(helix_angle=1.6), "helix_angle: needs"),
-    (lambda: mesh().mesh_frequency(1.0), "teeth: the mesh frequency needs"),
     (lambda: placed(COUPLING, [0, 0, 0.1], [0, 0, 1]), "its interface is 0.1 m from that of the"),
     (
         lambda: placed(COUPLING, [0, 0, 0], [0.1, 0, 1]),
