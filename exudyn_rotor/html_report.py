@@ -108,7 +108,8 @@ def report(
         raise ValueError(f"path: needs the ending .html, got {str(path)!r}")
     checks.label(title, "title")
     Units.of(units)
-    messages = [_message(one) for one in checks.items(raised, "raised", "warnings in a sequence")]
+    listed = checks.items(raised, "raised", "warnings in a sequence")
+    messages = [str(getattr(one, "message", one)) for one in listed]
     sections = _sections(contents)
     with rc_context({"font.size": rcParamsDefault["font.size"]}):  # plots of Exudyn change it
         written = [(heading, _html(given, heading, units)) for heading, given in sections]
@@ -155,15 +156,6 @@ def _heading(content: Any) -> str:
     return words.strip().capitalize()
 
 
-def _message(warning: Any) -> str:
-    """Return the text of a warning."""
-    if isinstance(warning, WarningMessage):
-        warning = warning.message
-    if not isinstance(warning, str | Warning):
-        raise TypeError(f"raised: needs warnings or texts, got {checks.shown(warning)}")
-    return str(warning)
-
-
 def _html(items: list[Any], heading: str, units: str) -> str:
     """Return the objects under a heading as HTML."""
     pictured = any(isinstance(item, Axes | Figure) for item in items)
@@ -192,17 +184,14 @@ def _described(item: Any) -> str:
     if isinstance(item, LinearModel):
         supports = [repr(one) for each in item.supports.values() for one in each]
         return "\n".join([repr(item), *supports])
-    summary = getattr(item, "summary", None)
-    return summary() if callable(summary) else repr(item)
+    return item.summary() if hasattr(item, "summary") else repr(item)
 
 
 def _draws_alone(result: Any) -> bool:
     """True where a result has a method ``plot()`` that needs no arguments."""
-    if not callable(getattr(result, "plot", None)):
-        return False
-    kinds = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
-    given = inspect.signature(result.plot).parameters.values()
-    return all(p.default is not p.empty or p.kind in kinds for p in given)
+    plot = getattr(result, "plot", None)
+    given = inspect.signature(plot).parameters.values() if plot else ()
+    return plot is not None and all(p.default is not p.empty for p in given)
 
 
 def _called(method: Callable, units: str) -> Any:

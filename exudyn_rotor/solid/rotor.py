@@ -171,7 +171,7 @@ class FiniteElementRotor:
         checked = {
             "nodes": nodes,
             "mass": matrices.as_mass(self.mass, len(nodes)),
-            "stiffness": matrices.as_stiffness(self.stiffness, len(nodes)),
+            "stiffness": matrices.as_matrix("stiffness matrix", self.stiffness, len(nodes)),
             "axis": SpinAxis.of(self.axis),
             "interfaces": _checked_interfaces(self.interfaces, nodes),
             "triangles": matrices.as_triangles(self.triangles, len(nodes)),
@@ -204,7 +204,7 @@ class FiniteElementRotor:
             check_model_units(nodes, float(mass[::3, ::3].sum()))
         if model.elements is not None:
             check_connected(nodes, mass)
-        stiffness = matrices.as_stiffness(model.stiffness, len(nodes))
+        stiffness = matrices.as_matrix("stiffness matrix", model.stiffness, len(nodes))
         return cls(
             nodes=nodes,
             mass=mass,
