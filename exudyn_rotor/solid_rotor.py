@@ -103,7 +103,7 @@ class SolidRotor(FiniteElementRotor):
             Netgen mesh and of Exudyn's FEMinterface, counted from zero.
         materials : mapping
             Region name → ``{'youngsModulus': Pa, 'poissonsRatio': 1, 'density': kg/m³}``; one
-            such dict by itself for a mesh with one material.
+            such dict by itself for all regions.
         axis : SpinAxis, str or array_like
             Read by :meth:`SpinAxis.of`: 'x', 'y', 'z', a direction, or (one of these, point) [m].
         order : int, optional

@@ -13,7 +13,7 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.plotting import COLORS, draw_surface
-from exudyn_rotor.results import Result, numbers, storable, text_table, words
+from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.solid.rotor import Interface
 from exudyn_rotor.solid.surface import flat_triangles
 from exudyn_rotor.storage import write_bytes
@@ -95,21 +95,14 @@ class MotionShapes(Result):
         return SpinAxis(self.direction, self.point)
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
-        """Return the table as columns; `units` are those of :meth:`Units.of`."""
+        """Return a row for each shape, with the `index` of :meth:`plot`, in :meth:`Units.of`."""
         shown = Units.of(units)
         return {
+            "index": np.arange(len(self.labels)),
             f"speed [{shown.speed}]": shown.speeds(self.speeds),
             f"frequency [{shown.frequency}]": shown.frequencies(self.frequencies),
             "what": np.array(self.labels),
         }
-
-    def table(self, *, units: str = "Hz") -> str:
-        """Return the frequencies of all shapes as text, with the `index` of :meth:`plot`.
-
-        With the `units` 'rpm' speeds are in rpm and frequencies in Hz, with 'SI' both in rad/s.
-        """
-        numbered = {"index": np.arange(len(self.labels)), **self.columns(units)}
-        return "\n".join(text_table(numbered))
 
     def displacement(self, index: int, time: float) -> np.ndarray:
         """Return the displacement of all nodes at a time [s], rotor frame, mesh axes, (n, 3).
@@ -137,7 +130,7 @@ class MotionShapes(Result):
             axial_places.append((center, local @ axes.T))
         return axial_places
 
-    def plot(self, index: int = 0, ax: Axes3D | None = None, *, units: str = "Hz") -> Axes3D:
+    def plot(self, index: int = 0, ax: Axes3D | None = None, *, units: str = "rpm") -> Axes3D:
         """Draw the rotor at the time zero and the orbits of its centre line.
 
         Orbits are blue where the rotor whirls forward, seen from outside and relative to the spin,
@@ -150,8 +143,9 @@ class MotionShapes(Result):
             Which shape, counted from 0.
         ax : Axes3D, optional
             3D axes to draw in; those of a new figure by default.
-        units : {'Hz', 'rpm', 'SI'}, optional
-            Of speed and frequency in the title, see :meth:`table`.
+        units : {'rpm', 'Hz', 'SI'}, optional
+            Of speed and frequency in the title: 'rpm' has the speed in rpm and the frequency in
+            Hz, 'SI' both in rad/s.
 
         Raises
         ------

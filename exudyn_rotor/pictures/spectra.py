@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.results import Result, numbers, storable, text_table
+from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:
@@ -45,9 +45,9 @@ class Spectra(Result):
     --------
     >>> from exudyn_rotor import Spectra
     >>> print(Spectra([0.5, 1.5], [60.0, 90.0], [-90.0, 0.0, 90.0], [[0, 0, 1], [2, 0, 1]]).table())
-    time [s]  speed [Hz]  strongest frequency [Hz]  amplitude
-         0.5      9.5493                   14.3239          1
-         1.5     14.3239                  -14.3239          2
+    time [s]  speed [rpm]  strongest frequency [Hz]  amplitude
+         0.5      572.958                   14.3239          1
+         1.5      859.437                  -14.3239          2
     """
 
     times: np.ndarray = numbers("windows")
@@ -60,7 +60,7 @@ class Spectra(Result):
         ax: Axes | None = None,
         *,
         orders: ArrayLike = (1.0,),
-        units: str = "Hz",
+        units: str = "rpm",
     ) -> Axes:
         """Draw the cascade: one spectrum above the other, by spin speed.
 
@@ -73,7 +73,7 @@ class Spectra(Result):
             A new figure without a window by default.
         orders : array_like, optional
             Multiples of the spin speed to draw as lines.
-        units : {'Hz', 'rpm', 'SI'}, optional
+        units : {'rpm', 'Hz', 'SI'}, optional
             'rpm' has the spin speed in rpm and frequencies in Hz, 'SI' both in rad/s.
         """
         from matplotlib.collections import PolyCollection
@@ -107,7 +107,7 @@ class Spectra(Result):
             plotting.legend_above(ax, 4)
         return ax
 
-    def plot_spectrogram(self, ax: Axes | None = None, *, units: str = "Hz") -> Axes:
+    def plot_spectrogram(self, ax: Axes | None = None, *, units: str = "rpm") -> Axes:
         """Draw the amplitudes over time and frequency in decibels below the largest one.
 
         Parameters as of :meth:`plot`.
@@ -140,10 +140,6 @@ class Spectra(Result):
             f"strongest frequency [{shown.frequency}]": shown.frequencies(self.frequencies[best]),
             "amplitude": self.amplitudes.max(axis=1),
         }
-
-    def table(self, *, units: str = "Hz") -> str:
-        """Return the strongest frequency of every window as text; `units` as of :meth:`plot`."""
-        return "\n".join(text_table(self.columns(units)))
 
     def _inside(self, least: float, order: float) -> tuple[np.ndarray, float]:
         """Return which frequencies are shown, and the largest of their amplitudes.

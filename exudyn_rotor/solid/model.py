@@ -104,12 +104,7 @@ def materials_by_region(
     checks.mapping(materials, "materials", "material")
     names = sorted(set(regions))
     if any(key in materials for key in _KEYS):
-        if len(names) > 1:
-            raise ValueError(
-                f"materials: one material was given, but the mesh has {len(names)} regions "
-                f"{names}; give a dictionary by region name"
-            )
-        materials = {names[0]: materials}
+        materials = dict.fromkeys(names, materials)
     missing = [name for name in names if name not in materials]
     if missing:
         raise ValueError(
