@@ -10,7 +10,7 @@ import copyreg
 import operator
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import MISSING, Field, field, fields
+from dataclasses import Field, field, fields
 from functools import cache
 from math import inf, isfinite
 from numbers import Integral, Real
@@ -488,9 +488,9 @@ def numbers(
     return field(metadata=told, **({"default": None, "kw_only": True} if optional else {}))
 
 
-def words(size: int | str, default: Any = MISSING, kw_only: bool = False) -> Any:
-    """Describe a row of words of a result by its size, see :func:`numbers`."""
-    return field(default=default, kw_only=kw_only, metadata={"shape": (size,)})
+def words(size: int | str, **given: Any) -> Any:
+    """Describe a row of words of a result by its size; `given` as of :func:`one_of`."""
+    return field(metadata={"shape": (size,)}, **given)
 
 
 def one_of(options: Sequence[str], **given: Any) -> Any:

@@ -58,7 +58,7 @@ nav li {{ line-height: 1.4; }}
 
 def report(
     path: str | PathLike,
-    contents: Any,
+    contents: Mapping[str, Any],
     *,
     title: str = "Rotordynamics report",
     units: str = "rpm",
@@ -72,11 +72,11 @@ def report(
     ----------
     path : str or path-like
         Ends with '.html'; a file of that name is replaced only by a complete one.
-    contents : object, mapping of heading to object or objects, or sequence of both
+    contents : mapping of heading to object, or to a sequence of objects
         In the order of the report. An object is a result or anything else with ``table()``,
         matplotlib Axes or a Figure, text, a paragraph, or a rotor, a train of rotors, a support, a
-        foundation or a linear model, shown by its lines of text. A mapping gives headings; a result
-        beside Axes under one heading is shown with these in place of its own picture.
+        foundation or a linear model, shown by its lines of text. A result beside Axes under one
+        heading is shown with these in place of its own picture.
     title : str, optional
     units : {'rpm', 'Hz', 'SI'}, optional
         Of speeds in tables and pictures; see :meth:`exudyn_rotor.units.Units.of`.
@@ -98,8 +98,9 @@ def report(
     >>> from pathlib import Path
     >>> from exudyn_rotor import CriticalSpeeds, report
     >>> found = CriticalSpeeds(1.0, [100.0], [0.0], ("forward",), [1], [[1.0]])
+    >>> contents = {"Critical speeds": [found, "The rotor runs at 300 rpm."]}
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     report(Path(folder, "rotor.html"), [found, "The rotor runs at 300 rpm."], title="Pump")
+    ...     report(Path(folder, "rotor.html"), contents, title="Pump")
     ...     text = Path(folder, "rotor.html").read_text(encoding="utf-8")
     >>> "<h1>Pump</h1>" in text, "954.93" in text
     (True, True)
@@ -110,14 +111,17 @@ def report(
     Units.of(units)
     listed = checks.items(raised, "raised", "warnings in a sequence")
     messages = [str(getattr(one, "message", one)) for one in listed]
-    sections = _sections(contents)
+    checks.mapping(contents, "contents", "object or objects")
+    sections = {heading: _listed(given) for heading, given in contents.items()}
+    if not sections or not all(sections.values()):
+        raise ValueError("contents: there are none; give results, pictures, rotors or text")
     with rc_context({"font.size": rcParamsDefault["font.size"]}):  # plots of Exudyn change it
-        written = [(heading, _html(given, heading, units)) for heading, given in sections]
+        written = {heading: _html(given, heading, units) for heading, given in sections.items()}
     if messages:
         boxes = (f'<p class="warning">{escape(text)}</p>' for text in dict.fromkeys(messages))
-        written.append(("Warnings", "\n".join(boxes)))
+        written["Warnings"] = "\n".join(boxes)
     links, parts = [], []
-    for number, (heading, html) in enumerate(written):
+    for number, (heading, html) in enumerate(written.items()):
         links.append(f'<li><a href="#s{number}">{escape(heading)}</a></li>')
         parts.append(f'<section id="s{number}">\n<h2>{escape(heading)}</h2>\n{html}\n</section>')
     body = "\n".join(["<nav><ol>", *links, "</ol></nav>", *parts])
@@ -127,33 +131,11 @@ def report(
     write_bytes(path, page.encode())
 
 
-def _sections(contents: Any) -> list[tuple[str, list[Any]]]:
-    """Return headings with the objects under them."""
-    sections: list[tuple[str, list[Any]]] = []
-    for content in _listed(contents):
-        named = content if isinstance(content, Mapping) else {_heading(content): content}
-        for heading, given in named.items():
-            sections.append((checks.label(heading, "contents: heading"), _listed(given)))
-    if not sections or not all(given for _, given in sections):
-        raise ValueError("contents: there are none; give results, pictures, rotors or text")
-    return sections
-
-
 def _listed(given: Any) -> list[Any]:
     """Return the objects of a sequence, or of an array of axes."""
     if isinstance(given, list | tuple | np.ndarray):
         return [one for each in given for one in _listed(each)]
     return [given]
-
-
-def _heading(content: Any) -> str:
-    """Return a heading for an object that is given without one."""
-    if isinstance(content, str):
-        return "Remarks"
-    if isinstance(content, Axes | Figure):
-        return "Picture"
-    words = "".join(f" {c.lower()}" if c.isupper() else c for c in type(content).__name__)
-    return words.strip().capitalize()
 
 
 def _html(items: list[Any], heading: str, units: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
@@ -413,27 +413,16 @@ class FiniteElementRotor:
             discs=(*self.discs, disc),
         )
 
-    def center_interfaces(self: Rotor, names: Iterable[str] | None = None) -> Rotor:
-        """Return the rotor with the reference points of interfaces moved onto the spin axis.
+    def center_interfaces(self: Rotor) -> Rotor:
+        """Return the rotor with the reference points of its interfaces moved onto the spin axis.
 
         This removes the false eccentricity that an uneven mesh gives a round face.
-
-        Parameters
-        ----------
-        names : iterable of str, optional
-            All interfaces by default.
-
-        Raises
-        ------
-        ValueError
-            If an interface is unknown.
         """
-        chosen = tuple(self.interfaces) if names is None else names
-        moved = {}
-        for name in checks.labels(chosen, "names", self.interfaces):
-            interface = self.interfaces[name]
-            moved[name] = interface.centered_on(self.axis.project(interface.center))
-        return replace(self, interfaces={**self.interfaces, **moved})
+        moved = {
+            name: interface.centered_on(self.axis.project(interface.center))
+            for name, interface in self.interfaces.items()
+        }
+        return replace(self, interfaces=moved)
 
     def clamped(self: Rotor, names: str | Sequence[str]) -> Rotor:
         """Return the rotor with all nodes of interfaces held fixed, e.g. a blade at its root.

@@ -1,7 +1,6 @@
 """What bearings refuse, and how searches end that find nothing."""
 
 import re
-import warnings
 from dataclasses import replace
 from unittest.mock import patch
 
@@ -172,17 +171,11 @@ def test_what_is_refused_is_told(call, words):
         call()
 
 
-def test_a_pad_that_carries_nothing_is_told_once():
-    """Its tilt has no place, and next to nothing holds it."""
+def test_a_pad_that_carries_nothing_is_held_by_next_to_nothing():
     absent = np.isnan(pads().tilts(SPEED))
     assert absent.tolist() == [False, True, False]
-    made = pads().linearised()
-    with pytest.warns(UserWarning, match=r"'left': pads \[1\] carry nothing at 300 rad/s"):
-        stiffness = made.matrices(SPEED)[0]
+    stiffness = pads().linearised().matrices(SPEED)[0]
     assert 0.0 < stiffness[3, 3] < 1e-6 * stiffness[2, 2]
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        made.matrices(2.0 * SPEED)
 
 
 def test_a_film_from_that_of_the_speed_beside_is_the_film():

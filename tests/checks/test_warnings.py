@@ -158,7 +158,6 @@ ELSEWHERE = {
     "solid/meshes/mesh_model.py:import_model": "taken as",
     "theory/stiffening.py:warn_of_left_out": "beyond 'tilt' is left out",
     "ross.py:_check_held": "of shaft elements are left out",
-    "bearings/tilting_pad.py:_of_pads": "carry nothing at",
     "linear/own_frequency.py:own_motions": "do not settle at their own frequency",
     "linear/model/linear_model.py:warn_beyond": "keeps its ends for motions of",
     "linear/over.py:warn_of": "do not converge for all motions",
