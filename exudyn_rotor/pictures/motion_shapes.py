@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 
 _STATIONS = 15  # along the axis
+_FRAMES = 25  # of an animation
 _SHARE = 0.1  # largest displacement as drawn, over the size of the rotor
 _ALPHA = 0.3  # of the surface, through which the orbits are seen
 _COLORS = dict(zip(("forward", "backward", "straight"), COLORS, strict=False))
@@ -181,10 +182,8 @@ class MotionShapes(Result):
         )
         return ax
 
-    def animate(
-        self, path: str | PathLike, index: int = 0, *, frames: int = 24, seconds: float = 2.0
-    ) -> None:
-        """Write one period of the motion, seen from outside, as an animated GIF.
+    def animate(self, path: str | PathLike, index: int = 0) -> None:
+        """Write one period of the motion, seen from outside, as an animated GIF of two seconds.
 
         The rotor also spins by Ω times the period. A motion that stands still in space is shown
         over one revolution.
@@ -195,10 +194,6 @@ class MotionShapes(Result):
             Ends with '.gif'; a file there is replaced by a complete one only.
         index : int, optional
             Which shape, counted from 0.
-        frames : int, optional
-            Number of pictures.
-        seconds : float, optional
-            How long one period lasts in the film [s].
 
         Raises
         ------
@@ -211,13 +206,11 @@ class MotionShapes(Result):
         target = checks.path(path)
         if target.suffix != ".gif":
             raise ValueError(f"path: needs the ending .gif, got {str(target)!r}")
-        count = checks.count(frames, "frames", least=2, most=1000)
-        each = round(1000.0 * checks.number(seconds, "seconds", "s", above=0.0) / count)
         ax = self.plot(index)
         figure, faces, line = ax.figure, ax.collections[-1], ax.lines[-1]
         rate = self.frequencies[index] or abs(self.speeds[index]) or 1.0
         scale, corners, pictures = self._scale(index), flat_triangles(self.triangles), []
-        for time in 2.0 * np.pi / rate * np.arange(count) / count:
+        for time in 2.0 * np.pi / rate * np.arange(_FRAMES) / _FRAMES:
             moved = scale * self.displacement(index, time)
             turn = self.axis.rotation(self.speeds[index] * time).T
             nodes = (self.positions + moved - self.point) @ turn + self.point
@@ -231,7 +224,7 @@ class MotionShapes(Result):
             pictures.append(Image.fromarray(rgb).convert("P", palette=Image.Palette.ADAPTIVE))
         pyplot.close(figure)
         film = io.BytesIO()
-        options = {"append_images": pictures[1:], "duration": each, "loop": 0}
+        options = {"append_images": pictures[1:], "duration": 2000 // _FRAMES, "loop": 0}
         pictures[0].save(film, format="GIF", save_all=True, **options)
         write_bytes(target, film.getvalue())
 

@@ -18,11 +18,8 @@ _POSITION_TOLERANCE = 1e-9
 
 
 def as_nodes(nodes: Any) -> np.ndarray:
-    """Return the node positions as a read-only array, shape (n, 3), n ≥ 1."""
-    positions = checks.array(nodes, "nodes", "m", shape=(None, 3))
-    if len(positions) == 0:
-        raise ValueError("nodes: needs one position or more, shape (n, 3), got none")
-    return positions
+    """Return the node positions as a read-only array, shape (n, 3)."""
+    return checks.array(nodes, "nodes", "m", shape=(None, 3))
 
 
 def as_mass(matrix: Any, node_count: int) -> sp.csr_array:

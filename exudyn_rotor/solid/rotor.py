@@ -22,7 +22,7 @@ from exudyn_rotor.solid.model import (
     holding_spring,
     rigid_basis,
 )
-from exudyn_rotor.solid.rigid_disc import STIFF, PointMass, RigidDisc, add_nodal_mass, as_tensor
+from exudyn_rotor.solid.rigid_disc import STIFF, PointMass, RigidDisc, add_nodal_mass
 from exudyn_rotor.solid.surface import outer_section
 from exudyn_rotor.solvers.inertia_relief import SOLVERS
 from exudyn_rotor.theory.axis import SpinAxis, coordinates, skew
@@ -269,7 +269,7 @@ class FiniteElementRotor:
         Raises
         ------
         ValueError
-            If the mass is zero or not finite, more is taken away than the node carries, the
+            If the mass is not finite, more is taken away than the node carries, the
             position is not finite or not on the mesh, as the rim of a wheel of :meth:`add_disc`,
             or the rotor carries a prestress, whose load would change.
         """
@@ -373,9 +373,8 @@ class FiniteElementRotor:
             Middle of the band along the axis, from :attr:`SpinAxis.point` [m].
         mass : float
             [kg]
-        inertia : array_like, shape (2,) or (3, 3)
-            Polar and transverse moment of inertia, or the tensor in mesh axes, about its centre
-            [kg m²].
+        inertia : array_like, shape (2,)
+            Polar and transverse moment of inertia about its centre [kg m²].
         width : float
             Width of the band [m].
         name : str, optional
@@ -402,7 +401,9 @@ class FiniteElementRotor:
             )
         count = self.node_count
         spring = STIFF * self.stiffness.diagonal().reshape(-1, 3)[nodes].max()
-        tensor = as_tensor(inertia, self.axis)
+        polar, transverse = checks.vector(inertia, "inertia", "kg m²", size=2)
+        along = np.outer(self.axis.direction, self.axis.direction)
+        tensor = polar * along + transverse * (np.eye(3) - along)
         disc = RigidDisc(center, mass, tensor, nodes, self.nodes[nodes], spring)
         added = {} if name is None else {name: section}
         return replace(

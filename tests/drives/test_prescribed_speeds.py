@@ -9,7 +9,6 @@ from test_gear_mesh import mesh
 
 from exudyn_rotor import (
     DirectCurrentMotor,
-    Drag,
     FlexibleCoupling,
     GearMesh,
     TorqueCurve,
@@ -68,7 +67,6 @@ def placed(connection, apart, axis):
 REFUSED = [
     (lambda: DirectCurrentMotor(stall_torque=5.0, no_load_speed=0.0), "number .* that is not zero"),
     (lambda: TorqueCurve(([1.0], [2.0], [3.0])), "curve: needs a table"),
-    (Drag, "drag: needs constant, linear or quadratic above zero"),
     (lambda: mesh(radii=[0.1, -0.1]), "radii: needs a finite number"),
     (lambda: mesh(flank=2), "flank: needs 1 or -1"),
     (lambda: mesh(teeth=[20, 33]), "teeth: 20 to 33 is not the ratio of the radii"),

@@ -114,10 +114,10 @@ def test_responses_tell_their_size_and_speed():
 
 def test_animation_is_a_film_of_one_period(tmp_path):
     path = tmp_path / "mode.gif"
-    modes().animate(path, 3, frames=3, seconds=1.5)
+    modes().animate(path, 3)
     with Image.open(path) as film:
-        assert film.n_frames == 3
-        assert film.info["duration"] == 500
+        assert film.n_frames == 25
+        assert film.info["duration"] == 80
     assert list(tmp_path.iterdir()) == [path]
 
 

@@ -44,7 +44,6 @@ def make(changes):
     ("changes", "message"),
     [
         ({"nodes": np.zeros((3, 2))}, r"nodes: needs finite .* of shape \(any, 3\).*\(3, 2\)"),
-        ({"nodes": np.zeros((0, 3))}, "nodes: needs one position or more"),
         ({"nodes": [[0, 0, np.nan], [1, 0, 0], [2, 1, 0]]}, "nodes: needs finite numbers"),
         ({"mass": np.eye(8)}, r"mass matrix: the shape must be \(9, 9\).*got \(8, 8\)"),
         ({"stiffness": np.ones(9)}, r"stiffness matrix: needs finite numbers of shape .*\(9,\)"),
@@ -201,7 +200,6 @@ CALLS = [
     (lambda r: r.interface_at("c", 0.0, 1.0), "no surface to look for nodes on; .* with_interface"),
     (lambda r: r.clamped([]), r"needs one interface or more of \['a', 'b'\], got none"),
     (lambda r: r.clamped("a"), r"the 2 nodes of \['a'\] lie on one line .* clamp three"),
-    (lambda r: r.add_point_mass(np.zeros(3), 0.0), "mass: .* other than zero, got 0.0"),
     (
         lambda r: r.add_point_mass(np.zeros(3), -1.0),
         "taking 1 kg from node 0 .* give less than 1 kg",
