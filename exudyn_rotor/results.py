@@ -19,7 +19,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.checks import FIELD_CHECKS, Checked, field_types
+from exudyn_rotor.checks import Checked
 from exudyn_rotor.checks import numbers as numbers
 from exudyn_rotor.checks import words as words
 from exudyn_rotor.storage import plain, read_arrays, write_arrays, write_bytes
@@ -36,18 +36,7 @@ def storable(cls: Class) -> Class:
 
     To be put above ``@dataclass(frozen=True, eq=False)``. Fields may be arrays of numbers, numbers,
     flags, words, tuples of words, and None.
-
-    Raises
-    ------
-    TypeError
-        If the class has a field of another type, or another class of that name is registered.
     """
-    for name, hint in field_types(cls).items():
-        if hint not in FIELD_CHECKS:
-            raise TypeError(f"{cls.__name__}.{name}: a {hint} cannot be stored")
-    known = _REGISTERED.setdefault(cls.__name__, cls)
-    if known.__module__ != cls.__module__:
-        raise TypeError(f"a result class of the name {cls.__name__} is registered already")
     _REGISTERED[cls.__name__] = cls
     return cls
 

@@ -167,8 +167,6 @@ def stress_history(
     """
     how = "make one with StressField.of(reduced, body)"
     time = checks.vector(time, "time", "s", size=None)
-    if not time.size:
-        raise ValueError("time: needs at least one instant, got none")
     shape = time.size, checks.instance(field, "field", StressField, how).modes.shape[2]
     coordinates = checks.array(modal_coordinates, "modal_coordinates", shape=shape)
     speed = checks.one_or_each(speed, "speed", "rad/s", time.size)
