@@ -218,11 +218,10 @@ copyreg.pickle(MappingProxyType, lambda view: (read_only_mapping, (dict(view),))
 
 def choice(value: str, name: str, options: Iterable[str]) -> str:
     """Return one of a few words."""
-    known = ", ".join(repr(option) for option in options)
-    if not isinstance(value, str):
-        raise TypeError(f"{name}: needs one of {known}, got {shown(value)}")
-    if value not in options:
-        raise ValueError(f"{name}: {shown(value)} is unknown; use one of {known}")
+    if not isinstance(value, str) or value not in options:
+        known = ", ".join(repr(option) for option in options)
+        kind = ValueError if isinstance(value, str) else TypeError
+        raise kind(f"{name}: {shown(value)} is unknown; use one of {known}")
     return value
 
 

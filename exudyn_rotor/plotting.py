@@ -74,6 +74,7 @@ def save(drawn: Axes | Figure | np.ndarray, path: str | PathLike) -> None:
     Where no window and no notebook can show it, a figure that this package has made is closed
     afterwards, so that a script that saves many keeps none in memory.
     """
+    from matplotlib import get_backend, pyplot
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -85,16 +86,7 @@ def save(drawn: Axes | Figure | np.ndarray, path: str | PathLike) -> None:
         target = target.with_suffix(".png")
     made.savefig(content, format=target.suffix[1:], dpi=140)
     write_bytes(target, content.getvalue())
-    _close_unseen(made)
-
-
-def _close_unseen(made: Figure) -> None:
-    """Take a figure of this package from those of pyplot, where the backend only writes files."""
-    from matplotlib import get_backend, pyplot
-    from matplotlib.backends import BackendFilter, backend_registry
-
-    files_only = backend_registry.list_builtin(BackendFilter.NON_INTERACTIVE)
-    if made in _made and get_backend().lower() in files_only:
+    if made in _made and get_backend().lower() == "agg":  # which shows nothing
         pyplot.close(made)
 
 

@@ -15,7 +15,7 @@ from exudyn_rotor.prestress.static_solution import prestress
 from exudyn_rotor.reduction.reduce import reduce
 from exudyn_rotor.solid import matrices, ngsolve_model
 from exudyn_rotor.solid.meshes import mesh_model
-from exudyn_rotor.solid.model import FiniteElementModel, import_model, node_set
+from exudyn_rotor.solid.model import FiniteElementModel, import_model
 from exudyn_rotor.solid.rotor import AxisLike, FiniteElementRotor
 from exudyn_rotor.solid.summary import summary
 
@@ -269,7 +269,7 @@ class SolidRotor(FiniteElementRotor):
         nodes : array_like, shape (n, 3)
             Reference positions [m].
         interfaces : mapping, optional
-            Name → node numbers, or name → (node numbers, weights).
+            Name → node numbers; :meth:`with_interface` takes weights, too.
         triangles : array_like of int, shape (t, 3) or (t, 6), optional
             Surface for drawing.
         axis, check_units
@@ -282,7 +282,7 @@ class SolidRotor(FiniteElementRotor):
             rigid motions, node numbers, units.
         """
         entries = {} if interfaces is None else checks.mapping(interfaces, "interfaces", "nodes")
-        node_sets = {name: node_set(name, entry) for name, entry in entries.items()}
+        node_sets = {name: (nodes, None) for name, nodes in entries.items()}
         model = FiniteElementModel(nodes, mass, stiffness, damping, node_sets, triangles)
         return cls._of_model(model, axis, check_units)
 

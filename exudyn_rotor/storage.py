@@ -96,8 +96,12 @@ def read_arrays(path: str | PathLike, kind: str) -> dict[str, np.ndarray]:
             f"{source}: damaged, or not a readable file of {_PACKAGE}, .npz without pickle "
             f"({error})"
         ) from error
-    _check_format(source, data, kind)
-    del data["format"]
+    written = str(data.pop("format", "no format"))
+    if written != _format(kind):
+        raise ValueError(
+            f"{source}: holds {written!r}, where {_format(kind)!r} is needed; a file of another "
+            "version is made anew"
+        )
     for array in data.values():
         array.flags.writeable = False
     return data
@@ -131,19 +135,6 @@ def plain(value: np.ndarray) -> object:
     if value.ndim == 0:
         return value.item()
     return tuple(value.tolist()) if value.dtype.kind == "U" else value
-
-
-def _check_format(source: Path, data: dict[str, np.ndarray], kind: str) -> None:
-    """Refuse files of other origin, kind or version."""
-    written = str(data.get("format", ""))
-    if written == _format(kind):
-        return
-    if written.rstrip("0123456789 ") == _format(kind).rstrip("0123456789 "):
-        raise ValueError(
-            f"{source}: written by another version of {_PACKAGE} ({written!r}, needed is "
-            f"{_format(kind)!r}); make it anew"
-        )
-    raise ValueError(f"{source}: holds no {kind}, but {written or 'no format'!r}")
 
 
 def _format(kind: str) -> str:

@@ -35,14 +35,6 @@ class FiniteElementModel:
     elements: SolidElements | None = None
 
 
-def node_set(name: str, entry: Any) -> NodeSet:
-    """Read one entry of ``from_matrices(interfaces=…)``: nodes, or (nodes, weights)."""
-    nodes, weights = entry, None
-    if isinstance(entry, tuple) and len(entry) == 2 and not np.isscalar(entry[0]):
-        nodes, weights = entry
-    return checks.array(nodes, f"interfaces: {name!r}: nodes", dtype=int), weights
-
-
 # Face names that Netgen invents for faces without a name.
 _INVENTED_NAME = re.compile(r"(default|bc_\d+)?")
 

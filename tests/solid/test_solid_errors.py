@@ -79,19 +79,23 @@ def test_shapes(changes, message):
         ([0, 3], "interface 'a': nodes: needs whole numbers ≥ 0 and ≤ 2, got 3"),
         ([-1], "interface 'a': nodes: .*got -1"),
         ([0, 1, 1], "interface 'a': repeated node numbers 1"),
-        (
-            ([0, 1], [1.0, -0.5]),
-            "interface 'a': weights: needs shares of an area, none negative.*-0.5",
-        ),
-        (
-            ([0, 1], [1.0]),
-            r"interface 'a': weights: needs finite numbers of shape \(2,\), got \[1.0\]",
-        ),
     ],
 )
 def test_wrong_interfaces(entry, message):
     with pytest.raises(ValueError, match=message):
         make({"interfaces": {"a": entry}})
+
+
+@pytest.mark.parametrize(
+    ("weights", "message"),
+    [
+        ([1.0, -0.5], "interface 'a': weights: needs shares of an area, none negative.*-0.5"),
+        ([1.0], r"interface 'a': weights: needs finite numbers of shape \(2,\), got \[1.0\]"),
+    ],
+)
+def test_wrong_weights(weights, message):
+    with pytest.raises(ValueError, match=message):
+        make({}).with_interface("a", [0, 1], weights)
 
 
 # ------------------------------------------------------------------ materials and units

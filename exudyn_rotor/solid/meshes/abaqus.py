@@ -32,7 +32,6 @@ _REFUSED = {
     **dict.fromkeys(re.split(r",\s+", _OTHERS), "an element that is no solid"),
     **dict.fromkeys(("SYSTEM", "NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY"), "a rule for numbers"),
 }
-_DEEPEST = 10  # of files that include files
 Faces = dict[str, list[tuple[int, int]]]  # element and number of each face of a surface
 
 
@@ -146,9 +145,7 @@ def _give_surfaces(data: MeshData, surfaces: Faces) -> None:
         ]
 
 
-def _blocks(
-    path: Path, depth: int = 0
-) -> Iterator[tuple[str, str, dict[str, str], list[list[str]]]]:
+def _blocks(path: Path) -> Iterator[tuple[str, str, dict[str, str], list[list[str]]]]:
     """Return place, keyword, options and fields of the lines of every block.
 
     Of included files, too.
@@ -172,12 +169,9 @@ def _blocks(
         current = (f"line {start} of {path.name}", *_keyword(line), [])
         if current[1] == "INCLUDE":
             target = path.parent / current[2].get("INPUT", "")
-            if depth == _DEEPEST or not target.is_file():
-                raise ValueError(
-                    f"{path.name}: *INCLUDE needs a file beside it, at most {_DEEPEST} deep, got "
-                    f"{target}"
-                )
-            yield from _blocks(target, depth + 1)
+            if not target.is_file():
+                raise ValueError(f"{path.name}: *INCLUDE needs a file beside it, got {target}")
+            yield from _blocks(target)
             current = None
     if current is not None:
         yield current
