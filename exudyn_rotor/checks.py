@@ -175,7 +175,7 @@ def items(values: Iterable[Any], name: str, needed: str) -> tuple:
 
 
 def _named(kinds: type | tuple[type, ...]) -> str:
-    several = kinds if isinstance(kinds, tuple) else (kinds,)
+    several = kinds if isinstance(kinds, tuple) else get_args(kinds) or (kinds,)
     return " or ".join(kind.__name__ for kind in several)
 
 

@@ -346,7 +346,7 @@ CALLS = {
     "plot_pressure": lambda w: {"state": w.OilFilm.equilibrium(9.0, [-0.1, 0.0])},
     "propose": {"speeds": (0.0, 40.0)},
     "recommended_settings": {"end_time": 1.0, "step": 1e-3},
-    "report": lambda w: {"path": w.folder / "report.html", "contents": [w.ReducedRotor]},
+    "report": lambda w: {"path": w.folder / "report.html", "contents": {"Rotor": w.ReducedRotor}},
     "response_shapes": lambda w: {"unbalances": [w.Unbalance]},
     "limit_cycles": lambda w: {
         "target": _point(),
