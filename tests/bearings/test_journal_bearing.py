@@ -36,14 +36,16 @@ def test_equilibrium_and_coefficients_of_a_published_bearing():
 def test_coefficients_are_the_derivatives_of_the_force(speed, load):
     one = bearing(load)
     rest = one.equilibrium(speed)
-    still = np.zeros(2)
-    np.testing.assert_allclose(one.force(rest, still, speed), np.negative(load), rtol=0.0,
+    np.testing.assert_allclose(one.law(*rest, 0.0, 0.0, 0.0, speed), np.negative(load), rtol=0.0,
                                atol=1e-9 * np.hypot(*load))  # fmt: skip
     K, D = one.coefficients(speed)
     step = 1e-5 * (SIZE["clearance"] - np.hypot(*rest))
     for matrix, move in ((K, (step, 0.0)), (D, (0.0, step * abs(speed)))):
         columns = [
-            [one.force(rest + sign * move[0] * n, sign * move[1] * n, speed) for sign in (1, -1)]
+            [
+                np.array(one.law(*(rest + sign * move[0] * n), *(sign * move[1] * n), 0.0, speed))
+                for sign in (1, -1)
+            ]
             for n in np.eye(2)
         ]
         found = -np.array([a - b for a, b in columns]).T / (2.0 * max(move))
