@@ -282,7 +282,10 @@ class SolidRotor(FiniteElementRotor):
             rigid motions, node numbers, units.
         """
         entries = {} if interfaces is None else checks.mapping(interfaces, "interfaces", "nodes")
-        node_sets = {name: (nodes, None) for name, nodes in entries.items()}
+        node_sets = {
+            name: (checks.array(entry, f"interfaces: {name!r}", dtype=int), None)
+            for name, entry in entries.items()
+        }
         model = FiniteElementModel(nodes, mass, stiffness, damping, node_sets, triangles)
         return cls._of_model(model, axis, check_units)
 

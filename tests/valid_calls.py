@@ -238,7 +238,7 @@ CALLS = {
     "Motion": lambda w: {"second_order": stiffening(w.Invariants, "tilt"), "gravity": DOWN},
     "Motion.body_forces": {"acceleration": DOWN},
     "Motion.drive_torque": lambda w: {"zeta_tt": np.zeros(w.Motion.size)},
-    "MotionShapes.animate": lambda w: {"path": w.folder / "shape.gif", "frames": 2},
+    "MotionShapes.animate": lambda w: {"path": w.folder / "shape.gif"},
     "Mount": {"stiffness": 1e6 * np.eye(3)},
     "OilFilm": {
         "length": 0.05,
