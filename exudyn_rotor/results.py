@@ -28,7 +28,6 @@ _KIND = "result"
 _REGISTERED: dict[str, type[Result]] = {}
 
 Class = TypeVar("Class", bound=type)
-Kind = TypeVar("Kind", bound="Result")
 
 
 def storable(cls: Class) -> Class:
@@ -42,7 +41,7 @@ def storable(cls: Class) -> Class:
 
 
 class Result(Checked):
-    """Base of result classes: checked, read-only, and saved and loaded by methods.
+    """Base of result classes: checked, read-only, saved by a method, see :func:`load_result`.
 
     Examples
     --------
@@ -126,20 +125,6 @@ class Result(Checked):
         writer.writerow(columns)
         writer.writerows(zip(*(values.tolist() for values in columns.values()), strict=True))
         write_bytes(path, text.getvalue().encode())
-
-    @classmethod
-    def load(cls: type[Kind], path: str | PathLike) -> Kind:
-        """Read a result of this class; see :func:`load_result`.
-
-        Raises
-        ------
-        ValueError
-            If the file holds a result of another class.
-        """
-        result = load_result(path)
-        if not isinstance(result, cls):
-            raise ValueError(f"{path}: holds a {type(result).__name__}, not a {cls.__name__}")
-        return result
 
 
 def text_table(columns: Mapping[str, np.ndarray]) -> list[str]:

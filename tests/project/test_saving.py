@@ -9,7 +9,7 @@ from matplotlib import pyplot
 from matplotlib.figure import Figure
 from small_results import STORED
 
-from exudyn_rotor import Result, StabilityMap, plotting
+from exudyn_rotor import Result, plotting
 from exudyn_rotor.storage import read_arrays, write_arrays
 
 
@@ -67,7 +67,6 @@ REFUSED = [  # what is called in a folder with a file a.npz, and what it says
         r"path: needs the name of a file, '\.' is a folder or",
     ),
     (lambda: write_arrays("a.npz", "thing", {}), "path: the file 'a.npz' is read-only"),
-    (lambda: StabilityMap.load("a.npz"), "a.npz: holds a Spectra, not a StabilityMap"),
     (lambda: Result().save("b.npz"), "a Result cannot be stored; its class needs the decorator"),
     (lambda: Result().columns(), "columns: a Result has none"),
     (lambda: STORED["Spectra"].to_dataframe(), "to_dataframe: needs pandas, which is not inst"),
