@@ -18,7 +18,6 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from exudyn_rotor import checks
 from exudyn_rotor.checks import Checked
 from exudyn_rotor.checks import numbers as numbers
 from exudyn_rotor.checks import words as words
@@ -119,7 +118,6 @@ class Result(Checked):
         TypeError, OSError
             As :meth:`save`.
         """
-        checks.path(path)
         text, columns = io.StringIO(), self.columns(units)
         writer = csv.writer(text)
         writer.writerow(columns)

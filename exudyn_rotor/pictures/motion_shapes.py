@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import itertools
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,7 +15,6 @@ from exudyn_rotor.plotting import COLORS, draw_surface
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.solid.rotor import Interface
 from exudyn_rotor.solid.surface import flat_triangles
-from exudyn_rotor.storage import write_bytes
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.rotating_axes import axes_of
 from exudyn_rotor.units import Units
@@ -191,7 +189,7 @@ class MotionShapes(Result):
         Parameters
         ----------
         path : str or path-like
-            Ends with '.gif'; a file there is replaced by a complete one only.
+            Ends with '.gif'; a file there is replaced.
         index : int, optional
             Which shape, counted from 0.
 
@@ -201,16 +199,16 @@ class MotionShapes(Result):
             If an argument is of another kind, there is no surface, or the file cannot be written.
         """
         from matplotlib import pyplot
-        from PIL import Image
+        from matplotlib.animation import FuncAnimation, PillowWriter
 
         target = checks.path(path)
         if target.suffix != ".gif":
             raise ValueError(f"path: needs the ending .gif, got {str(target)!r}")
         ax = self.plot(index)
-        figure, faces, line = ax.figure, ax.collections[-1], ax.lines[-1]
-        rate = self.frequencies[index] or abs(self.speeds[index]) or 1.0
-        scale, corners, pictures = self._scale(index), flat_triangles(self.triangles), []
-        for time in 2.0 * np.pi / rate * np.arange(_FRAMES) / _FRAMES:
+        faces, line = ax.collections[-1], ax.lines[-1]
+        scale, corners = self._scale(index), flat_triangles(self.triangles)
+
+        def show(time: float) -> None:
             moved = scale * self.displacement(index, time)
             turn = self.axis.rotation(self.speeds[index] * time).T
             nodes = (self.positions + moved - self.point) @ turn + self.point
@@ -219,14 +217,11 @@ class MotionShapes(Result):
             if self._stations:
                 centers = [center + mean @ moved.ravel() for center, mean in self._stations]
                 line.set_data_3d(*((np.array(centers) - self.point) @ turn + self.point).T)
-            figure.canvas.draw()
-            rgb = np.asarray(figure.canvas.buffer_rgba())[..., :3]
-            pictures.append(Image.fromarray(rgb).convert("P", palette=Image.Palette.ADAPTIVE))
-        pyplot.close(figure)
-        film = io.BytesIO()
-        options = {"append_images": pictures[1:], "duration": 2000 // _FRAMES, "loop": 0}
-        pictures[0].save(film, format="GIF", save_all=True, **options)
-        write_bytes(target, film.getvalue())
+
+        rate = self.frequencies[index] or abs(self.speeds[index]) or 1.0
+        times = 2.0 * np.pi / rate * np.arange(_FRAMES) / _FRAMES
+        FuncAnimation(ax.figure, show, times).save(target, PillowWriter(0.5 * _FRAMES))
+        pyplot.close(ax.figure)
 
     # ------------------------------------------------------------------ parts
 

@@ -391,13 +391,10 @@ class FiniteElementRotor:
         check_unstressed(self)
         section = self._section("disc" if name is None else name, position, width)
         center, nodes = section.reference, section.nodes
-        taken = [disc for disc in self.discs if np.isin(disc.nodes, nodes).any()]
-        if taken:
-            place = taken[0].center
+        if any(np.isin(disc.nodes, nodes).any() for disc in self.discs):
             raise ValueError(
-                f"position: the section at {position:g} m shares nodes with the disc at "
-                f"{np.round(place, 9).tolist()} m; add one disc with the inertia of both, or use "
-                "narrower bands"
+                f"position: the section at {position:g} m shares nodes with another disc; add one "
+                "disc with the inertia of both, or use narrower bands"
             )
         count = self.node_count
         spring = STIFF * self.stiffness.diagonal().reshape(-1, 3)[nodes].max()
@@ -438,15 +435,11 @@ class FiniteElementRotor:
         Raises
         ------
         ValueError
-            If an interface is unknown, none is given, all its nodes are on one line, or the rotor
+            If an interface is unknown, none is given, all nodes are on one line, or the rotor
             carries a prestress.
         """
         check_unstressed(self)
         names = checks.labels(names, "names", self.interfaces)
-        if not names:
-            raise ValueError(
-                f"names: needs one interface or more of {list(self.interfaces)}, got none"
-            )
         held = np.unique(np.concatenate([self.interfaces[name].nodes for name in names]))
         if rigid_basis(self.nodes[held]).shape[1] < 6:
             raise ValueError(

@@ -47,14 +47,11 @@ Rule = tuple[np.ndarray, np.ndarray]
 class ElementKind:
     """One kind of element: corners and mid nodes, shape functions, integration points.
 
-    `order` is 2 with a mid node on every edge, else 1; `powers` (n, 3) are exponents of the
-    monomials that the shape functions are made of; the rules are points (q, 3) and weights (q,).
+    `order` is 2 with a mid node on every edge, else 1. Rules are points (q, 3) and weights (q,).
     """
 
-    name: str
     corners: np.ndarray
     order: int
-    powers: np.ndarray
     stiffness_rule: Rule
     mass_rule: Rule
 
@@ -67,6 +64,11 @@ class ElementKind:
     def edges(self) -> tuple[tuple[int, int], ...]:
         """Corners of the edge of every mid node."""
         return _EDGES[len(self.corners)] if self.order == 2 else ()
+
+    @property
+    def powers(self) -> np.ndarray:
+        """Exponents (n, 3) of the monomials that the shape functions are made of."""
+        return _POWERS[len(self.corners), self.order]
 
     @cached_property
     def points(self) -> np.ndarray:
@@ -144,18 +146,14 @@ def _rule(shape: ngsolve.ET, degree: int) -> Rule:
 # the points inside the triangle, where NGSolve takes the middles of its edges
 _THREE = (np.array([[1, 1], [4, 1], [1, 4]]) / 6.0, np.full(3, 1.0 / 6.0))
 _ONE, _FOUR, _FOURTEEN = (_rule(ngsolve.TET, degree) for degree in (1, 2, 5))
-_RULES = {
-    "tetra": (_TETRAHEDRON, 1, _ONE, _FOUR),
-    "tetra10": (_TETRAHEDRON, 2, _FOUR, _FOURTEEN),
-    "wedge": (_WEDGE, 1, _prism(_THREE, 2), _prism(_THREE, 2)),
-    "wedge15": (_WEDGE, 2, _prism(_THREE, 3), _prism(_rule(ngsolve.TRIG, 5), 3)),
-    "hexahedron": (_HEXAHEDRON, 1, _cube(2), _cube(2)),
-    "hexahedron20": (_HEXAHEDRON, 2, _cube(3), _cube(3)),
-    # as CalculiX integrates C3D20R where it looks for frequencies, and ANSYS SOLID186
-    "hexahedron20 reduced": (_HEXAHEDRON, 2, _cube(2), _cube(2)),
-    "hexahedron20 reduced stiffness": (_HEXAHEDRON, 2, _cube(2), _cube(3)),
-}
 KINDS = {
-    name: ElementKind(name, corners, order, _POWERS[len(corners), order], *rules)
-    for name, (corners, order, *rules) in _RULES.items()
+    "tetra": ElementKind(_TETRAHEDRON, 1, _ONE, _FOUR),
+    "tetra10": ElementKind(_TETRAHEDRON, 2, _FOUR, _FOURTEEN),
+    "wedge": ElementKind(_WEDGE, 1, _prism(_THREE, 2), _prism(_THREE, 2)),
+    "wedge15": ElementKind(_WEDGE, 2, _prism(_THREE, 3), _prism(_rule(ngsolve.TRIG, 5), 3)),
+    "hexahedron": ElementKind(_HEXAHEDRON, 1, _cube(2), _cube(2)),
+    "hexahedron20": ElementKind(_HEXAHEDRON, 2, _cube(3), _cube(3)),
+    # as CalculiX integrates C3D20R where it looks for frequencies, and ANSYS SOLID186
+    "hexahedron20 reduced": ElementKind(_HEXAHEDRON, 2, _cube(2), _cube(2)),
+    "hexahedron20 reduced stiffness": ElementKind(_HEXAHEDRON, 2, _cube(2), _cube(3)),
 }
