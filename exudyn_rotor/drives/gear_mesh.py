@@ -87,8 +87,7 @@ class GearMesh(Connection):
     variation: np.ndarray = ()
 
     def __post_init__(self) -> None:
-        radii = checks.vector(self.radii, "radii", "m", size=2)
-        checks.keep(self, radii=checks.one_or_each(radii, "radii", "m", 2, above=0.0))
+        checks.keep(self, radii=checks.one_or_each(self.radii, "radii", "m", 2, above=0.0))
         checks.keep_numbers(self, {"stiffness": "N/m"}, above=0.0)
         checks.keep_numbers(self, {"damping": "N s/m"}, least=0.0)
         checks.keep_numbers(self, {"pressure_angle": "rad"}, above=0.0, below=0.5 * pi)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
+from exudyn_rotor.solvers.inertia_relief import free_rigid_motions
 from exudyn_rotor.solvers.modes import check_modes, dense_modes, lanczos_modes
 
 SIZE = 400
@@ -43,6 +44,7 @@ REFUSED = [
     (lambda: lanczos_modes(*oscillators(1.0 + FEW, FEW), 7, 1e-10), "not all nodes may have mass"),
     (lambda: dense_modes(-MASS, np.copy, 1), "not positive definite"),
     (lambda: check_modes(SPRINGS, MASS, INVERSE, np.ones(2), np.eye(9, 2)), "eigenmode 2 does not"),
+    (lambda: free_rigid_motions(np.eye(3), MASS, SPRINGS, 6), "claims 6 free .* holds supports"),
 ]
 
 
