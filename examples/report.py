@@ -32,8 +32,9 @@ with warnings.catch_warnings(record=True) as raised:
     stage = er.anticipated_cross_coupling(3e5, RANGE[1], 0.32, 0.02, density_ratio=1.4)
     level_one = er.stability_level_one(rotor, RANGE[1], 3.0 * stage, "midspan", supports=bearings)
 picture = diagram.plot(units="rpm", orders=[1, 2], operating_range=RANGE, margins=(0.16, 0.26))
-contents = [{"Rotor": [solid, rotor], "Bearings": model, "Campbell diagram": [picture, diagram]}]
-contents += [critical, response, margins, growth, level_one]
+contents = {"Rotor": [solid, rotor], "Bearings": model, "Campbell diagram": [picture, diagram]}
+contents |= {"Critical speeds over the stiffness": critical, "Unbalance response": response}
+contents |= {"Margins by API": margins, "Stability": growth, "Stability by API": level_one}
 er.report("report.html", contents, title="Compressor rotor", raised=raised)
 assert abs(loads.sum() / 176.08 - 1.0) < 1e-3  # 7830 π (0.05² 1.2 + 3 (0.16² − 0.05²) 0.06) kg
 assert np.allclose(margins.peaks / RPM, 4175.0, rtol=0.01)

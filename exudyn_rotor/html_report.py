@@ -21,7 +21,7 @@ from matplotlib.figure import Figure
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.storage import write_text
+from exudyn_rotor.storage import write_bytes
 from exudyn_rotor.units import Units
 
 _SHARPNESS = 110  # dots per inch
@@ -58,7 +58,7 @@ nav li {{ line-height: 1.4; }}
 
 def report(
     path: str | PathLike,
-    contents: Any,
+    contents: Mapping[str, Any],
     *,
     title: str = "Rotordynamics report",
     units: str = "rpm",
@@ -72,11 +72,11 @@ def report(
     ----------
     path : str or path-like
         Ends with '.html'; a file of that name is replaced only by a complete one.
-    contents : object, mapping of heading to object or objects, or sequence of both
+    contents : mapping of heading to object, or to a sequence of objects
         In the order of the report. An object is a result or anything else with ``table()``,
         matplotlib Axes or a Figure, text, a paragraph, or a rotor, a train of rotors, a support, a
-        foundation or a linear model, shown by its lines of text. A mapping gives headings; a result
-        beside Axes under one heading is shown with these in place of its own picture.
+        foundation or a linear model, shown by its lines of text. A result beside Axes under one
+        heading is shown with these in place of its own picture.
     title : str, optional
     units : {'rpm', 'Hz', 'SI'}, optional
         Of speeds in tables and pictures; see :meth:`exudyn_rotor.units.Units.of`.
@@ -98,8 +98,9 @@ def report(
     >>> from pathlib import Path
     >>> from exudyn_rotor import CriticalSpeeds, report
     >>> found = CriticalSpeeds(1.0, [100.0], [0.0], ("forward",), [1], [[1.0]])
+    >>> contents = {"Critical speeds": [found, "The rotor runs at 300 rpm."]}
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     report(Path(folder, "rotor.html"), [found, "The rotor runs at 300 rpm."], title="Pump")
+    ...     report(Path(folder, "rotor.html"), contents, title="Pump")
     ...     text = Path(folder, "rotor.html").read_text(encoding="utf-8")
     >>> "<h1>Pump</h1>" in text, "954.93" in text
     (True, True)
@@ -108,33 +109,26 @@ def report(
         raise ValueError(f"path: needs the ending .html, got {str(path)!r}")
     checks.label(title, "title")
     Units.of(units)
-    messages = [_message(one) for one in checks.items(raised, "raised", "warnings in a sequence")]
-    sections = _sections(contents)
+    listed = checks.items(raised, "raised", "warnings in a sequence")
+    messages = [str(getattr(one, "message", one)) for one in listed]
+    checks.mapping(contents, "contents", "object or objects")
+    sections = {heading: _listed(given) for heading, given in contents.items()}
+    if not sections or not all(sections.values()):
+        raise ValueError("contents: there are none; give results, pictures, rotors or text")
     with rc_context({"font.size": rcParamsDefault["font.size"]}):  # plots of Exudyn change it
-        written = [(heading, _html(given, heading, units)) for heading, given in sections]
+        written = {heading: _html(given, heading, units) for heading, given in sections.items()}
     if messages:
         boxes = (f'<p class="warning">{escape(text)}</p>' for text in dict.fromkeys(messages))
-        written.append(("Warnings", "\n".join(boxes)))
+        written["Warnings"] = "\n".join(boxes)
     links, parts = [], []
-    for number, (heading, html) in enumerate(written):
+    for number, (heading, html) in enumerate(written.items()):
         links.append(f'<li><a href="#s{number}">{escape(heading)}</a></li>')
         parts.append(f'<section id="s{number}">\n<h2>{escape(heading)}</h2>\n{html}\n</section>')
     body = "\n".join(["<nav><ol>", *links, "</ol></nav>", *parts])
     day = date.today().isoformat()
     made_by = f"exudyn_rotor {sys.modules[__package__].__version__}, Exudyn {exudyn.__version__}"
-    write_text(path, _PAGE.format(title=escape(title), day=day, made_by=made_by, body=body))
-
-
-def _sections(contents: Any) -> list[tuple[str, list[Any]]]:
-    """Return headings with the objects under them."""
-    sections: list[tuple[str, list[Any]]] = []
-    for content in _listed(contents):
-        named = content if isinstance(content, Mapping) else {_heading(content): content}
-        for heading, given in named.items():
-            sections.append((checks.label(heading, "contents: heading"), _listed(given)))
-    if not sections or not all(given for _, given in sections):
-        raise ValueError("contents: there are none; give results, pictures, rotors or text")
-    return sections
+    page = _PAGE.format(title=escape(title), day=day, made_by=made_by, body=body)
+    write_bytes(path, page.encode())
 
 
 def _listed(given: Any) -> list[Any]:
@@ -142,25 +136,6 @@ def _listed(given: Any) -> list[Any]:
     if isinstance(given, list | tuple | np.ndarray):
         return [one for each in given for one in _listed(each)]
     return [given]
-
-
-def _heading(content: Any) -> str:
-    """Return a heading for an object that is given without one."""
-    if isinstance(content, str):
-        return "Remarks"
-    if isinstance(content, Axes | Figure):
-        return "Picture"
-    words = "".join(f" {c.lower()}" if c.isupper() else c for c in type(content).__name__)
-    return words.strip().capitalize()
-
-
-def _message(warning: Any) -> str:
-    """Return the text of a warning."""
-    if isinstance(warning, WarningMessage):
-        warning = warning.message
-    if not isinstance(warning, str | Warning):
-        raise TypeError(f"raised: needs warnings or texts, got {checks.shown(warning)}")
-    return str(warning)
 
 
 def _html(items: list[Any], heading: str, units: str) -> str:
@@ -191,17 +166,14 @@ def _described(item: Any) -> str:
     if isinstance(item, LinearModel):
         supports = [repr(one) for each in item.supports.values() for one in each]
         return "\n".join([repr(item), *supports])
-    summary = getattr(item, "summary", None)
-    return summary() if callable(summary) else repr(item)
+    return item.summary() if hasattr(item, "summary") else repr(item)
 
 
 def _draws_alone(result: Any) -> bool:
     """True where a result has a method ``plot()`` that needs no arguments."""
-    if not callable(getattr(result, "plot", None)):
-        return False
-    kinds = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
-    given = inspect.signature(result.plot).parameters.values()
-    return all(p.default is not p.empty or p.kind in kinds for p in given)
+    plot = getattr(result, "plot", None)
+    given = inspect.signature(plot).parameters.values() if plot else ()
+    return plot is not None and all(p.default is not p.empty for p in given)
 
 
 def _called(method: Callable, units: str) -> Any:

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.solid.matrices import as_triangles
+from exudyn_rotor.solid.surface import flat_triangles
 from exudyn_rotor.storage import write_bytes
 
 if TYPE_CHECKING:
@@ -73,6 +74,7 @@ def save(drawn: Axes | Figure | np.ndarray, path: str | PathLike) -> None:
     Where no window and no notebook can show it, a figure that this package has made is closed
     afterwards, so that a script that saves many keeps none in memory.
     """
+    from matplotlib import get_backend, pyplot
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -84,16 +86,7 @@ def save(drawn: Axes | Figure | np.ndarray, path: str | PathLike) -> None:
         target = target.with_suffix(".png")
     made.savefig(content, format=target.suffix[1:], dpi=140)
     write_bytes(target, content.getvalue())
-    _close_unseen(made)
-
-
-def _close_unseen(made: Figure) -> None:
-    """Take a figure of this package from those of pyplot, where the backend only writes files."""
-    from matplotlib import get_backend, pyplot
-    from matplotlib.backends import BackendFilter, backend_registry
-
-    files_only = backend_registry.list_builtin(BackendFilter.NON_INTERACTIVE)
-    if made in _made and get_backend().lower() in files_only:
+    if made in _made and get_backend().lower() == "agg":  # which shows nothing
         pyplot.close(made)
 
 
@@ -190,13 +183,6 @@ def draw_surface(
     ax.set_box_aspect(np.ptp([low - around, high + around], axis=0), zoom=_ZOOM)
     ax.figure.colorbar(mapped, ax=ax, label=label, pad=0.15, shrink=0.8)
     return ax
-
-
-def flat_triangles(triangles: np.ndarray) -> np.ndarray:
-    """Return triangles (t, 3) with straight sides, four for each one of six nodes."""
-    if triangles.shape[1] == 3:
-        return triangles
-    return triangles[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
 
 
 def keep_apart(labels: Sequence[Annotation]) -> None:

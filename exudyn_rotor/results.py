@@ -18,17 +18,15 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from exudyn_rotor import checks
-from exudyn_rotor.checks import FIELD_CHECKS, Checked, field_types
+from exudyn_rotor.checks import Checked
 from exudyn_rotor.checks import numbers as numbers
 from exudyn_rotor.checks import words as words
-from exudyn_rotor.storage import plain, read_arrays, write_arrays, write_text
+from exudyn_rotor.storage import plain, read_arrays, write_arrays, write_bytes
 
 _KIND = "result"
 _REGISTERED: dict[str, type[Result]] = {}
 
 Class = TypeVar("Class", bound=type)
-Kind = TypeVar("Kind", bound="Result")
 
 
 def storable(cls: Class) -> Class:
@@ -36,24 +34,13 @@ def storable(cls: Class) -> Class:
 
     To be put above ``@dataclass(frozen=True, eq=False)``. Fields may be arrays of numbers, numbers,
     flags, words, tuples of words, and None.
-
-    Raises
-    ------
-    TypeError
-        If the class has a field of another type, or another class of that name is registered.
     """
-    for name, hint in field_types(cls).items():
-        if hint not in FIELD_CHECKS:
-            raise TypeError(f"{cls.__name__}.{name}: a {hint} cannot be stored")
-    known = _REGISTERED.setdefault(cls.__name__, cls)
-    if known.__module__ != cls.__module__:
-        raise TypeError(f"a result class of the name {cls.__name__} is registered already")
     _REGISTERED[cls.__name__] = cls
     return cls
 
 
 class Result(Checked):
-    """Base of result classes: checked, read-only, and saved and loaded by methods.
+    """Base of result classes: checked, read-only, saved by a method, see :func:`load_result`.
 
     Examples
     --------
@@ -131,26 +118,11 @@ class Result(Checked):
         TypeError, OSError
             As :meth:`save`.
         """
-        checks.path(path)
         text, columns = io.StringIO(), self.columns(units)
         writer = csv.writer(text)
         writer.writerow(columns)
         writer.writerows(zip(*(values.tolist() for values in columns.values()), strict=True))
-        write_text(path, text.getvalue())
-
-    @classmethod
-    def load(cls: type[Kind], path: str | PathLike) -> Kind:
-        """Read a result of this class; see :func:`load_result`.
-
-        Raises
-        ------
-        ValueError
-            If the file holds a result of another class.
-        """
-        result = load_result(path)
-        if not isinstance(result, cls):
-            raise ValueError(f"{path}: holds a {type(result).__name__}, not a {cls.__name__}")
-        return result
+        write_bytes(path, text.getvalue().encode())
 
 
 def text_table(columns: Mapping[str, np.ndarray]) -> list[str]:

@@ -32,9 +32,7 @@ def rotor_example(masses: tuple[float, float] = (2.0, 2.0)) -> SolidRotor:
     >>> rotor.total_mass, sorted(rotor.interfaces)
     (4.0, ['left', 'right'])
     """
-    values = checks.vector(masses, "masses", "kg", size=2)
-    if np.any(values <= 0.0):
-        raise ValueError(checks.told("masses", "two positive numbers [kg]", masses))
+    values = checks.one_or_each(masses, "masses", "kg", 2, above=0.0)
     along = np.kron([[1.0, -1.0], [-1.0, 1.0]], np.diag([0.0, 0.0, _ROD]))
     nodes = [[0.0, 0.0, -_HALF], [0.0, 0.0, _HALF]]
     rotor = SolidRotor.from_matrices(np.diag(np.repeat(values, 3)), along, nodes, "z")

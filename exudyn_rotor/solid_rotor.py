@@ -15,7 +15,7 @@ from exudyn_rotor.prestress.static_solution import prestress
 from exudyn_rotor.reduction.reduce import reduce
 from exudyn_rotor.solid import matrices, ngsolve_model
 from exudyn_rotor.solid.meshes import mesh_model
-from exudyn_rotor.solid.model import FiniteElementModel, import_model, node_set
+from exudyn_rotor.solid.model import FiniteElementModel, import_model
 from exudyn_rotor.solid.rotor import AxisLike, FiniteElementRotor
 from exudyn_rotor.solid.summary import summary
 
@@ -99,11 +99,11 @@ class SolidRotor(FiniteElementRotor):
         ----------
         mesh : ngsolve.Mesh
             Gets mid nodes on the geometry (``SecondOrder``) if `order` is 2 and it has none yet;
-            they replace the curved elements of ``mesh.Curve``, as a warning says. Node numbers are
-            those of the Netgen mesh and of Exudyn's FEMinterface, counted from zero.
+            they replace the curved elements of ``mesh.Curve``. Node numbers are those of the
+            Netgen mesh and of Exudyn's FEMinterface, counted from zero.
         materials : mapping
             Region name → ``{'youngsModulus': Pa, 'poissonsRatio': 1, 'density': kg/m³}``; one
-            such dict by itself for a mesh with one material.
+            such dict by itself for all regions.
         axis : SpinAxis, str or array_like
             Read by :meth:`SpinAxis.of`: 'x', 'y', 'z', a direction, or (one of these, point) [m].
         order : int, optional
@@ -269,7 +269,7 @@ class SolidRotor(FiniteElementRotor):
         nodes : array_like, shape (n, 3)
             Reference positions [m].
         interfaces : mapping, optional
-            Name → node numbers, or name → (node numbers, weights).
+            Name → node numbers; :meth:`with_interface` takes weights, too.
         triangles : array_like of int, shape (t, 3) or (t, 6), optional
             Surface for drawing.
         axis, check_units
@@ -282,7 +282,10 @@ class SolidRotor(FiniteElementRotor):
             rigid motions, node numbers, units.
         """
         entries = {} if interfaces is None else checks.mapping(interfaces, "interfaces", "nodes")
-        node_sets = {name: node_set(name, entry) for name, entry in entries.items()}
+        node_sets = {
+            name: (checks.array(entry, f"interfaces: {name!r}", dtype=int), None)
+            for name, entry in entries.items()
+        }
         model = FiniteElementModel(nodes, mass, stiffness, damping, node_sets, triangles)
         return cls._of_model(model, axis, check_units)
 

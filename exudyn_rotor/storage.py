@@ -1,20 +1,16 @@
 """Files of arrays (``.npz``) without pickle: reading executes nothing, writing loses nothing.
 
-A file holds named arrays and its format. Saving is atomic: the data go to a draft of a name of its
-own in the same folder, ``<name>.<16 hexadecimal digits>.draft``, which takes the place of the file
-when it is complete and on the disk. A saver that is killed leaves its draft, which nothing reads.
+A file holds named arrays and its format. What is written goes to a draft beside the file, which
+takes its place when it is complete.
 """
 
 from __future__ import annotations
 
-import contextlib
+import io
 import os
-import secrets
-import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
-from typing import BinaryIO
 
 import numpy as np
 
@@ -23,13 +19,10 @@ from exudyn_rotor import checks
 _PACKAGE = "exudyn_rotor"
 _VERSION = 2  # of the file format
 _KINDS = "biufcU"  # flags, numbers, text
-_CHECKSUM = "sha256"  # in files of development versions before 0.2.0
 
 
 def write_arrays(path: str | PathLike, kind: str, data: Mapping[str, object]) -> None:
-    """Write arrays, numbers and text to `path`; a file there is replaced by a complete one only.
-
-    The mode of an existing file stays; through a symbolic link its target is written.
+    """Write arrays, numbers and text to `path` as :func:`write_bytes` does.
 
     Parameters
     ----------
@@ -43,40 +36,42 @@ def write_arrays(path: str | PathLike, kind: str, data: Mapping[str, object]) ->
     TypeError
         If `path` is no path, or an entry is neither numbers, flags nor text.
     OSError
-        If the folder does not exist, `path` is a folder, a device or read-only, or the disk is
-        full; the old file stays then.
+        As :func:`write_bytes`.
     """
-    target = _target(path)
     entries = {"format": np.array(_format(kind))}
     entries |= {name: np.asarray(value) for name, value in data.items()}
     for name, value in entries.items():
         if value.dtype.kind not in _KINDS:
             raise TypeError(f"{name}: cannot be stored, needs numbers, got {checks.shown(value)}")
-    with _replacing(target) as file:
-        np.savez_compressed(file, **entries)
-
-
-def write_text(path: str | PathLike, text: str) -> None:
-    """Write text, UTF-8, to `path` in the way of :func:`write_arrays`.
-
-    Raises
-    ------
-    TypeError, OSError
-        As :func:`write_arrays`.
-    """
-    write_bytes(path, text.encode("utf-8"))
+    content = io.BytesIO()
+    np.savez_compressed(content, **entries)
+    write_bytes(path, content.getvalue())
 
 
 def write_bytes(path: str | PathLike, data: bytes) -> None:
-    """Write bytes to `path` in the way of :func:`write_arrays`.
+    """Write bytes to `path`; a file there is replaced by a complete one only.
 
     Raises
     ------
-    TypeError, OSError
-        As :func:`write_arrays`.
+    TypeError
+        If `path` is no path.
+    OSError
+        If the folder does not exist, `path` is a folder, a device or read-only, or the disk is
+        full; the old file stays then.
     """
-    with _replacing(_target(path)) as file:
-        file.write(data)
+    target = Path(os.path.realpath(checks.path(path)))
+    if not target.parent.is_dir():
+        raise FileNotFoundError(f"path: the folder {str(target.parent)!r} does not exist; make it")
+    if target.exists() and not target.is_file():
+        raise OSError(f"path: needs the name of a file, {os.fspath(path)!r} is a folder or device")
+    if target.exists() and not os.access(target, os.W_OK):
+        raise PermissionError(f"path: the file {os.fspath(path)!r} is read-only")
+    draft = target.with_name(f"{target.name}.{os.getpid()}.draft")
+    try:
+        draft.write_bytes(data)
+        os.replace(draft, target)
+    finally:
+        draft.unlink(missing_ok=True)
 
 
 def read_arrays(path: str | PathLike, kind: str) -> dict[str, np.ndarray]:
@@ -101,9 +96,12 @@ def read_arrays(path: str | PathLike, kind: str) -> dict[str, np.ndarray]:
             f"{source}: damaged, or not a readable file of {_PACKAGE}, .npz without pickle "
             f"({error})"
         ) from error
-    _check_format(source, data, kind)
-    del data["format"]
-    data.pop(_CHECKSUM, None)
+    written = str(data.pop("format", "no format"))
+    if written != _format(kind):
+        raise ValueError(
+            f"{source}: holds {written!r}, where {_format(kind)!r} is needed; a file of another "
+            "version is made anew"
+        )
     for array in data.values():
         array.flags.writeable = False
     return data
@@ -137,50 +135,6 @@ def plain(value: np.ndarray) -> object:
     if value.ndim == 0:
         return value.item()
     return tuple(value.tolist()) if value.dtype.kind == "U" else value
-
-
-def _target(path: str | PathLike) -> Path:
-    """Return the file to write, links followed, after checks of what is there."""
-    given = checks.path(path)
-    target = Path(os.path.realpath(given))
-    if target.is_dir() or os.fspath(path).endswith(("/", os.sep)):  # which Path leaves out
-        raise IsADirectoryError(f"path: needs the name of a file, {os.fspath(path)!r} is a folder")
-    if not target.parent.is_dir():
-        raise FileNotFoundError(f"path: the folder {str(target.parent)!r} does not exist; make it")
-    if target.exists() and not target.is_file():
-        raise OSError(f"path: needs the name of a file, {str(given)!r} is a device")
-    if target.exists() and not os.access(target, os.W_OK):
-        raise PermissionError(f"path: the file {str(given)!r} is read-only")
-    return target
-
-
-@contextlib.contextmanager
-def _replacing(target: Path) -> Iterator[BinaryIO]:
-    """Open a draft that takes the place of `target` when it is complete and on the disk."""
-    draft = target.with_name(f"{target.name[:40]}.{secrets.token_hex(8)}.draft")
-    try:
-        with open(draft, "xb") as file:
-            if target.exists():
-                shutil.copymode(target, draft)
-            yield file
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(draft, target)
-    finally:
-        draft.unlink(missing_ok=True)
-
-
-def _check_format(source: Path, data: dict[str, np.ndarray], kind: str) -> None:
-    """Refuse files of other origin, kind or version."""
-    written = str(data.get("format", ""))
-    if written == _format(kind):
-        return
-    if written.rstrip("0123456789 ") == _format(kind).rstrip("0123456789 "):
-        raise ValueError(
-            f"{source}: written by another version of {_PACKAGE} ({written!r}, needed is "
-            f"{_format(kind)!r}); make it anew"
-        )
-    raise ValueError(f"{source}: holds no {kind}, but {written or 'no format'!r}")
 
 
 def _format(kind: str) -> str:

@@ -238,7 +238,7 @@ CALLS = {
     "Motion": lambda w: {"second_order": stiffening(w.Invariants, "tilt"), "gravity": DOWN},
     "Motion.body_forces": {"acceleration": DOWN},
     "Motion.drive_torque": lambda w: {"zeta_tt": np.zeros(w.Motion.size)},
-    "MotionShapes.animate": lambda w: {"path": w.folder / "shape.gif", "frames": 2},
+    "MotionShapes.animate": lambda w: {"path": w.folder / "shape.gif"},
     "Mount": {"stiffness": 1e6 * np.eye(3)},
     "OilFilm": {
         "length": 0.05,
@@ -254,10 +254,6 @@ CALLS = {
         "amplifier_frequency": 1e4,
     },
     "Pad": {"start": 0.2, "arc": 1.5},
-    "Prestress.from_matrix": lambda w: {
-        "matrix": w.Prestress.matrix,
-        "nodes": w.SolidRotor.nodes,
-    },
     "RollingBearing": {
         "count": 8,
         "pitch_radius": 0.0326,
@@ -350,7 +346,7 @@ CALLS = {
     "plot_pressure": lambda w: {"state": w.OilFilm.equilibrium(9.0, [-0.1, 0.0])},
     "propose": {"speeds": (0.0, 40.0)},
     "recommended_settings": {"end_time": 1.0, "step": 1e-3},
-    "report": lambda w: {"path": w.folder / "report.html", "contents": [w.ReducedRotor]},
+    "report": lambda w: {"path": w.folder / "report.html", "contents": {"Rotor": w.ReducedRotor}},
     "response_shapes": lambda w: {"unbalances": [w.Unbalance]},
     "limit_cycles": lambda w: {
         "target": _point(),

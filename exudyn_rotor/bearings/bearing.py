@@ -138,14 +138,13 @@ class LoadedBearing(ABC):
         Parameters
         ----------
         speeds, frequencies : array_like, shape (s,), (f,)
-            Ascending spin speeds, and frequencies > 0 of the motion [rad/s]. Speeds at which the
-            bearing has no equilibrium are left out with a warning.
+            Ascending spin speeds, and frequencies > 0 of the motion [rad/s].
 
         Raises
         ------
         TypeError, ValueError
-            For bad input, a missing load, no speed with an equilibrium, and sensors elsewhere than
-            where the bearing acts.
+            For bad input, a missing load, a speed without an equilibrium, as films at rest, and
+            sensors elsewhere than where the bearing acts.
 
         Examples
         --------
@@ -220,32 +219,6 @@ class Bearing(LoadedBearing):
         Infinity for a bearing without a clearance.
         """
         return inf
-
-    def force(self, displacement: ArrayLike, velocity: ArrayLike, speed: float = 0.0) -> np.ndarray:
-        """Return the force on the journal [N], shape (2,).
-
-        Parameters
-        ----------
-        displacement, velocity : array_like, shape (2,)
-            Of the journal's centre from that of the bearing along (n1, n2) [m], [m/s].
-        speed : float, optional
-            Spin speed [rad/s].
-
-        Raises
-        ------
-        TypeError, ValueError
-            For bad input, and a displacement as large as the clearance.
-        """
-        place = checks.vector(displacement, "displacement", "m", size=2)
-        rate = checks.vector(velocity, "velocity", "m/s", size=2)
-        checks.number(speed, "speed", "rad/s")
-        distance = hypot(*place)
-        if distance and distance >= (gap := self.clearance_along(place / distance)):
-            raise ValueError(
-                f"displacement: needs less than the clearance of {gap:g} m, got {distance:g} m: "
-                "the journal would touch"
-            )
-        return np.array(self.law(*place.tolist(), *rate.tolist(), 0.0, speed))
 
     def film_edge(self, x: float, y: float) -> float:
         """Return how far the journal may go, on the way to a place, for a film to be there [m].

@@ -58,8 +58,8 @@ class ClearanceStop(Bearing):
     >>> stop = ClearanceStop(
     ...     interface="left", radius=0.05, clearance=5e-4, stiffness=1e7, friction=0.1
     ... )
-    >>> stop.force([6e-4, 0.0], [0.0, 0.0], speed=100.0).round(6)
-    array([-1000.,  -100.])
+    >>> [round(part, 6) for part in stop.law(6e-4, 0.0, 0.0, 0.0, angle=0.0, speed=100.0)]
+    [-1000.0, -100.0]
     """
 
     carries: ClassVar[bool] = False  # while it is open

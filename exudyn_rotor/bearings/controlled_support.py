@@ -8,7 +8,6 @@ Of the ports p, journal j, sensors s and own coordinates o, a motion of the freq
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -17,7 +16,6 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Coefficient, Support
-from exudyn_rotor.calls import user_level
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,25 +64,10 @@ def table_of(
             f"bearing at {linear.interface!r}: measures at {linear.sensor!r}, and a table has one "
             "place; give the bearing itself"
         )
-    kept, rows, refused = [], [], None
-    for speed in speeds.tolist():
-        try:
-            rows.append(_at_speed(linear, speed, frequencies))
-        except ValueError as error:
-            refused = error
-        else:
-            kept.append(speed)
-    if not kept:
-        raise refused
-    if refused is not None:
-        warnings.warn(
-            f"table: {len(speeds) - len(kept)} speeds are left out: {refused}",
-            UserWarning,
-            stacklevel=user_level(),
-        )
+    rows = [_at_speed(linear, speed, frequencies) for speed in speeds.tolist()]
     K, D, M = (np.array(part) for part in zip(*rows, strict=True))
     mass = M if np.any(M) else None
-    given = {"speeds": kept, "frequencies": frequencies}
+    given = {"speeds": speeds, "frequencies": frequencies}
     return Support.from_table(linear.interface, **given, stiffness=K, damping=D, mass=mass)
 
 

@@ -33,10 +33,9 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing, Pair
 from exudyn_rotor.calls import kept
-from exudyn_rotor.solvers.line_search import step_share
 
 _EXPONENTS = {"balls": 1.5, "rollers": 10.0 / 9.0}
-_MOST_ITERATIONS = 100
+_MOST_ITERATIONS, _MOST_CUTS = 100, 40
 _CONVERGED = 1e-14  # last step over the depth of the contact
 _SOFT = 1e-6  # share of the bearing's stiffness
 _CAGE_ANGLES = 16  # over the passage of one element, for mean coefficients
@@ -195,11 +194,14 @@ class RollingBearing(Bearing):
         for _ in range(_MOST_ITERATIONS):
             tangent = contacts(self, place, angle)[2]
             step = np.linalg.solve(tangent + soft, lacking(place))
-
-            def slope(share: float, at: np.ndarray = place, step: np.ndarray = step) -> float:
-                return -float(step @ lacking(at + share * step))
-
-            place = place + step_share(slope) * step
+            low, share, high, work = 0.0, 1.0, 1.0, step @ lacking(place)
+            for _ in range(_MOST_CUTS):  # by bisection to where forces do little work on the step
+                left = step @ lacking(place + share * step)
+                if abs(left) <= 0.5 * work or (share == 1.0 and left > 0.0):
+                    break
+                low, high = (share, high) if left > 0.0 else (low, share)
+                share = 0.5 * (low + high)
+            place = place + share * step
             if np.abs(step).max() < _CONVERGED * depth:
                 break
         # of the depth of contact, with a small load and a wide clearance or a large preload

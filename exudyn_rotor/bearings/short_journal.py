@@ -124,11 +124,3 @@ class ShortJournalBearing(ShortFilmBearing):
         place = (self._rest(speed, load) / self.clearance).tolist()
         found = self._size / self.clearance * film_tangent(*place, 0.0, 0.0, speed)[1]
         return found[:, :2], found[:, 2:]
-
-    def power_loss(self, speed: float, load: ArrayLike | None = None) -> float:
-        """Return the friction (1) of the journal at rest under a static load, −T Ω [W].
-
-        Parameters and errors are those of :meth:`equilibrium`.
-        """
-        place = self.equilibrium(speed, load).tolist()
-        return -speed * self.law_with_torque(*place, 0.0, 0.0, 0.0, speed)[2]

@@ -18,7 +18,6 @@ J. W. Lund, *Spring and damping coefficients for the tilting-pad journal bearing
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
@@ -33,7 +32,6 @@ from exudyn_rotor.bearings.film.film import FilmState, OilFilm
 from exudyn_rotor.bearings.film.pads import direction
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.calls import user_level
 
 _STARTS = (0.3, 0.6, 0.1, 0.8, 0.01, 1e-3)  # places at which a search begins, over the clearance
 _STEPS, _NARROWER = 30, 0.6  # of Newton's method, what of a film one step may close
@@ -157,11 +155,6 @@ class TiltingPadBearing(Bearing):
         ------
         ValueError
             Where the bearing has no load.
-
-        Warns
-        -----
-        UserWarning
-            Of pads with inertia, by the analysis, at the first speed at which one carries nothing.
         """
         if self.pad_inertia is None:
             return super().linearised()
@@ -174,14 +167,6 @@ class TiltingPadBearing(Bearing):
         Linearised(self, 0).check_range(speed)
         load, mass = self._static_load(None), self.pad_mass
         state, whole = self._state(speed, load), self.coefficients(speed, load)[0]
-        absent = [pad for pad, each in enumerate(state.states) if each is None]
-        if absent and not self.__dict__.get("_told"):
-            object.__setattr__(self, "_told", True)
-            warnings.warn(
-                f"bearing at {self.interface!r}: pads {absent} carry nothing at {speed:g} rad/s: "
-                "they count as absent, their tilts as held by next to nothing",
-                stacklevel=user_level(),
-            )
         soft = min(mass * speed**2, _HELD * float(np.abs(whole).max()))
         held = np.array([soft, 4.0 * np.sqrt(soft * mass)])  # overdamped: no vibration of its own
         return state.ports(held)

@@ -78,8 +78,7 @@ class FlexibleCoupling(Connection):
         checks.keep_numbers(self, {"axial": "N/m"}, least=0.0)
         lateral = checks.one_or_each(self.lateral, "lateral", "N/m", 2, least=0.0)
         angular = checks.one_or_each(self.angular, "angular", "N m/rad", 2, least=0.0)
-        damping = checks.vector(self.damping, "damping", size=4)
-        damping = checks.one_or_each(damping, "damping", "", 4, least=0.0)
+        damping = checks.one_or_each(self.damping, "damping", "", 4, least=0.0)
         checks.keep(self, lateral=lateral, angular=angular, damping=damping)
         for name in ("misalignment", "runout"):
             checks.keep(self, **{name: checks.vector(getattr(self, name), name, size=4)})

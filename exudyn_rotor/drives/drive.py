@@ -131,7 +131,7 @@ class Drag(Drive):
     Raises
     ------
     TypeError, ValueError
-        For negative numbers, and for a drag without any.
+        For negative numbers.
 
     Examples
     --------
@@ -149,8 +149,6 @@ class Drag(Drive):
         units = {"constant": "N m", "linear": "N m s/rad", "quadratic": "N m s²/rad²"}
         checks.keep_numbers(self, units, least=0.0)
         checks.keep_numbers(self, {"smooth_speed": "rad/s"}, above=0.0)
-        if not (self.constant or self.linear or self.quadratic):
-            raise ValueError("drag: needs constant, linear or quadratic above zero, got none")
 
     def law(self, speed: float, time: float) -> float:
         """Return the torque [N m]."""

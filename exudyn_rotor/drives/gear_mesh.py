@@ -73,8 +73,6 @@ class GearMesh(Connection):
     >>> mesh.direction.round(3)
     array([ 0.342,  0.94 ,  0.   ,  0.   ,  0.   ,  0.05 , -0.342, -0.94 ,
            -0.   ,  0.   ,  0.   ,  0.1  ])
-    >>> mesh.mesh_frequency(100.0)
-    2000.0
     """
 
     radii: np.ndarray
@@ -89,8 +87,7 @@ class GearMesh(Connection):
     variation: np.ndarray = ()
 
     def __post_init__(self) -> None:
-        radii = checks.vector(self.radii, "radii", "m", size=2)
-        checks.keep(self, radii=checks.one_or_each(radii, "radii", "m", 2, above=0.0))
+        checks.keep(self, radii=checks.one_or_each(self.radii, "radii", "m", 2, above=0.0))
         checks.keep_numbers(self, {"stiffness": "N/m"}, above=0.0)
         checks.keep_numbers(self, {"damping": "N s/m"}, least=0.0)
         checks.keep_numbers(self, {"pressure_angle": "rad"}, above=0.0, below=0.5 * pi)
@@ -161,19 +158,6 @@ class GearMesh(Connection):
         """Return mean stiffness and damping matrix, each (12, 12), in the rows of `direction`."""
         both = np.outer(self.direction, self.direction)
         return self.stiffness * both, self.damping * both
-
-    def mesh_frequency(self, speed: float) -> float:
-        """Return how often teeth mesh [rad/s] at a spin speed of the first gear [rad/s].
-
-        Raises
-        ------
-        TypeError, ValueError
-            For bad input, and for gears without numbers of teeth.
-        """
-        checks.number(speed, "speed", "rad/s")
-        if self.teeth is None:
-            raise ValueError("teeth: the mesh frequency needs their numbers; give teeth=[…, …]")
-        return float(abs(self.teeth[0] * speed))
 
     def springs(self, x: np.ndarray, x_t: np.ndarray) -> Springs:
         """Return a spring and damper for each flank in reach; without backlash for the one.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import itertools
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,10 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.plotting import COLORS, draw_surface, flat_triangles
-from exudyn_rotor.results import Result, numbers, storable, text_table, words
+from exudyn_rotor.plotting import COLORS, draw_surface
+from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.solid.rotor import Interface
-from exudyn_rotor.storage import write_bytes
+from exudyn_rotor.solid.surface import flat_triangles
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.rotating_axes import axes_of
 from exudyn_rotor.units import Units
@@ -25,6 +24,7 @@ if TYPE_CHECKING:
 
 
 _STATIONS = 15  # along the axis
+_FRAMES = 25  # of an animation
 _SHARE = 0.1  # largest displacement as drawn, over the size of the rotor
 _ALPHA = 0.3  # of the surface, through which the orbits are seen
 _COLORS = dict(zip(("forward", "backward", "straight"), COLORS, strict=False))
@@ -94,21 +94,14 @@ class MotionShapes(Result):
         return SpinAxis(self.direction, self.point)
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
-        """Return the table as columns; `units` are those of :meth:`Units.of`."""
+        """Return a row for each shape, with the `index` of :meth:`plot`, in :meth:`Units.of`."""
         shown = Units.of(units)
         return {
+            "index": np.arange(len(self.labels)),
             f"speed [{shown.speed}]": shown.speeds(self.speeds),
             f"frequency [{shown.frequency}]": shown.frequencies(self.frequencies),
             "what": np.array(self.labels),
         }
-
-    def table(self, *, units: str = "Hz") -> str:
-        """Return the frequencies of all shapes as text, with the `index` of :meth:`plot`.
-
-        With the `units` 'rpm' speeds are in rpm and frequencies in Hz, with 'SI' both in rad/s.
-        """
-        numbered = {"index": np.arange(len(self.labels)), **self.columns(units)}
-        return "\n".join(text_table(numbered))
 
     def displacement(self, index: int, time: float) -> np.ndarray:
         """Return the displacement of all nodes at a time [s], rotor frame, mesh axes, (n, 3).
@@ -136,7 +129,7 @@ class MotionShapes(Result):
             axial_places.append((center, local @ axes.T))
         return axial_places
 
-    def plot(self, index: int = 0, ax: Axes3D | None = None, *, units: str = "Hz") -> Axes3D:
+    def plot(self, index: int = 0, ax: Axes3D | None = None, *, units: str = "rpm") -> Axes3D:
         """Draw the rotor at the time zero and the orbits of its centre line.
 
         Orbits are blue where the rotor whirls forward, seen from outside and relative to the spin,
@@ -149,8 +142,9 @@ class MotionShapes(Result):
             Which shape, counted from 0.
         ax : Axes3D, optional
             3D axes to draw in; those of a new figure by default.
-        units : {'Hz', 'rpm', 'SI'}, optional
-            Of speed and frequency in the title, see :meth:`table`.
+        units : {'rpm', 'Hz', 'SI'}, optional
+            Of speed and frequency in the title: 'rpm' has the speed in rpm and the frequency in
+            Hz, 'SI' both in rad/s.
 
         Raises
         ------
@@ -186,10 +180,8 @@ class MotionShapes(Result):
         )
         return ax
 
-    def animate(
-        self, path: str | PathLike, index: int = 0, *, frames: int = 24, seconds: float = 2.0
-    ) -> None:
-        """Write one period of the motion, seen from outside, as an animated GIF.
+    def animate(self, path: str | PathLike, index: int = 0) -> None:
+        """Write one period of the motion, seen from outside, as an animated GIF of two seconds.
 
         The rotor also spins by Ω times the period. A motion that stands still in space is shown
         over one revolution.
@@ -197,13 +189,9 @@ class MotionShapes(Result):
         Parameters
         ----------
         path : str or path-like
-            Ends with '.gif'; a file there is replaced by a complete one only.
+            Ends with '.gif'; a file there is replaced.
         index : int, optional
             Which shape, counted from 0.
-        frames : int, optional
-            Number of pictures.
-        seconds : float, optional
-            How long one period lasts in the film [s].
 
         Raises
         ------
@@ -211,18 +199,16 @@ class MotionShapes(Result):
             If an argument is of another kind, there is no surface, or the file cannot be written.
         """
         from matplotlib import pyplot
-        from PIL import Image
+        from matplotlib.animation import FuncAnimation, PillowWriter
 
         target = checks.path(path)
         if target.suffix != ".gif":
             raise ValueError(f"path: needs the ending .gif, got {str(target)!r}")
-        count = checks.count(frames, "frames", least=2, most=1000)
-        each = round(1000.0 * checks.number(seconds, "seconds", "s", above=0.0) / count)
         ax = self.plot(index)
-        figure, faces, line = ax.figure, ax.collections[-1], ax.lines[-1]
-        rate = self.frequencies[index] or abs(self.speeds[index]) or 1.0
-        scale, corners, pictures = self._scale(index), flat_triangles(self.triangles), []
-        for time in 2.0 * np.pi / rate * np.arange(count) / count:
+        faces, line = ax.collections[-1], ax.lines[-1]
+        scale, corners = self._scale(index), flat_triangles(self.triangles)
+
+        def show(time: float) -> None:
             moved = scale * self.displacement(index, time)
             turn = self.axis.rotation(self.speeds[index] * time).T
             nodes = (self.positions + moved - self.point) @ turn + self.point
@@ -231,14 +217,11 @@ class MotionShapes(Result):
             if self._stations:
                 centers = [center + mean @ moved.ravel() for center, mean in self._stations]
                 line.set_data_3d(*((np.array(centers) - self.point) @ turn + self.point).T)
-            figure.canvas.draw()
-            rgb = np.asarray(figure.canvas.buffer_rgba())[..., :3]
-            pictures.append(Image.fromarray(rgb).convert("P", palette=Image.Palette.ADAPTIVE))
-        pyplot.close(figure)
-        film = io.BytesIO()
-        options = {"append_images": pictures[1:], "duration": each, "loop": 0}
-        pictures[0].save(film, format="GIF", save_all=True, **options)
-        write_bytes(target, film.getvalue())
+
+        rate = self.frequencies[index] or abs(self.speeds[index]) or 1.0
+        times = 2.0 * np.pi / rate * np.arange(_FRAMES) / _FRAMES
+        FuncAnimation(ax.figure, show, times).save(target, PillowWriter(0.5 * _FRAMES))
+        pyplot.close(ax.figure)
 
     # ------------------------------------------------------------------ parts
 

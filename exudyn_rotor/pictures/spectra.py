@@ -1,4 +1,4 @@
-"""Spectra over a run: cascade (waterfall) over the spin speed, spectrogram over time."""
+"""Spectra over a run, as a cascade (waterfall) over the spin speed; orbits with a keyphasor."""
 
 from __future__ import annotations
 
@@ -10,15 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.results import Result, numbers, storable, text_table
+from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-# of the largest amplitude: what a spectrogram shows [dB]
-_RANGE = 60.0
 # share of the largest amplitude up to which a cascade goes, and how much further it is drawn
 _LEAST, _BEYOND = 1e-2, 1.2
 # largest change of the time step, relative: rounding of what a file holds
@@ -45,9 +43,9 @@ class Spectra(Result):
     --------
     >>> from exudyn_rotor import Spectra
     >>> print(Spectra([0.5, 1.5], [60.0, 90.0], [-90.0, 0.0, 90.0], [[0, 0, 1], [2, 0, 1]]).table())
-    time [s]  speed [Hz]  strongest frequency [Hz]  amplitude
-         0.5      9.5493                   14.3239          1
-         1.5     14.3239                  -14.3239          2
+    time [s]  speed [rpm]  strongest frequency [Hz]  amplitude
+         0.5      572.958                   14.3239          1
+         1.5      859.437                  -14.3239          2
     """
 
     times: np.ndarray = numbers("windows")
@@ -60,12 +58,12 @@ class Spectra(Result):
         ax: Axes | None = None,
         *,
         orders: ArrayLike = (1.0,),
-        units: str = "Hz",
+        units: str = "rpm",
     ) -> Axes:
         """Draw the cascade: one spectrum above the other, by spin speed.
 
-        Up to a fifth above the last frequency with a hundredth of the largest amplitude (in a
-        spectrogram a thousandth), and all `orders`.
+        Up to a fifth above the last frequency with a hundredth of the largest amplitude, and all
+        `orders`.
 
         Parameters
         ----------
@@ -73,18 +71,21 @@ class Spectra(Result):
             A new figure without a window by default.
         orders : array_like, optional
             Multiples of the spin speed to draw as lines.
-        units : {'Hz', 'rpm', 'SI'}, optional
+        units : {'rpm', 'Hz', 'SI'}, optional
             'rpm' has the spin speed in rpm and frequencies in Hz, 'SI' both in rad/s.
         """
         from matplotlib.collections import PolyCollection
 
         shown = Units.of(units)
         orders = checks.array(orders, "orders", shape=(None,))
-        inside, most = self._inside(_LEAST, np.abs(orders).max(initial=0.0))
+        sizes, apart = self.amplitudes.max(axis=0), np.diff(self.frequencies).max()
+        last = np.abs(self.frequencies[sizes >= _LEAST * sizes.max()]).max()
+        ordered = np.abs(orders).max(initial=0.0) * np.abs(self.speeds).max()
+        inside = np.abs(self.frequencies) <= _BEYOND * max(last, ordered, apart)
         ax = plotting.axes_or_new(ax)
         base = shown.speeds(self.speeds)
         step = np.ptp(base) / max(len(base) - 1, 1) or 1.0
-        scale = 4.0 * step / (most or 1.0)
+        scale = 4.0 * step / (sizes.max() or 1.0)
         abscissa = shown.frequencies(self.frequencies[inside])
         ends = abscissa[[-1, 0]]
         rows = []
@@ -107,29 +108,6 @@ class Spectra(Result):
             plotting.legend_above(ax, 4)
         return ax
 
-    def plot_spectrogram(self, ax: Axes | None = None, *, units: str = "Hz") -> Axes:
-        """Draw the amplitudes over time and frequency in decibels below the largest one.
-
-        Parameters as of :meth:`plot`.
-        """
-        shown, floor = Units.of(units), 10.0 ** (-_RANGE / 20.0)
-        inside, most = self._inside(floor, 1.0)
-        ax = plotting.axes_or_new(ax)
-        sizes = np.maximum(self.amplitudes[:, inside] / (most or 1.0), floor)
-        abscissa = shown.frequencies(self.frequencies[inside])
-        mesh = ax.pcolormesh(
-            self.times, abscissa, 20.0 * np.log10(sizes).T,
-            shading="nearest", cmap="viridis", vmin=-_RANGE, vmax=0.0,
-        )  # fmt: skip
-        spin = shown.frequencies(self.speeds)
-        ax.plot(self.times, spin, "--", color="white", lw=0.9, label="spin speed")
-        ax.set_ylim(abscissa.min(), abscissa.max())
-        ax.set_xlabel("time [s]")
-        ax.set_ylabel(f"frequency [{shown.frequency}]")
-        ax.legend(loc="upper left", facecolor="0.4", labelcolor="white", framealpha=0.7)
-        ax.figure.colorbar(mesh, ax=ax, label=f"amplitude [dB, 0 dB = {most:.3g}]")
-        return ax
-
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the strongest frequency of every window as columns, in :meth:`Units.of`."""
         shown = Units.of(units)
@@ -140,21 +118,6 @@ class Spectra(Result):
             f"strongest frequency [{shown.frequency}]": shown.frequencies(self.frequencies[best]),
             "amplitude": self.amplitudes.max(axis=1),
         }
-
-    def table(self, *, units: str = "Hz") -> str:
-        """Return the strongest frequency of every window as text; `units` as of :meth:`plot`."""
-        return "\n".join(text_table(self.columns(units)))
-
-    def _inside(self, least: float, order: float) -> tuple[np.ndarray, float]:
-        """Return which frequencies are shown, and the largest of their amplitudes.
-
-        Up to the last with the share `least` of the largest, and to `order` times the speed.
-        """
-        sizes, apart = self.amplitudes.max(axis=0), np.diff(self.frequencies).max()
-        last = np.abs(self.frequencies[sizes >= least * sizes.max()]).max()
-        last = _BEYOND * max(last, order * np.abs(self.speeds).max(), apart)
-        inside = np.abs(self.frequencies) <= last
-        return inside, float(self.amplitudes[:, inside].max())
 
 
 def spectra(

@@ -10,7 +10,7 @@ shaft; only its stiffness is symmetric.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Protocol
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -23,15 +23,7 @@ from exudyn_rotor.solvers.inertia_relief import InertiaRelief
 from exudyn_rotor.theory.rotating_axes import axes_of
 
 Loads = Mapping[str | int, ArrayLike] | ArrayLike
-
-
-class Spring(Protocol):
-    """What the static solution needs of a :class:`exudyn_rotor.Support`."""
-
-    interface: str
-    stiffness_varies: bool
-
-    def matrices(self, speed: float) -> tuple[np.ndarray, np.ndarray]: ...
+Spring = Any  # a Support, of the layer above
 
 
 _HELD = 1e-9  # of the largest: a rigid motion that the supports hold
@@ -119,14 +111,12 @@ class HeldRotor:
         rotor, rigid, total = self._rotor, self._relief.rigid, (load + forces).reshape(-1, 3)
         size = np.abs(rigid).T @ np.abs(load)
         if np.any(np.abs(rigid.T @ total.ravel()) > _UNBALANCED * np.maximum(size, 1e-300)):
-            e, force = rotor.axis.direction, total.sum(axis=0)
+            force = total.sum(axis=0)
             moment = np.cross(rotor.nodes - rotor.axis.point, total).sum(axis=0)
-            across = (np.linalg.norm(each - e * (e @ each)) for each in (force, moment))
             raise ValueError(
-                f"loads: nothing takes up {e @ force:.4g} N along the axis, "
-                "{:.4g} N and {:.4g} N m across it, and a torque of ".format(*across)
-                + f"{e @ moment:.4g} N m; give the other loads, or supports=[Support(…)] that hold "
-                "it (a 3 × 3 stiffness acts along the axis, too)"
+                f"loads: nothing takes up the force {force.round(6).tolist()} N and the moment "
+                f"{moment.round(6).tolist()} N m about a point of the axis; give the other loads, "
+                "or supports=[Support(…)] that hold it (a 3 × 3 stiffness acts along the axis, too)"
             )
 
     def buckling_shares(self, geometric: sp.csr_array) -> np.ndarray:

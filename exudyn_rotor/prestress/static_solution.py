@@ -91,7 +91,7 @@ def prestress(
         raise ValueError(
             "prestress: this rotor has no elements to assemble a geometric stiffness on; make it "
             "with SolidRotor.from_ngsolve, give the matrix of another program with "
-            "Prestress.from_matrix, or use stiffening='tilt'"
+            "Prestress(matrix, nodes), or use stiffening='tilt'"
         )
     relief, load = inertia_relief(self), self.centrifugal_load
     displacement = relief.solve(load)

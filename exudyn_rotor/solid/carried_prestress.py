@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.solid import matrices
@@ -17,13 +15,16 @@ from exudyn_rotor.solid import matrices
 class Prestress:
     """Stiffness of a rotor from its static stress; made by :meth:`SolidRotor.prestress`.
 
+    An imported model has ``Prestress(matrix, nodes)`` of the geometric stiffness alone.
+
     Vibrations have the stiffness ``K + ω² (K_G + K_u) + ω⁴ K_uu``, see
     :mod:`exudyn_rotor.prestress.static_solution`.
 
     Attributes
     ----------
     matrix : scipy.sparse.csr_array, shape (3n, 3n)
-        Stiffness per ω², ordered x0 y0 z0 x1 …: K_G of the centrifugal stress [N s²/m].
+        Stiffness per ω², ordered x0 y0 z0 x1 …: K_G of the centrifugal stress for 1 rad/s, without
+        the spin softening ``−ẽᵀMẽ`` [N s²/m].
     nodes : ndarray, shape (n, 3)
         Positions of the mesh it belongs to [m].
     displacement : ndarray or None, shape (3n,)
@@ -55,7 +56,7 @@ class Prestress:
     >>> import numpy as np
     >>> from exudyn_rotor import Prestress
     >>> across = np.kron([[0.5, -0.5], [-0.5, 0.5]], np.eye(3))
-    >>> Prestress.from_matrix(across, [[-0.5, 0, 0], [0.5, 0, 0]])
+    >>> Prestress(across, [[-0.5, 0, 0], [0.5, 0, 0]])
     Prestress(2 nodes)
     """
 
@@ -103,27 +104,6 @@ class Prestress:
     def per_fourth_power(self) -> sp.csr_array | None:
         """Stiffness per ω⁴, ``K_uu``."""
         return None if self.initial_displacement is None else self.initial_displacement[1]
-
-    @classmethod
-    def from_matrix(cls, matrix: Any, nodes: ArrayLike) -> Prestress:
-        """Take the geometric stiffness of an imported model.
-
-        Parameters
-        ----------
-        matrix : array_like or sparse, shape (3n, 3n)
-            K_G of the centrifugal load for 1 rad/s, in the order of the rotor's matrices and
-            without the spin softening ``−ẽᵀMẽ`` [N s²/m].
-        nodes : array_like, shape (n, 3)
-            Positions of the mesh, those of the rotor [m].
-
-        Raises
-        ------
-        TypeError
-            If an array does not hold numbers.
-        ValueError
-            If a shape does not fit, the matrix is not symmetric, or an entry is not finite.
-        """
-        return cls(matrix, nodes)
 
     def __repr__(self) -> str:
         names = ("by_loads", "initial_displacement")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -14,7 +13,6 @@ from exudyn.FEM import FEMinterface
 from scipy.sparse.csgraph import connected_components
 
 from exudyn_rotor import checks
-from exudyn_rotor.calls import user_level
 from exudyn_rotor.solid.elements import SolidElements
 from exudyn_rotor.theory.axis import coupled, rigid_motions
 
@@ -35,14 +33,6 @@ class FiniteElementModel:
     node_sets: Mapping[str, NodeSet] = field(default_factory=dict)
     triangles: Any = ()
     elements: SolidElements | None = None
-
-
-def node_set(name: str, entry: Any) -> NodeSet:
-    """Read one entry of ``from_matrices(interfaces=…)``: nodes, or (nodes, weights)."""
-    nodes, weights = entry, None
-    if isinstance(entry, tuple) and len(entry) == 2 and not np.isscalar(entry[0]):
-        nodes, weights = entry
-    return checks.array(nodes, f"interfaces: {name!r}: nodes", dtype=int), weights
 
 
 # Face names that Netgen invents for faces without a name.
@@ -93,8 +83,7 @@ _KEYS = ("youngsModulus", "poissonsRatio", "density")
 # With a wide margin: bar wave speed √(E/ρ) [m/s], soft foam has 30 and diamond 18 000; mass over
 # bounding box [kg/m³], a bladed wheel may fill a thousandth of its box and osmium has 22 600.
 _WAVE_SPEEDS, _MEAN_DENSITIES = (10.0, 1e5), (1e-2, 1e5)
-# [kg]; the heaviest turbine-generator rotors have two million, few others half of one
-_LARGEST_MASS, _USUAL_MASS = 1e7, 5e5
+_LARGEST_MASS = 5e5  # kg, of nearly all rotors; a mesh in mm has more
 _ADVICE = (
     "convert to SI (m, kg, s, N, Pa), or pass check_units=False if the units of all inputs agree"
 )
@@ -107,12 +96,7 @@ def materials_by_region(
     checks.mapping(materials, "materials", "material")
     names = sorted(set(regions))
     if any(key in materials for key in _KEYS):
-        if len(names) > 1:
-            raise ValueError(
-                f"materials: one material was given, but the mesh has {len(names)} regions "
-                f"{names}; give a dictionary by region name"
-            )
-        materials = {names[0]: materials}
+        materials = dict.fromkeys(names, materials)
     missing = [name for name in names if name not in materials]
     if missing:
         raise ValueError(
@@ -123,19 +107,13 @@ def materials_by_region(
 
 
 def check_model_units(nodes: np.ndarray, total_mass: float) -> None:
-    """Raise ValueError if size [m] and mass [kg] of a model cannot be in SI, warn if hardly."""
+    """Raise ValueError if size [m] and mass [kg] of a model cannot be in SI."""
     extent = np.ptp(nodes, axis=0)
     size = f"{total_mass:.3g} kg in a box of {box(nodes)}"
     if total_mass > _LARGEST_MASS:
         raise ValueError(
-            f"units: {size} cannot be a rotor; lengths in mm, as Netgen reads all STEP files? "
-            f"shape.Scale(Pnt(0, 0, 0), 1e-3) has metres; {_ADVICE}"
-        )
-    if total_mass > _USUAL_MASS:
-        warnings.warn(
-            f"units: {size}: few rotors are that heavy; lengths in mm? Arrays are in m, kg, s; "
-            "check_units=False takes them as they are",
-            stacklevel=user_level(),
+            f"units: {size}: few rotors are that heavy; lengths in mm, as Netgen reads all STEP "
+            f"files? shape.Scale(Pnt(0, 0, 0), 1e-3) has metres; {_ADVICE}"
         )
     volume = float(np.prod(extent))
     if volume <= 1e-12 * np.max(extent) ** 3:
@@ -172,27 +150,18 @@ def _guess(density: float) -> str:
     )
 
 
-_LISTED = 6  # parts that a message describes
-
-
 def check_connected(nodes: np.ndarray, mass: sp.csr_array) -> None:
     """Raise ValueError if elements fall into parts that move by themselves."""
     count, numbers = connected_components(mass[::3, ::3], directed=False)
-    if count == 1:
-        return
-    largest = np.argsort(-np.bincount(numbers), kind="stable")[:_LISTED]
-    told = []
-    for part in (np.flatnonzero(numbers == number) for number in largest):
-        middle = 0.5 * (nodes[part].min(axis=0) + nodes[part].max(axis=0))
-        told.append(
-            f"{part.size} nodes, {mass[3 * part].sum():.3g} kg, {box(nodes[part])} about "
-            f"{np.round(middle, 6).tolist()} m"
+    if count > 1:
+        part = nodes[numbers == np.bincount(numbers).argmin()]
+        middle = 0.5 * (part.min(axis=0) + part.max(axis=0))
+        raise ValueError(
+            f"the model falls into {count} parts that nothing connects, one of {len(part)} nodes, "
+            f"{box(part)} about {np.round(middle, 6).tolist()} m. Parts that touch are not "
+            "connected by that; make one solid of them before meshing, "
+            "OCCGeometry(netgen.occ.Glue([a, b]))"
         )
-    raise ValueError(
-        f"the model falls into {count} parts that nothing connects: {'; '.join(told)}"
-        f"{', …' if count > _LISTED else ''}. Parts that touch are not connected by "
-        "that; make one solid of them before meshing, OCCGeometry(netgen.occ.Glue([a, b]))"
-    )
 
 
 def box(nodes: np.ndarray) -> str:

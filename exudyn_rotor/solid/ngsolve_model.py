@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -34,12 +33,6 @@ def assemble_model(
     tetrahedra, region_numbers = _tetrahedra(mesh)
     nodes = np.array(mesh.ngmesh.Coordinates(), dtype=float)
     nodes = nodes if order == 2 else nodes[: mesh.nv]
-    unused = len(nodes) - np.unique(tetrahedra).size
-    if unused:
-        raise ValueError(
-            f"mesh: {unused} of {len(nodes)} points belong to no volume element (SecondOrder() "
-            "called twice?); generate the mesh anew"
-        )
     blocks = [Block("tetra10" if order == 2 else "tetra", tetrahedra, region_numbers)]
     elements = SolidElements.of_materials(nodes, blocks, regions, by_region)
     triangles, faces = _triangles(mesh, order)
@@ -65,15 +58,6 @@ def _prepare_mesh(mesh: ngs.Mesh, order: int) -> None:
         )
     # a second call would add the mid nodes once more and leave the first ones without elements
     if order == 2 and not is_quadratic:
-        curved = mesh.GetCurveOrder()
-        if curved > 1:
-            warnings.warn(
-                f"mesh: its curved elements (mesh.Curve({curved})) are replaced by mid nodes on "
-                "the geometry, of mesh.ngmesh.SecondOrder(); make it second order before this call "
-                "instead of curving it",
-                UserWarning,
-                stacklevel=4,
-            )
         mesh.ngmesh.SecondOrder()
 
 

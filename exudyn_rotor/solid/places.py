@@ -11,7 +11,6 @@ import numpy as np
 
 SAME_PLACE = 1e-6  # m
 OF_RADIUS = 0.01  # share of an interface's radius by which meshes may put it elsewhere
-_PARALLEL = 1e-6  # singular value of two axes below which they are one
 
 
 def leeway(radius: float, direction: np.ndarray) -> np.ndarray:
@@ -23,13 +22,8 @@ def leeway(radius: float, direction: np.ndarray) -> np.ndarray:
 
 
 def off_place(apart: np.ndarray, *leeways: np.ndarray) -> np.ndarray:
-    """Return by how much two places are apart (3,) [m], without what is due to meshes.
-
-    That is left out if its parts along the leeways (3,) are not longer than these; otherwise it
-    stays whole.
-    """
-    lengths = np.array([np.linalg.norm(one) for one in leeways])
-    known = lengths > 0.0
-    axes = np.reshape(leeways, (-1, 3))[known] / lengths[known, None]
-    parts = np.linalg.lstsq(axes.T, apart, rcond=_PARALLEL)[0]
-    return apart - parts @ axes if np.all(np.abs(parts) <= lengths[known]) else apart
+    """Return by how much two places are apart (3,) [m], less the leeways (3,) of meshes."""
+    for one in leeways:
+        if np.any(one):
+            apart = apart - np.clip(apart @ one / (one @ one), -1.0, 1.0) * one
+    return apart

@@ -19,13 +19,12 @@ from functools import cached_property
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
-from numpy.typing import ArrayLike
 from scipy.sparse.linalg import spsolve
 
 from exudyn_rotor import checks
 from exudyn_rotor.checks import Checked, numbers
 from exudyn_rotor.solid.matrices import as_node_numbers, in_all_directions
-from exudyn_rotor.theory.axis import SpinAxis, coordinates, rigid_motions
+from exudyn_rotor.theory.axis import coordinates, rigid_motions
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,9 +58,7 @@ class PointMass(Checked):
 
 def add_nodal_mass(matrix: sp.csr_array, node: int, mass: float) -> sp.csr_array:
     """Return the mass matrix `matrix` with `mass` [kg] added to all three directions of `node`."""
-    if checks.number(mass, "mass", "kg") == 0.0:
-        raise ValueError(f"mass: needs a number [kg] other than zero, got {mass}")
-    if mass < 0.0:
+    if checks.number(mass, "mass", "kg") < 0.0:
         # M − m u uᵀ is positive definite exactly as long as m uᵀM⁻¹u < 1 (determinant lemma)
         unit = np.eye(1, matrix.shape[0] // 3, node)[0]
         available = 1.0 / spsolve(sp.csc_array(matrix[::3, ::3]), unit)[node]
@@ -182,21 +179,6 @@ class RigidDisc(Checked):
         strain = held @ sp.eye_array(3 * node_count, format="csr")[coordinates(self.nodes)]
         matrix = self.spring * (strain.T @ strain)
         return sp.csr_array(0.5 * (matrix + matrix.T))
-
-
-def as_tensor(inertia: ArrayLike, axis: SpinAxis) -> np.ndarray:
-    """Return the tensor (3, 3), mesh axes, of `inertia` as in ``SolidRotor.add_disc``."""
-    values = checks.array(inertia, "inertia", "kg m²")
-    if values.shape == (2,):
-        polar, transverse = values
-        along = np.outer(axis.direction, axis.direction)
-        return polar * along + transverse * (np.eye(3) - along)
-    if values.shape != (3, 3):
-        raise ValueError(
-            "inertia: needs two numbers, polar and transverse, or a tensor of the shape (3, 3) "
-            f"[kg m²], got the shape {values.shape}"
-        )
-    return values
 
 
 def _check_inertia(inertia: np.ndarray) -> None:

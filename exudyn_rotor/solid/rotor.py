@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
@@ -22,7 +22,7 @@ from exudyn_rotor.solid.model import (
     holding_spring,
     rigid_basis,
 )
-from exudyn_rotor.solid.rigid_disc import STIFF, PointMass, RigidDisc, add_nodal_mass, as_tensor
+from exudyn_rotor.solid.rigid_disc import STIFF, PointMass, RigidDisc, add_nodal_mass
 from exudyn_rotor.solid.surface import outer_section
 from exudyn_rotor.solvers.inertia_relief import SOLVERS
 from exudyn_rotor.theory.axis import SpinAxis, coordinates, skew
@@ -171,7 +171,7 @@ class FiniteElementRotor:
         checked = {
             "nodes": nodes,
             "mass": matrices.as_mass(self.mass, len(nodes)),
-            "stiffness": matrices.as_stiffness(self.stiffness, len(nodes)),
+            "stiffness": matrices.as_matrix("stiffness matrix", self.stiffness, len(nodes)),
             "axis": SpinAxis.of(self.axis),
             "interfaces": _checked_interfaces(self.interfaces, nodes),
             "triangles": matrices.as_triangles(self.triangles, len(nodes)),
@@ -204,7 +204,7 @@ class FiniteElementRotor:
             check_model_units(nodes, float(mass[::3, ::3].sum()))
         if model.elements is not None:
             check_connected(nodes, mass)
-        stiffness = matrices.as_stiffness(model.stiffness, len(nodes))
+        stiffness = matrices.as_matrix("stiffness matrix", model.stiffness, len(nodes))
         return cls(
             nodes=nodes,
             mass=mass,
@@ -269,7 +269,7 @@ class FiniteElementRotor:
         Raises
         ------
         ValueError
-            If the mass is zero or not finite, more is taken away than the node carries, the
+            If the mass is not finite, more is taken away than the node carries, the
             position is not finite or not on the mesh, as the rim of a wheel of :meth:`add_disc`,
             or the rotor carries a prestress, whose load would change.
         """
@@ -373,9 +373,8 @@ class FiniteElementRotor:
             Middle of the band along the axis, from :attr:`SpinAxis.point` [m].
         mass : float
             [kg]
-        inertia : array_like, shape (2,) or (3, 3)
-            Polar and transverse moment of inertia, or the tensor in mesh axes, about its centre
-            [kg m²].
+        inertia : array_like, shape (2,)
+            Polar and transverse moment of inertia about its centre [kg m²].
         width : float
             Width of the band [m].
         name : str, optional
@@ -392,17 +391,16 @@ class FiniteElementRotor:
         check_unstressed(self)
         section = self._section("disc" if name is None else name, position, width)
         center, nodes = section.reference, section.nodes
-        taken = [disc for disc in self.discs if np.isin(disc.nodes, nodes).any()]
-        if taken:
-            place = taken[0].center
+        if any(np.isin(disc.nodes, nodes).any() for disc in self.discs):
             raise ValueError(
-                f"position: the section at {position:g} m shares nodes with the disc at "
-                f"{np.round(place, 9).tolist()} m; add one disc with the inertia of both, or use "
-                "narrower bands"
+                f"position: the section at {position:g} m shares nodes with another disc; add one "
+                "disc with the inertia of both, or use narrower bands"
             )
         count = self.node_count
         spring = STIFF * self.stiffness.diagonal().reshape(-1, 3)[nodes].max()
-        tensor = as_tensor(inertia, self.axis)
+        polar, transverse = checks.vector(inertia, "inertia", "kg m²", size=2)
+        along = np.outer(self.axis.direction, self.axis.direction)
+        tensor = polar * along + transverse * (np.eye(3) - along)
         disc = RigidDisc(center, mass, tensor, nodes, self.nodes[nodes], spring)
         added = {} if name is None else {name: section}
         return replace(
@@ -413,27 +411,16 @@ class FiniteElementRotor:
             discs=(*self.discs, disc),
         )
 
-    def center_interfaces(self: Rotor, names: Iterable[str] | None = None) -> Rotor:
-        """Return the rotor with the reference points of interfaces moved onto the spin axis.
+    def center_interfaces(self: Rotor) -> Rotor:
+        """Return the rotor with the reference points of its interfaces moved onto the spin axis.
 
         This removes the false eccentricity that an uneven mesh gives a round face.
-
-        Parameters
-        ----------
-        names : iterable of str, optional
-            All interfaces by default.
-
-        Raises
-        ------
-        ValueError
-            If an interface is unknown.
         """
-        chosen = tuple(self.interfaces) if names is None else names
-        moved = {}
-        for name in checks.labels(chosen, "names", self.interfaces):
-            interface = self.interfaces[name]
-            moved[name] = interface.centered_on(self.axis.project(interface.center))
-        return replace(self, interfaces={**self.interfaces, **moved})
+        moved = {
+            name: interface.centered_on(self.axis.project(interface.center))
+            for name, interface in self.interfaces.items()
+        }
+        return replace(self, interfaces=moved)
 
     def clamped(self: Rotor, names: str | Sequence[str]) -> Rotor:
         """Return the rotor with all nodes of interfaces held fixed, e.g. a blade at its root.
@@ -448,15 +435,11 @@ class FiniteElementRotor:
         Raises
         ------
         ValueError
-            If an interface is unknown, none is given, all its nodes are on one line, or the rotor
+            If an interface is unknown, none is given, all nodes are on one line, or the rotor
             carries a prestress.
         """
         check_unstressed(self)
         names = checks.labels(names, "names", self.interfaces)
-        if not names:
-            raise ValueError(
-                f"names: needs one interface or more of {list(self.interfaces)}, got none"
-            )
         held = np.unique(np.concatenate([self.interfaces[name].nodes for name in names]))
         if rigid_basis(self.nodes[held]).shape[1] < 6:
             raise ValueError(

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass
 from functools import cached_property
 
+import ngsolve
 import numpy as np
-from scipy.special import roots_jacobi
 
 # Corners, and faces by corners, outward, in the order of the faces S1, S2, … of Abaqus.
 _TETRAHEDRON = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
@@ -48,14 +47,11 @@ Rule = tuple[np.ndarray, np.ndarray]
 class ElementKind:
     """One kind of element: corners and mid nodes, shape functions, integration points.
 
-    `order` is 2 with a mid node on every edge, else 1; `powers` (n, 3) are exponents of the
-    monomials that the shape functions are made of; the rules are points (q, 3) and weights (q,).
+    `order` is 2 with a mid node on every edge, else 1. Rules are points (q, 3) and weights (q,).
     """
 
-    name: str
     corners: np.ndarray
     order: int
-    powers: np.ndarray
     stiffness_rule: Rule
     mass_rule: Rule
 
@@ -68,6 +64,11 @@ class ElementKind:
     def edges(self) -> tuple[tuple[int, int], ...]:
         """Corners of the edge of every mid node."""
         return _EDGES[len(self.corners)] if self.order == 2 else ()
+
+    @property
+    def powers(self) -> np.ndarray:
+        """Exponents (n, 3) of the monomials that the shape functions are made of."""
+        return _POWERS[len(self.corners), self.order]
 
     @cached_property
     def points(self) -> np.ndarray:
@@ -136,51 +137,23 @@ def _prism(triangle: Rule, count: int) -> Rule:
     return np.array(points), np.outer(weights, shares).ravel()
 
 
-def _cone(count: int) -> Rule:
-    """Return the conical product on the triangle, of degree 2 count − 1."""
-    x, v = (values.astype(float) for values in roots_jacobi(count, 1, 0))
-    y, w = np.polynomial.legendre.leggauss(count)
-    first, second = np.meshgrid(0.5 * (x + 1.0), 0.5 * (y + 1.0), indexing="ij")
-    places = np.stack([first, second * (1 - first)], axis=-1)
-    return places.reshape(-1, 2), np.outer(v, w).ravel() / 8.0
+def _rule(shape: ngsolve.ET, degree: int) -> Rule:
+    """Return NGSolve's points and weights for polynomials of a degree on the unit simplex."""
+    rule = ngsolve.IntegrationRule(shape, degree)
+    return np.array(rule.points), np.array(rule.weights)
 
 
-def _fourteen() -> Rule:
-    """Return Walkington's points in the tetrahedron, of degree 5 (as NGSolve takes)."""
-    points, weights = [], []
-    for near, weight in (
-        (0.3108859192633006, 0.1126879257180159),
-        (0.0927352503108912, 0.07349304311636195),
-    ):
-        points += [np.where(np.arange(4) == i, 1.0 - 3.0 * near, near) for i in range(4)]
-        weights += [weight / 6.0] * 4
-    near, weight = 0.04550370412564965, 0.04254602077708147
-    for i, j in itertools.combinations(range(4), 2):
-        points.append(np.where(np.isin(np.arange(4), (i, j)), 0.5 - near, near))
-        weights.append(weight / 6.0)
-    return np.array(points)[:, 1:], np.array(weights)
-
-
-# of degree 2: four points in the tetrahedron, three in the triangle
-_FOUR = (
-    np.full((4, 3), (5.0 - np.sqrt(5.0)) / 20.0)
-    + np.vstack([np.zeros(3), np.eye(3)]) / np.sqrt(5.0),
-    np.full(4, 1.0 / 24.0),
-)
+# the points inside the triangle, where NGSolve takes the middles of its edges
 _THREE = (np.array([[1, 1], [4, 1], [1, 4]]) / 6.0, np.full(3, 1.0 / 6.0))
-_ONE = (np.full((1, 3), 0.25), np.array([1.0 / 6.0]))
-_RULES = {
-    "tetra": (_TETRAHEDRON, 1, _ONE, _FOUR),
-    "tetra10": (_TETRAHEDRON, 2, _FOUR, _fourteen()),
-    "wedge": (_WEDGE, 1, _prism(_THREE, 2), _prism(_THREE, 2)),
-    "wedge15": (_WEDGE, 2, _prism(_THREE, 3), _prism(_cone(3), 3)),
-    "hexahedron": (_HEXAHEDRON, 1, _cube(2), _cube(2)),
-    "hexahedron20": (_HEXAHEDRON, 2, _cube(3), _cube(3)),
-    # as CalculiX integrates C3D20R where it looks for frequencies, and ANSYS SOLID186
-    "hexahedron20 reduced": (_HEXAHEDRON, 2, _cube(2), _cube(2)),
-    "hexahedron20 reduced stiffness": (_HEXAHEDRON, 2, _cube(2), _cube(3)),
-}
+_ONE, _FOUR, _FOURTEEN = (_rule(ngsolve.TET, degree) for degree in (1, 2, 5))
 KINDS = {
-    name: ElementKind(name, corners, order, _POWERS[len(corners), order], *rules)
-    for name, (corners, order, *rules) in _RULES.items()
+    "tetra": ElementKind(_TETRAHEDRON, 1, _ONE, _FOUR),
+    "tetra10": ElementKind(_TETRAHEDRON, 2, _FOUR, _FOURTEEN),
+    "wedge": ElementKind(_WEDGE, 1, _prism(_THREE, 2), _prism(_THREE, 2)),
+    "wedge15": ElementKind(_WEDGE, 2, _prism(_THREE, 3), _prism(_rule(ngsolve.TRIG, 5), 3)),
+    "hexahedron": ElementKind(_HEXAHEDRON, 1, _cube(2), _cube(2)),
+    "hexahedron20": ElementKind(_HEXAHEDRON, 2, _cube(3), _cube(3)),
+    # as CalculiX integrates C3D20R where it looks for frequencies, and ANSYS SOLID186
+    "hexahedron20 reduced": ElementKind(_HEXAHEDRON, 2, _cube(2), _cube(2)),
+    "hexahedron20 reduced stiffness": ElementKind(_HEXAHEDRON, 2, _cube(2), _cube(3)),
 }

@@ -108,9 +108,7 @@ class StressField(Result):
             has_static=getattr(reduced.centrifugal, "stress", None) is not None,
         )
 
-    def at(
-        self, modal_coordinates: ArrayLike, speed: float, nodes: Nodes = slice(None)
-    ) -> np.ndarray:
+    def at(self, modal_coordinates: ArrayLike, speed: float) -> np.ndarray:
         """Return the stress of modal coordinates (m,) at a spin speed.
 
         Parameters
@@ -118,8 +116,6 @@ class StressField(Result):
         modal_coordinates : array_like, shape (m,)
         speed : float
             Spin speed [rad/s].
-        nodes : slice or ndarray of int, optional
-            All by default.
 
         Returns
         -------
@@ -131,12 +127,12 @@ class StressField(Result):
         TypeError
             If an argument is of another kind.
         ValueError
-            If there is not one finite coordinate per mode, or a node does not exist.
+            If there is not one finite coordinate per mode.
         """
         speed = checks.number(speed, "speed", "rad/s")
         count = self.modes.shape[2]
         values = checks.vector(modal_coordinates, "modal_coordinates", size=count)
-        return self.history(values[None], [speed], nodes)[0]
+        return self.history(values[None], [speed])[0]
 
     def history(
         self, modal_coordinates: ArrayLike, speed: ArrayLike, nodes: Nodes = slice(None)

@@ -103,10 +103,9 @@ class StressHistory(Result):
         """
         count = checks.count(count, "count", least=1)
         ax = plotting.axes_or_new(ax)
-        values = 1e-6 * self.von_mises
-        for index, color in zip(range(min(count, len(self.nodes))), plotting.COLORS, strict=False):
-            label = f"node {self.nodes[index]}"
-            ax.plot(self.time, values[:, index], color=color, lw=1.0, label=label)
+        stresses = 1e-6 * self.von_mises.T[:count]
+        for node, values, color in zip(self.nodes, stresses, plotting.COLORS, strict=False):
+            ax.plot(self.time, values, color=color, lw=1.0, label=f"node {node}")
         ax.set_xlabel("time [s]")
         ax.set_ylabel("von Mises stress [MPa]")
         ax.grid(alpha=0.3)
@@ -167,8 +166,6 @@ def stress_history(
     """
     how = "make one with StressField.of(reduced, body)"
     time = checks.vector(time, "time", "s", size=None)
-    if not time.size:
-        raise ValueError("time: needs at least one instant, got none")
     shape = time.size, checks.instance(field, "field", StressField, how).modes.shape[2]
     coordinates = checks.array(modal_coordinates, "modal_coordinates", shape=shape)
     speed = checks.one_or_each(speed, "speed", "rad/s", time.size)

@@ -26,8 +26,8 @@ _WORTH_A_WARNING = 0.01  # relative change of a frequency
 _FREE = 1e-9  # of the largest stiffness: what rounding leaves of a free motion
 NO_PRESTRESS = (
     "stiffening='full' needs the static centrifugal stress: reduce the rotor with prestress=True "
-    "(NGSolve model) or with Prestress.from_matrix (imported model), carry it in a full model with "
-    "rotor.with_prestress, or use stiffening='tilt'"
+    "(NGSolve model) or with Prestress(matrix, nodes) (imported model), carry it in a full model "
+    "with rotor.with_prestress, or use stiffening='tilt'"
 )
 
 
@@ -147,7 +147,7 @@ def warn_of_left_out(invariants: Invariants, speed: float, level: int) -> None:
             "stiffening: the static centrifugal stress is not known; what it changes beyond 'tilt' "
             f"is left out, an estimated {error:.0%} of a mode's frequency at {abs(speed):.6g} "
             "rad/s. Make the rotor with SolidRotor.from_ngsolve, or give the stress with "
-            "Prestress.from_matrix; stiffening='tilt' accepts the error",
+            "Prestress(matrix, nodes); stiffening='tilt' accepts the error",
             UserWarning,
             stacklevel=level,
         )

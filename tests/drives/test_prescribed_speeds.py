@@ -9,7 +9,6 @@ from test_gear_mesh import mesh
 
 from exudyn_rotor import (
     DirectCurrentMotor,
-    Drag,
     FlexibleCoupling,
     GearMesh,
     TorqueCurve,
@@ -68,7 +67,6 @@ def placed(connection, apart, axis):
 REFUSED = [
     (lambda: DirectCurrentMotor(stall_torque=5.0, no_load_speed=0.0), "number .* that is not zero"),
     (lambda: TorqueCurve(([1.0], [2.0], [3.0])), "curve: needs a table"),
-    (Drag, "drag: needs constant, linear or quadratic above zero"),
     (lambda: mesh(radii=[0.1, -0.1]), "radii: needs a finite number"),
     (lambda: mesh(flank=2), "flank: needs 1 or -1"),
     (lambda: mesh(teeth=[20, 33]), "teeth: 20 to 33 is not the ratio of the radii"),
@@ -77,7 +75,6 @@ REFUSED = [
     (lambda: mesh(variation=[0.6, 0.5], teeth=[5, 8]), "variation: needs amplitudes whose sum"),
     (lambda: mesh(backlash=-1e-4), "backlash: needs a finite number"),
     (lambda: mesh(helix_angle=1.6), "helix_angle: needs"),
-    (lambda: mesh().mesh_frequency(1.0), "teeth: the mesh frequency needs"),
     (lambda: placed(COUPLING, [0, 0, 0.1], [0, 0, 1]), "its interface is 0.1 m from that of the"),
     (
         lambda: placed(COUPLING, [0, 0, 0], [0.1, 0, 1]),

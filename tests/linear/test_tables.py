@@ -270,9 +270,3 @@ def test_a_motion_in_a_jump_is_nan_and_costs_no_other():
     values = found.frequencies_inertial[0]
     assert np.isnan(values).sum() == 2
     assert values[~np.isnan(values)][1:3] == pytest.approx(np.sqrt(1e4 / 2.0), rel=1e-6)
-
-
-def test_speeds_without_an_equilibrium_are_left_out_of_a_table():
-    with pytest.warns(UserWarning, match="1 speeds are left out"):
-        found = pads("left").table([0.0, SPEED], [10.0])
-    assert found.stiffness.speeds.tolist() == [SPEED]

@@ -42,9 +42,10 @@ def turned_rotor(solid, modes, rotation):
         blocks @ (solid.stiffness @ blocks.T),
         solid.nodes @ rotation.T,
         rotation @ [0.0, 0.0, 1.0],
-        interfaces={name: (i.nodes, i.weights) for name, i in solid.interfaces.items()},
-    ).center_interfaces()
-    return turned.reduce(blocks @ modes)
+    )
+    for name, interface in solid.interfaces.items():
+        turned = turned.with_interface(name, interface.nodes, interface.weights)
+    return turned.center_interfaces().reduce(blocks @ modes)
 
 
 def settings(steps, end_time):

@@ -38,7 +38,7 @@ def test_full_stiffening_with_a_given_prestress(fem, solid, source):
     """``K + ω²(K2 − C)`` is that of the rotor reduced with the same prestress."""
     prestress = solid.prestress()
     if source == "matrix":
-        prestress = Prestress.from_matrix(prestress.matrix, solid.nodes)
+        prestress = Prestress(prestress.matrix, solid.nodes)
     found = stiffness_at_speed(fem, stiffening="full", prestress=prestress)
     reduced = solid.reduce(fem, prestress=prestress)
     chosen = select_modes(reduced, Formulation("none", 2000.0)).invariants

@@ -83,7 +83,7 @@ def test_folds_of_a_centred_squeeze_film():
 
     def unbalance(ratio):
         r = ratio * clearance
-        fx, fy = damper.force([r, 0.0], [0.0, r * speed])
+        fx, fy = damper.law(r, 0.0, 0.0, r * speed, 0.0, speed)
         return np.hypot(fx + MASS * speed**2 * r, fy) / speed**2
 
     found = periodic_response(

@@ -191,7 +191,7 @@ def test_loads_of_nodes_are_those_of_an_array_and_of_interfaces():
     given = [shaft().prestress(loads=loads, supports=PINNED) for loads in listed]
     assert abs(given[0].by_loads - given[1].by_loads).max() == 0.0
     assert given[0].buckling_factor == pytest.approx(given[2].buckling_factor, rel=1e-3)
-    with pytest.raises(ValueError, match=r"nothing takes up 5 N .*, 0 N and 0.05 N m across it"):
+    with pytest.raises(ValueError, match=r"nothing takes up the force \[0\.0, 0\.0, 5\.0\] N"):
         shaft().prestress(loads={int(np.argmax(shaft().nodes[:, 0])): [0.0, 0.0, 5.0]})
 
 
@@ -208,9 +208,9 @@ def test_supports_that_let_the_rotor_buckle_have_no_deflection():
 @pytest.mark.parametrize(
     ("loads", "supports", "message"),
     [
-        ({"right": [0, 0, 5.0]}, (), "nothing takes up 5 N along the axis"),
+        ({"right": [0, 0, 5.0]}, (), "nothing takes up the force"),
         ({"right": [0, 0, 5.0]}, [er.Support("left", 1e9)], "nothing takes up"),
-        ({"right": [0, 0, 0, 0, 0, 3.0]}, PINNED, "a torque of 3 N m"),
+        ({"right": [0, 0, 0, 0, 0, 3.0]}, PINNED, r"the moment \[.*, 3\.0\] N m"),
         ({"right": [0, 0, 0, 3.0, 0, 0]}, PINNED, "moment across the axis"),
         ({3: [0, 0, 0, 0, 0, 3.0]}, PINNED, "a mesh node has no rotation"),
         ({"no": [0, 0, 1.0]}, PINNED, "'no' is unknown"),

@@ -120,7 +120,7 @@ def test_both_parts_are_the_derivative_of_the_tangent(beam):
 
 def test_imported_matrix_is_taken_as_it_is(disc):
     computed = disc.prestress()
-    imported = Prestress.from_matrix(computed.matrix.toarray(), disc.nodes)
+    imported = Prestress(computed.matrix.toarray(), disc.nodes)
     assert abs(imported.matrix - computed.matrix).max() == 0.0
     assert imported.displacement is imported.per_fourth_power is None
     assert disc.with_prestress(imported).carried_prestress is imported
@@ -129,7 +129,7 @@ def test_imported_matrix_is_taken_as_it_is(disc):
 def softened(disc: SolidRotor) -> Prestress:
     """Return an imported matrix that holds the spin softening as well."""
     across = np.diag(np.tile([1.0, 1.0, 0.0], disc.node_count))
-    return Prestress.from_matrix(disc.prestress().matrix - across @ disc.mass, disc.nodes)
+    return Prestress(disc.prestress().matrix - across @ disc.mass, disc.nodes)
 
 
 @pytest.mark.parametrize(

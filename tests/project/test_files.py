@@ -163,31 +163,23 @@ def test_objects_are_neither_read_nor_written(tmp_path):
 # ------------------------------------------------------------------ other files
 
 
-def test_files_of_development_versions_load(tmp_path):
-    path, data = saved("ReducedRotor", tmp_path)
-    np.savez(path, **data | {"sha256": np.array("0" * 64)})
-    again = ReducedRotor.load(path)
-    again.save(path)
-    assert_same(entries(path), data)
-
-
 def test_other_files_are_told_apart(tmp_path):
     path = tmp_path / "other.npz"
     np.savez(path, K=np.eye(3))
-    with pytest.raises(ValueError, match="holds no reduced rotor, but"):
+    with pytest.raises(ValueError, match=r"holds 'no format', where '.* reduced rotor"):
         ReducedRotor.load(path)
     STORED["Campbell"].save(path)
-    with pytest.raises(ValueError, match=r"holds no reduced rotor, but '.* result"):
+    with pytest.raises(ValueError, match=r"holds '.* result .*', where '.* reduced rotor"):
         ReducedRotor.load(path)
     STORED["ReducedRotor"].save(path)
-    with pytest.raises(ValueError, match=r"holds no result, but '.* reduced rotor"):
+    with pytest.raises(ValueError, match=r"holds '.* reduced rotor .*', where '.* result"):
         load_result(path)
     for version in (1, 3):
         np.savez(path, **entries(path) | {"format": f"exudyn_rotor reduced rotor {version}"})
-        with pytest.raises(ValueError, match="written by another version"):
+        with pytest.raises(ValueError, match="a file of another version is made anew"):
             ReducedRotor.load(path)
     np.savez(path, format="exudyn_rotor reduced rotor 1", mode_mass=np.eye(3))
-    with pytest.raises(ValueError, match="written by another version"):
+    with pytest.raises(ValueError, match="a file of another version is made anew"):
         ReducedRotor.load(path)
     path.write_text("no archive at all")
     with pytest.raises(ValueError, match="not a readable"):

@@ -65,7 +65,7 @@ def test_every_kind_of_field_comes_back(tmp_path):
     with pytest.raises(ValueError, match="pairs: needs values ≥ 0"):
         everything(pairs=-np.ones((1, 2)))
     everything().save(tmp_path / "empty.npz")
-    assert Everything.load(tmp_path / "empty.npz").names == ()
+    assert load_result(tmp_path / "empty.npz").names == ()
 
 
 RESULTS = {name: kept for name, kept in STORED.items() if isinstance(kept, Result)}

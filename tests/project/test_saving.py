@@ -1,8 +1,7 @@
-"""Saving is atomic, keeps mode and links of a file, and touches nothing else."""
+"""Saving is atomic, and touches nothing else."""
 
 import os
 import sys
-from dataclasses import make_dataclass
 
 import numpy as np
 import pytest
@@ -10,12 +9,11 @@ from matplotlib import pyplot
 from matplotlib.figure import Figure
 from small_results import STORED
 
-from exudyn_rotor import Result, StabilityMap, plotting
-from exudyn_rotor.results import storable
+from exudyn_rotor import Result, plotting
 from exudyn_rotor.storage import read_arrays, write_arrays
 
 
-@pytest.mark.parametrize("step", [(np, "savez_compressed"), (os, "fsync"), (os, "replace")])
+@pytest.mark.parametrize("step", [(np, "savez_compressed"), (os, "replace")])
 def test_interrupted_saves_leave_the_old_file_and_no_draft(step, tmp_path, monkeypatch):
     path = tmp_path / "a.npz"
     write_arrays(path, "thing", {"a": np.ones(1)})
@@ -63,20 +61,15 @@ def test_pictures_of_several_axes(tmp_path):
             plotting.save(wrong, tmp_path / "a")
 
 
-def other(name, *fields):
-    return storable(make_dataclass(name, fields, bases=(Result,), frozen=True, eq=False))
-
-
 REFUSED = [  # what is called in a folder with a file a.npz, and what it says
-    (lambda: write_arrays(".", "thing", {}), r"path: needs the name of a file, '\.' is a folder"),
-    (lambda: write_arrays("/dev/null", "thing", {}), "'/dev/null' is a device"),
+    (
+        lambda: write_arrays(".", "thing", {}),
+        r"path: needs the name of a file, '\.' is a folder or",
+    ),
     (lambda: write_arrays("a.npz", "thing", {}), "path: the file 'a.npz' is read-only"),
-    (lambda: StabilityMap.load("a.npz"), "a.npz: holds a Spectra, not a StabilityMap"),
     (lambda: Result().save("b.npz"), "a Result cannot be stored; its class needs the decorator"),
     (lambda: Result().columns(), "columns: a Result has none"),
     (lambda: STORED["Spectra"].to_dataframe(), "to_dataframe: needs pandas, which is not inst"),
-    (lambda: other("Other", ("x", dict)), "Other.x: a .*dict.* cannot be stored"),
-    (lambda: other("Spectra"), "a result class of the name Spectra is registered already"),
 ]
 
 

@@ -25,12 +25,13 @@ def boxes(count, gap, join=Compound):
 def test_loose_parts_are_told(count):
     with pytest.raises(ValueError, match=rf"falls into {count} parts .*Glue") as told:
         SolidRotor.from_ngsolve(boxes(count, 0.02), MATERIALS, "z", order=1)
-    # masses of cubes of 1 litre
-    assert str(told.value).count("7.85 kg, 0.1 × 0.1 × 0.1 m") == count // 2
+    assert "0.1 × 0.1 × 0.1 m" in str(told.value)
 
 
 def test_parts_that_touch_need_glue():
-    with pytest.raises(ValueError, match="falls into 2 parts that nothing connects: 9 nodes"):
+    with pytest.raises(
+        ValueError, match="falls into 2 parts that nothing connects, one of 9 nodes"
+    ):
         SolidRotor.from_ngsolve(boxes(2, 0.0), MATERIALS, "z", order=1)
     rotor = SolidRotor.from_ngsolve(boxes(2, 0.0, Glue), MATERIALS, "z", order=1)
     assert "size             0.1 × 0.1 × 0.2 m" in rotor.summary()

@@ -42,10 +42,7 @@ INVERSE = SimpleNamespace(without_reactions=lambda forces: forces, precision=1e-
 MASS, SPRINGS = sp.eye_array(9, format="csr"), sp.diags_array(np.arange(1.0, 10.0), format="csr")
 REFUSED = [
     (lambda: lanczos_modes(*oscillators(1.0 + FEW, FEW), 7, 1e-10), "not all nodes may have mass"),
-    (
-        lambda: dense_modes(-MASS, np.copy, 1),
-        "mass matrix is not positive definite .* nodes without",
-    ),
+    (lambda: dense_modes(-MASS, np.copy, 1), "not positive definite"),
     (lambda: check_modes(SPRINGS, MASS, INVERSE, np.ones(2), np.eye(9, 2)), "eigenmode 2 does not"),
     (lambda: free_rigid_motions(np.eye(3), MASS, SPRINGS, 6), "claims 6 free .* holds supports"),
 ]

@@ -13,6 +13,7 @@ from exudyn_rotor import (
     SolidRotor,
     StressField,
     add_rotor,
+    load_result,
     select_modes,
     stress_history,
 )
@@ -129,7 +130,7 @@ def test_stress_in_a_run_is_the_static_one_and_what_exudyn_s_own_sensor_adds(bea
 def test_a_field_is_stored_and_tabulated(beam, tmp_path):
     field, zeta = steady_state(beam, 300.0)
     field.save(tmp_path / "field.npz")
-    again = StressField.load(tmp_path / "field.npz")
+    again = load_result(tmp_path / "field.npz")
     assert np.array_equal(again.at(zeta, 9.0), field.at(zeta, 9.0))
     rows = field.table().splitlines()
     assert len(rows) == 1 + zeta.size

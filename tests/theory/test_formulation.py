@@ -31,7 +31,7 @@ def test_run_up_has_the_rates_that_it_says():
     ("arguments", "message"),
     [
         ({"translation": "plane"}, "translation.*: 'plane' is unknown"),
-        ({"translation": None}, "translation.*: needs one of .*, got None"),
+        ({"translation": None}, "translation.*: None is unknown; use one of"),
         ({"spin": "constant"}, "spin.*: 'constant' is unknown"),
         ({"spin": True}, "spin: .* got True"),
         ({"spin": float("nan")}, "spin: .* got nan"),

@@ -127,11 +127,6 @@ class FilmState:
         return float(shear + 0.5 * film.radius**2 * lift)
 
     @property
-    def power_loss(self) -> float:
-        """Power that the journal's rotation loses to the film [W]."""
-        return self.torque * self.speed
-
-    @property
     def side_flow(self) -> float:
         """Oil that leaves the pads at both ends [m³/s]."""
         film, grid = self.film, self.film.grid

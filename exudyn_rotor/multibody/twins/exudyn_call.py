@@ -91,7 +91,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
             at a fraction of the cost
         prestress: static stress for stiffening='full', since a FEMinterface holds no elements to
             compute it on: SolidRotor.prestress() of a rotor from NGSolve with the same mesh, or
-            Prestress.from_matrix() with the geometric stiffness of another program
+            Prestress(matrix, nodes) with the geometric stiffness of another program
 
     Returns:
         :dict: marker number of every boundary under its marker name, and under

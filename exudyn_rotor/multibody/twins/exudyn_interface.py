@@ -33,7 +33,7 @@ from exudyn_rotor.theory.stiffening import CHOICES
 _NODE_TYPES = [f"NodeType.{kind}" for kind in exudyn.NodeType.__members__]
 _GREEN = (0.1, 0.9, 0.1, 1.0)  # Exudyn's default colour here
 _STRESS = (
-    "SolidRotor.from_ngsolve(…).prestress() with the same mesh or Prestress.from_matrix(…) makes "
+    "SolidRotor.from_ngsolve(…).prestress() with the same mesh or Prestress(matrix, nodes) makes "
     "one; a FEMinterface has no elements to compute it on"
 )
 _SAME = 1e-9  # share of an angular velocity by which it may differ from another

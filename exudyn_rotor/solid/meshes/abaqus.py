@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -22,154 +23,135 @@ _TAKEN_AS = {
     **dict.fromkeys(("C3D10M", "C3D10I", "C3D10T"), "C3D10"),
 }
 _STIFFER = " with all integration points, which is stiffer in bending"
-_CONSTRAINTS = """EQUATION, MPC, TIE, CONTACT PAIR, EMBEDDED ELEMENT, RIGID BODY, COUPLING,
+_TIED = """EQUATION, MPC, TIE, CONTACT PAIR, EMBEDDED ELEMENT, RIGID BODY, COUPLING,
     KINEMATIC COUPLING, DISTRIBUTING COUPLING, CYCLIC SYMMETRY MODEL"""
 _OTHERS = """SHELL SECTION, BEAM SECTION, MEMBRANE SECTION, MASS, ROTARY INERTIA, SPRING, DASHPOT,
     CONNECTOR SECTION"""
-_RULES = "SYSTEM, NGEN, NFILL, NCOPY, ELGEN, ELCOPY"
 _REFUSED = {
-    " ".join(name.split()): what
-    for names, what in (
-        (_CONSTRAINTS, "nodes or surfaces tied to others"),
-        (_OTHERS, "an element that is no solid"),
-        (_RULES, "nodes or elements by a rule"),
-    )
-    for name in names.split(",")
+    **dict.fromkeys(re.split(r",\s+", _TIED), "nodes or surfaces tied to others"),
+    **dict.fromkeys(re.split(r",\s+", _OTHERS), "an element that is no solid"),
+    **dict.fromkeys(("SYSTEM", "NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY"), "a rule for numbers"),
 }
-_DEEPEST = 10  # of files that include files
+Faces = dict[str, list[tuple[int, int]]]  # element and number of each face of a surface
 
 
 def read(path: Path) -> MeshData:
     """Return what the deck holds before its first *STEP."""
-    return _Deck().read(path)
+    data, surfaces, instances = MeshData(), {}, 0
+    sections: list[tuple[str, str]] = []
+    material: dict[str, float] = {}
+    for place, keyword, options, lines in _blocks(path):
+        if keyword == "STEP":
+            break
+        with reading(f"{place}: *{keyword}"):
+            match keyword:
+                case "NODE":
+                    _read_nodes(data, options, lines)
+                case "ELEMENT":
+                    _read_elements(data, options, lines)
+                case "NSET":
+                    _extend(data.node_sets, options["NSET"], options, lines)
+                case "ELSET":
+                    _extend(data.element_sets, options["ELSET"], options, lines)
+                case "SURFACE":
+                    _read_surface(data, surfaces, options, lines)
+                case "MATERIAL":
+                    material = _of(data.materials, options["NAME"], dict)
+                case "ELASTIC":
+                    material |= _elasticity(options, lines)
+                case "DENSITY":
+                    material["density"] = float(lines[0][0])
+                case "SOLID SECTION":
+                    sections.append((options["ELSET"], options["MATERIAL"]))
+                case "INSTANCE":
+                    instances += 1
+                    if instances > 1 or lines:
+                        raise ValueError(
+                            "an assembly needs one part in its own place; write a flat deck (in "
+                            "Abaqus: Model > Edit Attributes > Do not use parts and assemblies)"
+                        )
+                case _ if keyword in _REFUSED:
+                    data.refused["*" + keyword] = _REFUSED[keyword]
+    for element_set, name in sections:
+        chosen = _of(data.element_sets, element_set)
+        data.regions.update(dict.fromkeys(chosen, _spelled(data.materials, name)))
+    _give_surfaces(data, surfaces)
+    return data
 
 
-class _Deck:
-    """State of one reading."""
-
-    def __init__(self) -> None:
-        self.data = MeshData()
-        self.sections: list[tuple[str, str]] = []
-        self.surfaces: dict[str, list[tuple[int, int]]] = {}
-        self.material: dict[str, float] = {}
-        self.instances = 0
-
-    def read(self, path: Path) -> MeshData:
-        for place, keyword, options, lines in _blocks(path):
-            if keyword == "STEP":
-                break
-            with reading(f"{place}: *{keyword}"):
-                if keyword in _REFUSED:
-                    self.data.refused["*" + keyword] = _REFUSED[keyword]
-                elif keyword in _READ:
-                    action = getattr(self, "_" + keyword.lower().replace(" ", "_"))
-                    action(options, [_fields(line) for line in lines])
-        self._give_materials()
-        self._give_surfaces()
-        return self.data
-
-    def _node(self, options: dict[str, str], lines: list[list[str]]) -> None:
-        for fields in lines:
-            values = [float(value or 0.0) for value in fields[1:4]]
-            self.data.nodes[int(fields[0])] = values + [0.0] * (3 - len(values))
-        if "NSET" in options:
-            _of(self.data.node_sets, options["NSET"]).extend(int(fields[0]) for fields in lines)
-
-    def _element(self, options: dict[str, str], lines: list[list[str]]) -> None:
-        name = options["TYPE"].upper()
-        plain = name.removesuffix("H")  # hybrid ones have the pressure as unknown besides
-        plain = _TAKEN_AS.get(plain, plain)
-        if plain not in _TYPES:
-            self.data.refused[name] = "no tetrahedron, wedge or hexahedron of displacements"
-            return
-        if plain != name:
-            self.data.replaced[name] = f"taken as {plain}{_STIFFER if plain == 'C3D8' else ''}"
-        size = len(KINDS[_TYPES[plain]].points) + 1
-        entries = [int(value) for fields in lines for value in fields if value]
-        if len(entries) % size:
-            raise ValueError(
-                f"{len(entries)} numbers are no multiple of {size}, an element with its "
-                f"{size - 1} nodes"
-            )
-        for start in range(0, len(entries), size):
-            row = entries[start : start + size]
-            self.data.add_element(_TYPES[plain], options.get("ELSET", "solid"), row)
-        if "ELSET" in options:
-            _of(self.data.element_sets, options["ELSET"]).extend(entries[::size])
-
-    def _nset(self, options: dict[str, str], lines: list[list[str]]) -> None:
-        _extend(self.data.node_sets, options["NSET"], options, lines)
-
-    def _elset(self, options: dict[str, str], lines: list[list[str]]) -> None:
-        _extend(self.data.element_sets, options["ELSET"], options, lines)
-
-    def _surface(self, options: dict[str, str], lines: list[list[str]]) -> None:
-        name = options["NAME"]
-        if options.get("TYPE", "ELEMENT").upper() == "NODE":
-            _extend(self.data.node_sets, name, options, lines)
-            return
-        faces = _of(self.surfaces, name)
-        for first, face, *_ in lines:
-            if face.upper() not in ("S1", "S2", "S3", "S4", "S5", "S6"):
-                raise ValueError(f"a face S1 to S6 of an element is needed, got {face!r}")
-            elements = [int(first)] if first.isdigit() else _of(self.data.element_sets, first)
-            faces.extend((element, int(face[1]) - 1) for element in elements)
-
-    def _material(self, options: dict[str, str], lines: list[list[str]]) -> None:
-        self.material = _of(self.data.materials, options["NAME"], dict)
-
-    def _elastic(self, options: dict[str, str], lines: list[list[str]]) -> None:
-        kind = options.get("TYPE", "ISO").upper()
-        if not kind.startswith("ISO"):
-            raise ValueError(f"the material must be isotropic, got TYPE={kind}")
-        young, ratio = (float(value) for value in lines[0][:2])
-        self.material |= {"youngsModulus": young, "poissonsRatio": ratio}
-
-    def _density(self, options: dict[str, str], lines: list[list[str]]) -> None:
-        self.material["density"] = float(lines[0][0])
-
-    def _solid_section(self, options: dict[str, str], lines: list[list[str]]) -> None:
-        self.sections.append((options["ELSET"], options["MATERIAL"]))
-
-    def _instance(self, options: dict[str, str], lines: list[list[str]]) -> None:
-        self.instances += 1
-        if self.instances > 1 or lines:
-            raise ValueError(
-                "an assembly needs one part in its own place; write a flat deck (in Abaqus: "
-                "Model > Edit Attributes > Do not use parts and assemblies)"
-            )
-
-    def _give_materials(self) -> None:
-        """Call the regions of elements as the materials of their sections."""
-        for element_set, material in self.sections:
-            name = _spelled(self.data.materials, material)
-            chosen = _of(self.data.element_sets, element_set)
-            self.data.regions.update(dict.fromkeys(chosen, name))
-
-    def _give_surfaces(self) -> None:
-        """Make node sets of surfaces."""
-        elements = {
-            number: (KINDS[kind], nodes)
-            for (kind, _), rows in self.data.elements.items()
-            for number, *nodes in (rows if self.surfaces else ())
-        }
-        for name, faces in self.surfaces.items():
-            known = [(*elements[number], face) for number, face in faces if number in elements]
-            self.data.node_sets[name] = [
-                nodes[i] for kind, nodes, face in known for i in face_nodes(kind, face)
-            ]
+def _read_nodes(data: MeshData, options: dict[str, str], lines: list[list[str]]) -> None:
+    for fields in lines:
+        values = [float(value or 0.0) for value in fields[1:4]]
+        data.nodes[int(fields[0])] = values + [0.0] * (3 - len(values))
+    if "NSET" in options:
+        _of(data.node_sets, options["NSET"]).extend(int(fields[0]) for fields in lines)
 
 
-_READ = {
-    *("NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "MATERIAL", "ELASTIC", "DENSITY"),
-    *("SOLID SECTION", "INSTANCE"),
-}
+def _read_elements(data: MeshData, options: dict[str, str], lines: list[list[str]]) -> None:
+    name = options["TYPE"].upper()
+    plain = name.removesuffix("H")  # hybrid ones have the pressure as unknown besides
+    plain = _TAKEN_AS.get(plain, plain)
+    if plain not in _TYPES:
+        data.refused[name] = "no tetrahedron, wedge or hexahedron of displacements"
+        return
+    if plain != name:
+        data.replaced[name] = f"taken as {plain}{_STIFFER if plain == 'C3D8' else ''}"
+    size = len(KINDS[_TYPES[plain]].points) + 1
+    entries = [int(value) for fields in lines for value in fields if value]
+    if len(entries) % size:
+        raise ValueError(
+            f"{len(entries)} numbers are no multiple of {size}, those of an element and its nodes"
+        )
+    for start in range(0, len(entries), size):
+        row = entries[start : start + size]
+        data.add_element(_TYPES[plain], options.get("ELSET", "solid"), row)
+    if "ELSET" in options:
+        _of(data.element_sets, options["ELSET"]).extend(entries[::size])
 
 
-def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, str, dict[str, str], list[str]]]:
-    """Return place, keyword, options and data lines of every block, of included files too."""
+def _read_surface(
+    data: MeshData, surfaces: Faces, options: dict[str, str], lines: list[list[str]]
+) -> None:
+    name = options["NAME"]
+    if options.get("TYPE", "ELEMENT").upper() == "NODE":
+        _extend(data.node_sets, name, options, lines)
+        return
+    for first, face, *_ in lines:
+        if face.upper() not in ("S1", "S2", "S3", "S4", "S5", "S6"):
+            raise ValueError(f"a face S1 to S6 of an element is needed, got {face!r}")
+        elements = [int(first)] if first.isdigit() else _of(data.element_sets, first)
+        _of(surfaces, name).extend((element, int(face[1]) - 1) for element in elements)
+
+
+def _elasticity(options: dict[str, str], lines: list[list[str]]) -> dict[str, float]:
+    kind = options.get("TYPE", "ISO").upper()
+    if not kind.startswith("ISO"):
+        raise ValueError(f"the material must be isotropic, got TYPE={kind}")
+    young, ratio = (float(value) for value in lines[0][:2])
+    return {"youngsModulus": young, "poissonsRatio": ratio}
+
+
+def _give_surfaces(data: MeshData, surfaces: Faces) -> None:
+    """Make node sets of surfaces."""
+    elements = {
+        number: (KINDS[kind], nodes)
+        for (kind, _), rows in data.elements.items()
+        for number, *nodes in (rows if surfaces else ())
+    }
+    for name, faces in surfaces.items():
+        known = [(*elements[number], face) for number, face in faces if number in elements]
+        data.node_sets[name] = [
+            nodes[i] for kind, nodes, face in known for i in face_nodes(kind, face)
+        ]
+
+
+def _blocks(path: Path) -> Iterator[tuple[str, str, dict[str, str], list[list[str]]]]:
+    """Return place, keyword, options and fields of the lines of every block.
+
+    Of included files, too.
+    """
     lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
-    current: tuple[str, str, dict[str, str], list[str]] | None = None
+    current: tuple[str, str, dict[str, str], list[list[str]]] | None = None
     number = 0
     while number < len(lines):
         line, number = lines[number].strip(), number + 1
@@ -177,7 +159,7 @@ def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, str, dict[str, st
             continue
         if not line.startswith("*"):
             if current is not None:
-                current[3].append(line)
+                current[3].append([field.strip() for field in line.split(",")])
             continue
         start = number
         while line.endswith(",") and number < len(lines):
@@ -187,12 +169,9 @@ def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, str, dict[str, st
         current = (f"line {start} of {path.name}", *_keyword(line), [])
         if current[1] == "INCLUDE":
             target = path.parent / current[2].get("INPUT", "")
-            if depth == _DEEPEST or not target.is_file():
-                raise ValueError(
-                    f"{path.name}: *INCLUDE needs a file beside it, at most {_DEEPEST} deep, got "
-                    f"{target}"
-                )
-            yield from _blocks(target, depth + 1)
+            if not target.is_file():
+                raise ValueError(f"{path.name}: *INCLUDE needs a file beside it, got {target}")
+            yield from _blocks(target)
             current = None
     if current is not None:
         yield current
@@ -203,10 +182,6 @@ def _keyword(line: str) -> tuple[str, dict[str, str]]:
     pairs = (option.partition("=") for option in options)
     values = {name.strip().upper(): value.strip().strip('"') for name, _, value in pairs}
     return " ".join(keyword.upper().split()), values
-
-
-def _fields(line: str) -> list[str]:
-    return [field.strip() for field in line.split(",")]
 
 
 def _spelled(table: dict, name: str) -> str:

@@ -37,10 +37,7 @@ def convert(mesh: meshio.Mesh) -> MeshData:
     Physical groups of Gmsh, and sets of cells: those of solids are element sets and name regions,
     those of surfaces are node sets. Pyramids and hexahedra of 27 nodes are refused.
     """
-    count = len(mesh.points)
-    points = np.zeros((count, 3))
-    points[:, : mesh.points.shape[1]] = mesh.points
-    data = MeshData(dict(enumerate(points.tolist())))
+    data = MeshData(dict(enumerate(np.asarray(mesh.points).tolist())))
     data.node_sets = {name: np.asarray(set_).tolist() for name, set_ in mesh.point_sets.items()}
     first = 0
     for i, cells in enumerate(mesh.cells):
