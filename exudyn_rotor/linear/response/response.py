@@ -27,8 +27,6 @@ _IN_TABLES = (*DIRECTIONS[:3], "twist")
 _TOGETHER = (*DIRECTIONS[:2], *CIRCULAR), ("e",), DIRECTIONS[3:5], ("twist",)  # of one harmonic
 HALF_POWER = np.sqrt(0.5)  # of the size at a peak
 STILL = 1e-6  # share of a peak below which a neighbour stands still, as at rest without a load
-_REVERSED = 1e-6  # phase [rad] beside half a turn that damping is not seen by
-_CLOSE, _TURNED = 1e-6, 0.3  # share of the range, and phase [rad] that turns within it undamped
 _CONSTANT = 1e-12  # share of the largest frequency that is none
 _NO_MOTION = 1e-12  # of the largest amplitude
 
@@ -170,21 +168,18 @@ class Response(AtPlaces, ModelResult):
         """Return the highest resonance: where the major semi-axis is largest [rad/s], its size [m].
 
         Between three points by a parabola of 1/size². A warning tells where they are too far
-        apart to show a resonance; ``refine=True`` of the analysis adds points there. A resonance
-        that nothing damps has an infinite size, with a warning.
+        apart to show a resonance, as of one that nothing damps; ``refine=True`` of the analysis
+        adds points there.
 
         Raises
         ------
         ValueError
             If the motion has no maximum between the first and the last point.
         """
-        endless = undamped_resonances(self, place, order)
-        if endless.size:
-            warn_of_undamped([(self._named(place), float(at)) for at in endless])
-            return float(endless[0]), np.inf
         major, _ = self.semi_axes(place, order)
+        name, known = self.places[self._at(place)], np.isfinite(major)
+        values, major = self.abscissa[known], major[known]
         inner = np.flatnonzero((major[1:-1] > major[:-2]) & (major[1:-1] >= major[2:])) + 1
-        name, values = self._named(place), self.abscissa
         if inner.size == 0:
             raise ValueError(
                 f"{name}: the motion has no peak between {values[0]:g} and {values[-1]:g} rad/s; "
@@ -558,65 +553,19 @@ def resolved_peak(at: np.ndarray, size: np.ndarray, index: int) -> tuple[float, 
     return float(at[1] + place), float(size[1] / np.sqrt(max(least, 0.25))), is_near
 
 
-def undamped_resonances(
-    response: Response, place: str | None = None, order: int | None = None
-) -> np.ndarray:
-    """Return where resonances across the axis lie that nothing damps [rad/s].
-
-    From a point before to one behind, a displacement turns by half a revolution, and it grows
-    towards both; without damping it turns so within any width.
-    """
-    motion = np.stack([response.phasor(place, name, order) for name in DIRECTIONS[:2]], axis=1)
-    motion[response.semi_axes(place, order)[0] == 0.0] = 0.0  # rounding
-    at, known = response.abscissa, np.all(np.isfinite(motion), axis=1)
-    missing, at, found = at[~known], at[known], {}
-    close = np.diff(at) < _CLOSE * np.ptp(at) if at.size else np.zeros(0)
-    largest = np.abs(motion[known]).max(axis=1, initial=0.0)
-    for u in motion[known].T if len(at) > 2 else ():
-        size = np.abs(u)
-        moves = size > STILL * largest
-        turned = np.abs(np.angle(u[1:] * u[:-1].conj()))
-        passed = (turned > np.pi - _REVERSED) | (close & (turned > _TURNED))
-        before, behind = np.r_[0.0, np.diff(size)[:-1]], np.r_[np.diff(size)[1:], 0.0]
-        grows = (before >= 0.0) & (behind <= 0.0) & moves[1:] & moves[:-1]
-        for i in np.flatnonzero(passed & grows).tolist():
-            between = missing[(missing > at[i]) & (missing < at[i + 1])]
-            middle = np.average(at[i : i + 2], weights=size[i : i + 2])
-            found[i] = between[0] if between.size else middle
-    return np.array([found[i] for i in sorted(found)])
-
-
-def warn_of_undamped(peaks: Sequence[tuple[str, float]]) -> None:
-    """Warn of resonances [rad/s] at places that nothing damps, once for all."""
-    if not peaks:
-        return
-    name, speed = _first_of(peaks)
-    warnings.warn(
-        f"{name}: nothing damps the resonance at {speed}, so that its size and amplification are "
-        "infinite; give supports or the rotor damping",
-        UserWarning,
-        stacklevel=user_level(),
-    )
-
-
 def warn_of_coarse_peaks(coarse: Sequence[tuple[str, float]]) -> None:
     """Warn of peaks [rad/s] at places whose neighbours are too far apart, once for all."""
     if not coarse:
         return
-    name, speed = _first_of(coarse)
+    name, at = coarse[0]
+    more = f" (and {len(coarse) - 1} more)" if len(coarse) > 1 else ""
     warnings.warn(
-        f"{name}: the points around the peak at {speed} are too far apart to give its size and "
-        "width; compute the response with refine=True, or give more points there",
+        f"{name}: the points around the peak at {at:g} rad/s{more} are too far apart to give its "
+        "size and width; compute the response with refine=True, or give more points there; of a "
+        "resonance that nothing damps both are infinite",
         UserWarning,
         stacklevel=user_level(),
     )
-
-
-def _first_of(peaks: Sequence[tuple[str, float]]) -> tuple[str, str]:
-    """Return the place and speed of the first peak, and how many more there are, as text."""
-    name, at = peaks[0]
-    more = f" (and {len(peaks) - 1} more)" if len(peaks) > 1 else ""
-    return name, f"{at:g} rad/s{more}"
 
 
 def _phase(values: np.ndarray) -> np.ndarray:
