@@ -29,6 +29,7 @@ HALF_POWER = np.sqrt(0.5)  # of the size at a peak
 STILL = 1e-6  # share of a peak below which a neighbour stands still, as at rest without a load
 _CONSTANT = 1e-12  # share of the largest frequency that is none
 _NO_MOTION = 1e-12  # of the largest amplitude
+_LABELLED = 6  # points of a curve in its plane
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,8 +98,11 @@ class Response(AtPlaces, ModelResult):
 
     @property
     def main_order(self) -> int:
-        """The harmonic with the largest displacement across the axis, or along it if none is."""
-        return self._largest(DIRECTIONS[: 2 if np.any(self._sizes[:, :2]) else 3])
+        """The main harmonic: under unbalance the one with the largest displacement across the axis.
+
+        Under harmonic loads that with the largest motion, of rotations at the :attr:`radius`.
+        """
+        return self._main(DIRECTIONS)
 
     @property
     def _sizes(self) -> np.ndarray:
@@ -113,7 +117,7 @@ class Response(AtPlaces, ModelResult):
 
     def _main(self, directions: Sequence[str]) -> int:
         """Return the harmonic that is shown of directions: an unbalance acts across the axis."""
-        return self.main_order
+        return self._largest(DIRECTIONS[: 2 if np.any(self._sizes[:, :2]) else 3])
 
     def phasor(
         self, place: str | None = None, direction: str = "n1", order: int | None = None
@@ -335,7 +339,7 @@ class Response(AtPlaces, ModelResult):
     ) -> Axes:
         """Draw the complex amplitude [µm] or [µrad] as a curve in its plane (Nyquist diagram).
 
-        A damped resonance is a loop; its place across from the start is the critical speed. Five
+        A damped resonance is a loop; its place across from the start is the critical speed. Some
         points are labelled with their speed or frequency.
 
         Parameters
@@ -353,10 +357,8 @@ class Response(AtPlaces, ModelResult):
         known = np.isfinite(curve)
         values, curve, ax = values[known], curve[known], axes_or_new(ax, (5.5, 5.5))
         ax.plot(curve.real, curve.imag, color=COLORS[0], lw=1.4)
-        path = np.cumsum(np.abs(np.diff(curve, prepend=curve[:1])))
-        even = np.searchsorted(path, np.linspace(0.0, path[-1], 5)) if path.size else []
         style = {"textcoords": "offset points", "xytext": (5, 4), "fontsize": 8}
-        for index in np.unique(even).astype(int):
+        for index in range(0, len(curve), max(1, len(curve) // _LABELLED)):
             point = curve.real[index], curve.imag[index]
             ax.plot(*point, "o", color=COLORS[1], ms=4)
             ax.annotate(f"{values[index]:.5g} {unit}", point, **style)
@@ -509,11 +511,6 @@ class HarmonicResponse(Response):
 
     _over: ClassVar[str] = "frequencies"
     _what: ClassVar[str] = "frequency"
-
-    @property
-    def main_order(self) -> int:
-        """The harmonic with the largest motion, of rotations at the :attr:`radius`."""
-        return self._largest(DIRECTIONS)
 
     def _main(self, directions: Sequence[str]) -> int:
         together = [group for group in _TOGETHER if not set(group).isdisjoint(directions)]

@@ -69,7 +69,7 @@ def forced_motions(
     if system.is_constant:
         mean = system.matrices()
         return {
-            n: _solved(*_stiffness(system, mean, rates, [n]), F[..., None], driven)[..., 0] + 0j
+            n: _solved(*_stiffness(system, mean, rates, n), F[..., None], driven)[..., 0] + 0j
             for n, F in acting.items()
         }
     if not np.any(rates):  # only the real part of all harmonics together is a load
@@ -92,18 +92,18 @@ def _rate(rates: np.ndarray, order: int, speed: np.ndarray) -> np.ndarray:
 
 
 def _stiffness(
-    system: PeriodicSystem, mean: tuple[np.ndarray, ...], rates: np.ndarray, orders: Sequence[int]
+    system: PeriodicSystem, mean: tuple[np.ndarray, ...], rates: np.ndarray, order: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the dynamic stiffnesses (h s, k, k) of harmonics, and their frequencies (h s,)."""
+    """Return the dynamic stiffness (s, k, k) of a harmonic, and its frequencies (s,)."""
     M, D, K = mean
-    nu = np.array([_rate(rates, n, system.speed) for n in orders])
-    w = nu[..., None, None]
+    nu = _rate(rates, order, system.speed)
+    w = nu[:, None, None]
     Z = K - w**2 * M
     if np.any(nu):
         Z = Z + 1j * (w * D)
     for n, H in system.H:
-        Z = Z + 1j * np.sign(_rate(nu, -n, system.speed))[..., None, None] * H
-    return Z.reshape(-1, *Z.shape[2:]), nu.ravel()
+        Z = Z + 1j * np.sign(_rate(nu, -n, system.speed))[:, None, None] * H
+    return Z, nu
 
 
 def _solved(Z: np.ndarray, nu: np.ndarray, F: np.ndarray, driven: np.ndarray | None) -> np.ndarray:
@@ -245,13 +245,11 @@ def _chain(
     r, standing = B.shape[1], not np.any(rates)
     # at frequencies ±nΩ, under conjugate loads, motions are conjugate
     solved = [n for n in orders if n >= 0 or not standing or -n not in orders]
-    F = np.zeros((len(solved), s, system.size, 1 + r), dtype=complex)
-    F[..., 1:] = B
-    for place, n in enumerate(solved):
-        F[place, ..., 0] = loads.get(n, 0.0)
-    mean = system.M, system.D[0].real, system.K[0].real
-    X = _solved(*_stiffness(system, mean, rates, solved), F.reshape(-1, *F.shape[2:]), driven)
-    alone = dict(zip(solved, X.reshape(F.shape), strict=True))
+    mean, alone = (system.M, system.D[0].real, system.K[0].real), {}
+    for n in solved:
+        F = np.zeros((s, system.size, 1 + r), dtype=complex)
+        F[..., 0], F[..., 1:] = loads.get(n, 0.0), B
+        alone[n] = _solved(*_stiffness(system, mean, rates, n), F, driven)
     alone |= {n: alone[-n].conj() for n in orders if n not in alone}
     each = np.stack([alone[n] for n in orders], axis=1)  # (s, h, k, 1 + r)
     seen = B.T @ each

@@ -1,8 +1,7 @@
 """Limits of stability over the spin speed or any other parameter.
 
-The margin g(p) is the largest growth of a motion, less what rounding can make of it: positive where
-the rotor is unstable. It is computed at samples. Each change of its sign is found by Brent's
-method, on the stable side of it by the growth of the motion that grows on the other.
+The margin is the largest growth of a motion that is not neutral, positive where the rotor is
+unstable. It is computed at samples, and each change of its sign is found by Brent's method.
 """
 
 from __future__ import annotations
@@ -43,7 +42,7 @@ if TYPE_CHECKING:
 _SMALL = 0.1  # share of the range that a limit counts as at least
 _SPEED = "speed [rad/s]"  # how the names of parameters end that are shown in other units
 Supports = Sequence[Given] | Given
-_ROOT = 1e-7  # of the largest parameter: error of a limit
+_ROOT = 1e-8  # of the largest parameter: where the search for a limit stops
 _ASIDE = 1e-4  # of the range, or half of an unstable one: where the growing motion is named
 
 
@@ -158,28 +157,32 @@ class StabilityThresholds(OfMotions, Result):
 
 @dataclass(eq=False)
 class _Margin:
-    """By how much the least stable motion grows beyond rounding [1/s], over a parameter.
+    """Growth of the least stable motion that is not neutral [1/s], over a parameter.
 
-    Motions are computed once at a point, NaN where there are no coefficients. Where the parameter
-    is the speed, one `model` has all of them.
+    Below zero where all are neutral, NaN where there are no coefficients; each value is computed
+    once. Where the parameter is the speed, one `model` has all of them.
     """
 
     model_at: Callable[[float], tuple[LinearModel, float]]
     tolerance: float
     model: LinearModel | None = None
-    seen: dict[float, Motions] = field(default_factory=dict)
+    known: dict[float, float] = field(default_factory=dict)
 
     def look_at(self, points: Sequence[float]) -> None:
-        """Compute the motions at points, with one warning where there are no coefficients."""
-        refused = []
-        together = [points] if self.model else [[point] for point in points]
+        """Compute the margin at points, with one warning where there are no coefficients."""
+        self.known |= dict.fromkeys(points, np.nan)
+        refused, together = [], [points] if self.model else [[point] for point in points]
         for group in together:
             try:
-                motions = self.motions(group)
+                found = self.motions(group)
             except NO_EQUATIONS as error:
                 refused.append((f"{group[0]:.5g}", error))
             else:
-                self.seen |= {point: motions[[i]] for i, point in enumerate(group)}
+                growth, bounds = found.values.real, found.bounds[:, None]
+                moving = np.where(np.abs(growth) > bounds, growth, np.nan)
+                margins = np.fmax.reduce(moving, axis=1)
+                margins = np.where(np.isnan(margins), -found.bounds, margins)
+                self.known |= dict(zip(group, margins.tolist(), strict=True))
         warn_of_refused(refused, len(together))
 
     def motions(self, points: Sequence[float], richer: bool = False) -> Motions:
@@ -198,40 +201,12 @@ class _Margin:
         return least_stable(state)
 
     def __call__(self, point: float) -> float:
-        """Return the margin at a point; NaN where there are no coefficients."""
-        if point not in self.seen:
+        """Return the margin at a point between two that have one; negative where it has none."""
+        if point not in self.known:
             with suppress(*NO_EQUATIONS):
                 self.look_at([point])
-        if point not in self.seen:
-            return np.nan
-        motions = self.seen[point]
-        return float(np.fmax.reduce(motions.values[0].real) - motions.bounds[0])
-
-    def changes(self, points: Sequence[float], root: float) -> list[tuple[float, bool]]:
-        """Return each limit between neighbouring points, and whether it is unstable above."""
-        found = []
-        for a, b in pairwise(points):
-            above = self(b) > 0.0
-            if above != (self(a) > 0.0):
-                found.append((float(brentq(self._of_one, a, b, xtol=root, rtol=1e-15)), above))
-        return found
-
-    def _of_one(self, point: float) -> float:
-        """Return the margin; of a stable point that of the motion that grows at the nearest other.
-
-        It has no kink at the limit, where the margin is often that of other motions on one side.
-        """
-        margin = self(point)
-        if np.isnan(margin):
-            return -1.0
-        if margin > 0.0:
-            return margin
-        grows = min((p for p in self.seen if self(p) > 0.0), key=lambda p: abs(p - point))
-        beside, here = self.seen[grows], self.seen[point]
-        shape = beside.main[0, :, np.nanargmax(beside.values[0].real)]
-        alike = np.maximum(*(np.abs(each @ here.main[0]) for each in (shape, shape.conj())))
-        growth = here.values[0, np.argmax(np.where(np.isnan(here.values[0]), -1.0, alike))].real
-        return min(float(growth - here.bounds[0]), -1e-300)  # as brentq needs a sign
+        margin = self.known[point]
+        return -1.0 if np.isnan(margin) else margin
 
 
 def stability_threshold(
@@ -340,10 +315,12 @@ def _found(
 ) -> StabilityThresholds:
     """Return the limits between points."""
     margin.look_at(points)
-    points = [point for point in points if not np.isnan(margin(point))]
+    points = [point for point in points if not np.isnan(margin.known[point])]
     low, high = points[0], points[-1]
-    found = margin.changes(points, _ROOT * max(abs(low), abs(high)))
-    values, onset = np.array([v for v, _ in found]), np.array([up for _, up in found], dtype=bool)
+    changes = [(a, b) for a, b in pairwise(points) if (margin(a) > 0.0) != (margin(b) > 0.0)]
+    root = _ROOT * max(abs(low), abs(high))
+    values = np.array([brentq(margin, *change, xtol=root, rtol=1e-15) for change in changes])
+    onset = np.array([margin(above) > 0.0 for _, above in changes], dtype=bool)
     ends = [-np.inf, *values, np.inf]
     growing, shifts = [], []
     for place, value in enumerate(values):
