@@ -126,9 +126,8 @@ class Stability(OfMotions, ModelResult):
     @property
     def _growth(self) -> np.ndarray:
         """Real parts [1/s], 0 of motions that are neutral, shape (s, k)."""
-        return np.where(
-            np.abs(self.exponents.real) <= self.bounds[:, None], 0.0, self.exponents.real
-        )
+        known = ~np.isnan(self.exponents)
+        return np.where(known & ~self._moving, 0.0, self.exponents.real)
 
     @property
     def least_stable(self) -> np.ndarray:
@@ -163,8 +162,7 @@ class Stability(OfMotions, ModelResult):
         if not np.any(told):
             return None
         growth = np.where(told, self.exponents.real, -np.inf)
-        alike = growth >= growth.max() - np.nanmax(self.bounds)
-        row, column = np.argwhere(alike)[0]
+        row, column = np.argwhere(growth >= growth.max() - np.nanmax(self.bounds))[0]
         return int(row), int(column)
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
@@ -231,8 +229,7 @@ class Stability(OfMotions, ModelResult):
             color=plotting.COLORS[1], alpha=0.2, lw=0.0,
         )  # fmt: skip
         ax.axhline(0.0, color="0.3", lw=0.8)
-        ax.set_xlabel(f"spin speed [{shown.speed}]")
-        ax.set_ylabel("largest growth [1/s]")
+        ax.set(xlabel=f"spin speed [{shown.speed}]", ylabel="largest growth [1/s]")
         ax.grid(alpha=0.3)
         plotting.legend_above(ax, 4)
         return ax
@@ -340,8 +337,8 @@ def of_motions(
     growth = np.fmax.reduce(values.real, axis=1, initial=np.nan)
     moving = np.abs(values.real) > bounds[:, None]
     if errors is not None:
-        least_stable = np.argmax(moving, axis=1)[:, None]
-        errors = np.take_along_axis(np.where(moving, errors, np.nan), least_stable, 1)[:, 0]
+        rows = np.arange(len(values)), np.argmax(moving, axis=1)
+        errors = np.where(moving, errors, np.nan)[rows]
     return Stability(
         speeds=found.motions.speeds,
         exponents=values.real + 1j * found.rotor,
@@ -449,8 +446,8 @@ class StabilityMap(OfMotions, Result):
         Free motions, which are neutral, do not count.
         """
         first, second = self.labels
-        lines = [f"growth [1/s]; columns: {second}", f"{first:>24}"]
-        lines[-1] += "".join(f"{value:13.5g} " for value in self.y).rstrip()
+        names = "".join(f"{value:13.5g} " for value in self.y)
+        lines = [f"growth [1/s]; columns: {second}", f"{first:>24}{names}".rstrip()]
         marks = np.where(self.stable | np.isnan(self.growth), " ", "*")
         for value, growth, marked in zip(self.x, self._shown, marks, strict=True):
             entries = (f"{g:13.5g}{mark}" for g, mark in zip(growth, marked, strict=True))
@@ -480,21 +477,16 @@ class StabilityMap(OfMotions, Result):
         neutral = np.where(self.stable, np.minimum(self._shown, 0.0), self._shown)
         growth = np.ma.masked_invalid(neutral).T
         largest = np.abs(growth).max() or 1.0
+        style = {"cmap": "RdBu_r", "vmin": -largest, "vmax": largest}
         if min(self.growth.shape) == 1:  # contours need two values of each
-            places = np.meshgrid(self.x, self.y)
-            limits = {"vmin": -largest, "vmax": largest}
-            filled = ax.scatter(*places, c=growth.ravel(), cmap="RdBu_r", **limits)
-            ax.figure.colorbar(filled, ax=ax, label="growth [1/s]")
-            return ax
-        from matplotlib.ticker import MaxNLocator
-
-        levels = MaxNLocator(20, symmetric=True).tick_values(-largest, largest)
-        filled = ax.contourf(self.x, self.y, growth, levels, cmap="RdBu_r")
+            filled = ax.scatter(*np.meshgrid(self.x, self.y), c=growth.ravel(), **style)
+        else:
+            filled = ax.contourf(self.x, self.y, growth, 20, **style)
+            if self.stable.any() and not self.stable.all():
+                verdict = np.where(self.stable, -1.0, 1.0).T
+                crossing = growth if growth.min() < -1e-6 * largest else verdict
+                ax.contour(self.x, self.y, crossing, [0.0], colors="black", linewidths=1.2)
         ax.figure.colorbar(filled, ax=ax, label="growth [1/s]")
-        if not (self.stable.all() or not self.stable.any()):
-            verdict = np.where(self.stable, -1.0, 1.0).T
-            crossing = growth if growth.min() < -1e-6 * largest else verdict
-            ax.contour(self.x, self.y, crossing, [0.0], colors="black", linewidths=1.2)
         return ax
 
 
