@@ -103,9 +103,6 @@ def places(model: LinearModel, at: Sequence[At] | None, speed: float = 1.0) -> l
     observed = [place(model, one, speed) for one in (model.interfaces if at is None else at)]
     if not observed:
         raise ValueError("at: the rotor has no interfaces; name mesh nodes or positions to look at")
-    labels = [one.label for one in observed]
-    if len(set(labels)) < len(labels):
-        raise ValueError(f"at: a place is named twice: {', '.join(labels)}")
     return observed
 
 

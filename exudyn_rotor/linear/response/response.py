@@ -195,10 +195,8 @@ class Response(AtPlaces, ModelResult):
             warn_of_coarse_peaks([(name, float(values[index]))])
         return at, size
 
-    def orbit(
-        self, value: float, place: str | None = None, order: int | None = None, points: int = 181
-    ) -> np.ndarray:
-        """Return one revolution of a harmonic across e, shape (points, 2) [m].
+    def orbit(self, value: float, place: str | None = None, order: int | None = None) -> np.ndarray:
+        """Return one revolution of a harmonic across e, a point for each degree, (361, 2) [m].
 
         Parameters
         ----------
@@ -206,14 +204,12 @@ class Response(AtPlaces, ModelResult):
             Speed or frequency [rad/s]; the nearest computed one is taken.
         place, order
             See :meth:`phasor`.
-        points : int, optional
         """
-        points = checks.count(points, "points", least=2)
         index, order = self._nearest(value), self._order(order, CIRCULAR)
         motion = self._harmonic(place, order)[index, :2]
         sense = -1.0 if self.rates(order)[index] < 0.0 else 1.0
-        angle = sense * np.linspace(0.0, 2.0 * np.pi, points)
-        return (motion * np.exp(1j * angle)[:, None]).real
+        turn = np.exp(1j * sense * np.radians(np.arange(361)))
+        return (motion * turn[:, None]).real
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return sizes and phases as columns: one row for each point, place and harmonic.
@@ -312,14 +308,12 @@ class Response(AtPlaces, ModelResult):
         size, phase = pair
         style = {"lw": 1.4, "marker": "." if len(values) == 1 else None}  # one point is no line
         curves = [self.phasor(place, name, order) for name in names]
-        kinds = [_micro(name) for name in names]
         for name, curve, color, line in zip(names, curves, cycle(COLORS), cycle(LINES)):
-            name = f"{name} [{_micro(name)}]" if len(set(kinds)) > 1 else name
             size.plot(values, 1e6 * np.abs(curve), label=name, color=color, ls=line, **style)
             phase.plot(values, _phase(curve), color=color, ls=line, **style)
         if np.any(np.nan_to_num(curves)):  # nothing is nowhere on a log scale
             size.set_yscale("log")
-        size.set_ylabel(f"amplitude [{', '.join(dict.fromkeys(kinds))}]")
+        size.set_ylabel(f"amplitude [{', '.join(dict.fromkeys(map(_micro, names)))}]")
         size.set_title(self._title(place, order), loc="right", fontsize=10)
         phase.set(xlabel=f"{self._what} [{unit}]", ylabel="phase [deg]")
         phase.yaxis.set_major_locator(MultipleLocator(90.0))
@@ -405,7 +399,7 @@ class Response(AtPlaces, ModelResult):
         for points, color in zip(orbits.values(), cycle(COLORS)):
             x, y = 1e6 * points.T
             ax.plot(x[0], y[0], "o", color=color, ms=5)
-            ax.annotate("", (x[24], y[24]), (x[20], y[20]), arrowprops=arrow | {"color": color})
+            ax.annotate("", (x[48], y[48]), (x[40], y[40]), arrowprops=arrow | {"color": color})
         ax.set(xlabel="n1 [µm]", ylabel="n2 [µm]")
         nearest = f"{self._what} {shown[self._nearest(value)]:.4g} {unit}"
         ax.set_title(nearest, loc="right", fontsize=10)
