@@ -8,7 +8,6 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -124,7 +123,27 @@ def unbalance_response(
     """
     values = checks.spin_speeds(speeds, allow_negative)
     unbalances = checks.instances(unbalances, "unbalances", Unbalance)
-    solve = partial(_unbalanced, unbalances, checks.flag(own, "own"), tolerance)
+    checks.flag(own, "own")
+
+    def solve(model: LinearModel, speeds: np.ndarray) -> tuple[Harmonics, np.ndarray]:
+        load, shape = unbalance_load(model, unbalances, own), (len(speeds), model.size)
+        known, found = np.ones(len(speeds), dtype=bool), {0: np.zeros(shape, dtype=complex)}
+        moving = np.flatnonzero(speeds)  # at rest there is no load
+        if moving.size:
+            stack = model.at_all(speeds[moving])
+            model.warn_beyond(np.abs(speeds[moving]))
+            known[moving] = stack.known
+            rows = moving[stack.known]
+            acting = {n: speeds[rows, None] ** 2 * F for n, F in load.items()}
+            # no unbalance acts along the axis, where nothing may hold the rotor
+            options = {"held": model.moving_basis, "tolerance": tolerance}
+            part = stack if np.all(known) else stack[stack.known]
+            for n, X in forced_motions(part, acting, np.zeros(len(rows)), **options).items():
+                found[n] = np.zeros(shape, dtype=complex)
+                found[n][rows] = X
+            found[0][~known] = np.nan
+        return found, known
+
     sweep = _Sweep(at, frame, tolerance, refine, accuracy, solve)
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening).for_responses
     warn_of_omissions(model, np.abs(values).max())
@@ -189,7 +208,17 @@ def harmonic_response(
     )
     speed = checks.number(speed, "speed", "rad/s")
     loads = checks.instances(loads, "loads", (HarmonicForce, BaseAcceleration))
-    solve = partial(_loaded, loads, speed, tolerance)
+
+    def solve(model: LinearModel, frequencies: np.ndarray) -> tuple[Harmonics, np.ndarray]:
+        load = total(loads, model, speed)
+        if not any(map(np.any, load.values())):
+            what = "give loads=[HarmonicForce(…)] that move the rotor"
+            raise ValueError(f"no load, so no response: {what}")
+        model.warn_beyond(np.abs(np.add.outer(frequencies, speed * np.array(list(load)))))
+        options = {"driven": model.free_spins, "tolerance": tolerance}
+        found = forced_over(model, speed, load, frequencies, **options)
+        return found, np.ones(len(frequencies), dtype=bool)
+
     sweep = _Sweep(at, frame, tolerance, refine, accuracy, solve, speed)
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening).for_responses
     warn_of_omissions(model, speed)
@@ -198,55 +227,6 @@ def harmonic_response(
 
 
 # ------------------------------------------------------------------ over speeds or frequencies
-
-
-def _unbalanced(
-    unbalances: Sequence[Unbalance],
-    own: bool,
-    tolerance: float,
-    model: LinearModel,
-    speeds: np.ndarray,
-) -> tuple[Harmonics, np.ndarray]:
-    """Return the coordinates of a model under unbalance, and at which speeds (s,) it has equations.
-
-    At rest there is no load.
-    """
-    load, shape = unbalance_load(model, unbalances, own), (len(speeds), model.size)
-    known, found = np.ones(len(speeds), dtype=bool), {0: np.zeros(shape, dtype=complex)}
-    moving = np.flatnonzero(speeds)
-    if moving.size:
-        stack = model.at_all(speeds[moving])
-        model.warn_beyond(np.abs(speeds[moving]))
-        known[moving] = stack.known
-        rows = moving[stack.known]
-        acting = {n: speeds[rows, None] ** 2 * F for n, F in load.items()}
-        # no unbalance acts along the axis, where nothing may hold the rotor
-        options = {"held": model.moving_basis, "tolerance": tolerance}
-        part = stack if np.all(known) else stack[stack.known]
-        for n, X in forced_motions(part, acting, np.zeros(len(rows)), **options).items():
-            found[n] = np.zeros(shape, dtype=complex)
-            found[n][rows] = X
-        found[0][~known] = np.nan
-    return found, known
-
-
-def _loaded(
-    loads: Sequence[HarmonicForce | BaseAcceleration],
-    speed: float,
-    tolerance: float,
-    model: LinearModel,
-    frequencies: np.ndarray,
-) -> tuple[Harmonics, np.ndarray]:
-    """Return the coordinates of a model under harmonic loads, and that it has equations for all."""
-    load = total(loads, model, speed)
-    if not any(map(np.any, load.values())):
-        raise ValueError(
-            "no load, so no response: give loads=[HarmonicForce(…)] that move the rotor"
-        )
-    model.warn_beyond(np.abs(np.add.outer(frequencies, speed * np.array(list(load)))))
-    options = {"driven": model.free_spins, "tolerance": tolerance}
-    found = forced_over(model, speed, load, frequencies, **options)
-    return found, np.ones(len(frequencies), dtype=bool)
 
 
 @dataclass(frozen=True, eq=False)
