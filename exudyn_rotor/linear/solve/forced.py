@@ -113,7 +113,7 @@ def _solved(Z: np.ndarray, nu: np.ndarray, F: np.ndarray, driven: np.ndarray | N
     """
     X, still = np.full(F.shape, np.nan, dtype=complex), nu == 0.0
     if np.any(still):
-        X[still] = _static(Z[still], F[still], driven)
+        X[still] = static_motions(Z[still], F[still], driven)
     if not np.all(still):
         Z, F = Z[~still], F[~still]
         moved = _one_by_one(Z, F)
@@ -134,11 +134,14 @@ def _one_by_one(A: np.ndarray, b: np.ndarray) -> np.ndarray:
         return np.concatenate([_one_by_one(A[i : i + 1], b[i : i + 1]) for i in range(len(A))])
 
 
-def _static(A: np.ndarray, F: np.ndarray, driven: np.ndarray | None) -> np.ndarray:
-    """Return the motions (s, k, c) under constant loads (s, k, c)."""
+def static_motions(A: np.ndarray, F: np.ndarray, driven: np.ndarray | None = None) -> np.ndarray:
+    """Return the motions (s, k, c) by stiffnesses (s, k, k) under constant loads (s, k, c).
+
+    Free motions that a load does not act on rest; NaN where it acts on a motion that nothing holds.
+    """
     if driven is not None:
         basis = others(driven)  # mixes no soft coordinates with stiff ones
-        return basis @ _static(basis.T @ A @ basis, basis.T @ F, None)
+        return basis @ static_motions(basis.T @ A @ basis, basis.T @ F)
     size = np.abs(A).max(axis=2)
     resisted = size > _FREE * size.max(axis=1, initial=0.0, keepdims=True)
     scale = 1.0 / np.sqrt(np.where(resisted, size, 1.0))[..., None]
@@ -149,20 +152,6 @@ def _static(A: np.ndarray, F: np.ndarray, driven: np.ndarray | None) -> np.ndarr
     for i in np.flatnonzero(~np.all(held, axis=1)):
         X[i] = _beside_free(A[i], b[i])
     return scale * X
-
-
-def static_motion(A: np.ndarray, load: np.ndarray) -> np.ndarray:
-    """Return the motion (k,) under a constant load; free motions that it does not act on rest.
-
-    NaN where it acts on a motion that nothing holds.
-
-    Parameters
-    ----------
-    A : ndarray, shape (k, k)
-        Stiffness.
-    load : ndarray, shape (k,)
-    """
-    return _static(A[None], load[None, :, None], None)[0, :, 0]
 
 
 def _beside_free(A: np.ndarray, b: np.ndarray) -> np.ndarray:
