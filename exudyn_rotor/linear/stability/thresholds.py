@@ -319,10 +319,9 @@ def _found(
     low, high = points[0], points[-1]
     changes = [(a, b) for a, b in pairwise(points) if (margin(a) > 0.0) != (margin(b) > 0.0)]
     root = _ROOT * max(abs(low), abs(high))
-    values = np.array([brentq(margin, *change, xtol=root, rtol=1e-15) for change in changes])
-    onset = np.array([margin(above) > 0.0 for _, above in changes], dtype=bool)
-    ends = [-np.inf, *values, np.inf]
-    growing, shifts = [], []
+    values = [brentq(margin, *change, xtol=root, rtol=1e-15) for change in changes]
+    onset = [margin(above) > 0.0 for _, above in changes]
+    ends, growing, shifts = [-np.inf, *values, np.inf], [], []
     for place, value in enumerate(values):
         # what grows within the unstable range beside the limit
         width = ends[place + 2 if onset[place] else place] - value
@@ -340,15 +339,10 @@ def _found(
         errors, lambda i: f"the limit of stability at {values[i]:.5g}, {label},",
         margin.model_at(points[0])[0], accuracy,
     )  # fmt: skip
-    named = (
-        np.array([motion[name][0] for motion in growing], dtype=kind)
-        for name, kind in (
-            ("frequencies_inertial", float), ("whirl_codes", int), ("nodal_diameters", int)
-        )
-    )  # fmt: skip
-    unstable_at_low = margin(low) > 0.0
+    names = ("frequencies_inertial", "whirl_codes", "nodal_diameters")
+    named = ([motion[name][0] for motion in growing] for name in names)
     return StabilityThresholds(
-        values, onset, *named, low, high, unstable_at_low, label, basis_errors=errors
+        values, onset, *named, low, high, margin(low) > 0.0, label, basis_errors=errors
     )
 
 
