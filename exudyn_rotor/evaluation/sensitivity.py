@@ -172,10 +172,10 @@ def sensitivity(
     >>> bearings = [MagneticBearing(interface=name, **parts) for name in ("left", "right")]
     >>> print(sensitivity(rotor, np.geomspace(10.0, 5e3, 50), supports=bearings).table())
     axis      peak |S|  peak [dB]  at [Hz]  zone
-    left, 1    1.66895    4.44887  160.631  A
-    left, 2    1.66895    4.44887  160.631  A
-    right, 1   1.66895    4.44887  160.631  A
-    right, 2   1.66895    4.44887  160.631  A
+    left, 1    1.66895    4.44887  160.633  A
+    left, 2    1.66895    4.44887  160.633  A
+    right, 1   1.66895    4.44887  160.633  A
+    right, 2   1.66895    4.44887  160.633  A
     """
     checks.instance(rotor, "rotor", (ReducedRotor, SolidRotor, RotorTrain))
     values = checks.ascending(frequencies, "frequencies", "rad/s")
