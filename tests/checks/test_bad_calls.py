@@ -260,7 +260,7 @@ RIGHT = {
     "text": "Motion.mass_matrix.q_t at report.contents Proposal.reasons ReducedRotor.dropped",
     "entry": "SolidRotor.from_ngsolve.materials",
     "an object": "Motion.mass_matrix.q_t report.contents",
-    "None": "UFforce UFmassMatrix BaseResponse.between.place",
+    "None": "UFforce UFmassMatrix BaseResponse.displacement.place",
 }
 # functions and methods where it is wrong all the same
 WRONG = {

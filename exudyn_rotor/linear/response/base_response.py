@@ -85,24 +85,21 @@ class BaseResponse(AtPlaces):
     motion: np.ndarray = numbers("steps", "places", 6, finite=False)
     speed: float = 0.0
 
-    def displacement(self, place: str) -> np.ndarray:
-        """Return the displacement of a place over time, shape (t, 3) [m]."""
-        return self.motion[:, self._at(place), :3]
+    def displacement(self, place: str, other: str | None = None) -> np.ndarray:
+        """Return the displacement of a place over time, shape (t, 3) [m].
 
-    def between(self, place: str, other: str) -> np.ndarray:
-        """Return the displacement of a place against another, shape (t, 3) [m].
-
-        Of a journal against its foundation: ``between("left", "left (foundation)")``.
+        Against another place, if one is named, as of a journal against its foundation:
+        ``displacement("left", "left (foundation)")``.
         """
-        return self.displacement(place) - self.motion[:, self._at(other, "other"), :3]
+        moved = self.motion[:, self._at(place), :3]
+        return moved if other is None else moved - self.motion[:, self._at(other, "other"), :3]
 
     def peak(self, place: str, other: str | None = None) -> tuple[float, float]:
         """Return the largest displacement across the axis [m], and its time [s].
 
         Against another place, if one is named.
         """
-        moved = self.displacement(place) if other is None else self.between(place, other)
-        across = np.hypot(moved[:, 0], moved[:, 1])
+        across = np.hypot(*self.displacement(place, other)[:, :2].T)
         return float(across.max()), float(self.time[np.argmax(across)])
 
     def table(self, *, units: str = "rpm") -> str:
