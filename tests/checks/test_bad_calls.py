@@ -260,7 +260,7 @@ RIGHT = {
     "text": "Motion.mass_matrix.q_t at report.contents Proposal.reasons ReducedRotor.dropped",
     "entry": "SolidRotor.from_ngsolve.materials",
     "an object": "Motion.mass_matrix.q_t report.contents",
-    "None": "UFforce UFmassMatrix BaseResponse.displacement.place",
+    "None": "UFforce UFmassMatrix BaseResponse.displacement.place BaseResponse.peak.place",
 }
 # functions and methods where it is wrong all the same
 WRONG = {
@@ -291,9 +291,9 @@ def is_right(call, argument, label):
 
 
 def is_result(call):
-    """Return whether a call constructs a result or a body: analyses and `add_rotor` do."""
+    """Return whether a call constructs a result or a body: analyses, `add_rotor` and others do."""
     owner = getattr(er, call, None)
-    made = (er.Result, er.RotorBody, er.FullRotorBody)
+    made = (er.Result, er.RotorBody, er.FullRotorBody, er.SceneFoundation)
     return inspect.isclass(owner) and issubclass(owner, made)
 
 

@@ -139,9 +139,9 @@ class Response(AtPlaces, ModelResult):
         ValueError
             For an unknown place or direction, or a harmonic that does not matter.
         """
-        if checks.choice(direction, "direction", (*DIRECTIONS, *CIRCULAR)) in CIRCULAR:
-            return self.whirl(place, order)[CIRCULAR.index(direction)]
         order = self._order(order, (direction,))
+        if direction in CIRCULAR:
+            return self.whirl(place, order)[CIRCULAR.index(direction)]
         return self._harmonic(place, order)[:, DIRECTIONS.index(direction)]
 
     def whirl(
@@ -427,6 +427,8 @@ class Response(AtPlaces, ModelResult):
 
     def _order(self, order: int | None, directions: Sequence[str]) -> int:
         """Return a harmonic that matters, by default the main one of directions."""
+        for direction in directions:
+            checks.choice(direction, "direction", (*DIRECTIONS, *CIRCULAR))
         if order is None:
             return self._main(directions)
         order = checks.whole_number(order, "order")
