@@ -61,15 +61,12 @@ def forced_motions(
         loads = {n: F @ held for n, F in loads.items()}
         found = forced_motions(system.projected(held), loads, rates, tolerance=tolerance)
         return {n: X @ held.T for n, X in found.items()}
-    if driven is not None and not driven.shape[1]:
-        driven = None
-    rates = np.asarray(rates, dtype=float)
     shape = len(rates), system.size
     acting = {n: np.broadcast_to(F, shape) for n, F in loads.items() if np.any(F)}
     if system.is_constant:
         mean = system.matrices()
         return {
-            n: _solved(*_stiffness(system, mean, rates, n), F[..., None], driven)[..., 0] + 0j
+            n: _harmonic(system, mean, rates, n, F[..., None], driven)[..., 0]
             for n, F in acting.items()
         }
     if not np.any(rates):  # only the real part of all harmonics together is a load
@@ -91,10 +88,18 @@ def _rate(rates: np.ndarray, order: int, speed: np.ndarray) -> np.ndarray:
     return np.where(np.abs(nu) <= _STILL * np.maximum(np.abs(rates), np.abs(speed)), 0.0, nu)
 
 
-def _stiffness(
-    system: PeriodicSystem, mean: tuple[np.ndarray, ...], rates: np.ndarray, order: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the dynamic stiffness (s, k, k) of a harmonic, and its frequencies (s,)."""
+def _harmonic(
+    system: PeriodicSystem,
+    mean: tuple[np.ndarray, ...],
+    rates: np.ndarray,
+    order: int,
+    F: np.ndarray,
+    driven: np.ndarray | None,
+) -> np.ndarray:
+    """Return a harmonic (s, k, c) by itself under loads (s, k, c), NaN where there is none.
+
+    At the frequency zero it is static: free motions that a load does not act on rest.
+    """
     M, D, K = mean
     nu = _rate(rates, order, system.speed)
     w = nu[:, None, None]
@@ -103,14 +108,6 @@ def _stiffness(
         Z = Z + 1j * (w * D)
     for n, H in system.H:
         Z = Z + 1j * np.sign(_rate(nu, -n, system.speed))[:, None, None] * H
-    return Z, nu
-
-
-def _solved(Z: np.ndarray, nu: np.ndarray, F: np.ndarray, driven: np.ndarray | None) -> np.ndarray:
-    """Return solutions (s, k, c) under loads (s, k, c), NaN where there is none.
-
-    Those of frequency zero are static: free motions that a load does not act on rest.
-    """
     X, still = np.full(F.shape, np.nan, dtype=complex), nu == 0.0
     if np.any(still):
         X[still] = static_motions(Z[still], F[still], driven)
@@ -139,7 +136,7 @@ def static_motions(A: np.ndarray, F: np.ndarray, driven: np.ndarray | None = Non
 
     Free motions that a load does not act on rest; NaN where it acts on a motion that nothing holds.
     """
-    if driven is not None:
+    if driven is not None and driven.shape[1]:
         basis = others(driven)  # mixes no soft coordinates with stiff ones
         return basis @ static_motions(basis.T @ A @ basis, basis.T @ F)
     size = np.abs(A).max(axis=2)
@@ -238,7 +235,7 @@ def _chain(
     for n in solved:
         F = np.zeros((s, system.size, 1 + r), dtype=complex)
         F[..., 0], F[..., 1:] = loads.get(n, 0.0), B
-        alone[n] = _solved(*_stiffness(system, mean, rates, n), F, driven)
+        alone[n] = _harmonic(system, mean, rates, n, F, driven)
     alone |= {n: alone[-n].conj() for n in orders if n not in alone}
     each = np.stack([alone[n] for n in orders], axis=1)  # (s, h, k, 1 + r)
     seen = B.T @ each
