@@ -109,7 +109,7 @@ instants, moved = run(record)
 moved = moved - run()[1]  # less what the mesh's own unbalance does
 linear = shaken[SPEED]
 plane = reduced.axis.plane  # n1 and n2 in x, y, z
-n1, n2 = linear.between("right", "right (foundation)")[:, :2].T
+n1, n2 = linear.displacement("right", "right (foundation)")[:, :2].T
 expected = np.column_stack([np.interp(instants, linear.time, one) for one in (n1, n2)])
 apart = np.abs(moved @ plane - expected).max() / np.abs(expected).max()
 print(f"scene against linear motion: {apart:.2%} of the largest displacement")

@@ -35,6 +35,8 @@ from exudyn_rotor.evaluation.level_one import (
 from exudyn_rotor.evaluation.level_one import stability_level_one as stability_level_one
 from exudyn_rotor.evaluation.placement import bearing_masses as bearing_masses
 from exudyn_rotor.evaluation.placement import standard_unbalances as standard_unbalances
+from exudyn_rotor.evaluation.sensitivity import Sensitivity as Sensitivity
+from exudyn_rotor.evaluation.sensitivity import sensitivity as sensitivity
 from exudyn_rotor.evaluation.separation import SeparationMargins as SeparationMargins
 from exudyn_rotor.evaluation.separation import separation_margins as separation_margins
 from exudyn_rotor.foundations.foundation import Foundation as Foundation
@@ -63,8 +65,6 @@ from exudyn_rotor.linear.response.steady_response import harmonic_response as ha
 from exudyn_rotor.linear.response.steady_response import unbalance_response as unbalance_response
 from exudyn_rotor.linear.response.steady_state import SteadyState as SteadyState
 from exudyn_rotor.linear.response.steady_state import steady_state as steady_state
-from exudyn_rotor.linear.stability.sensitivity import Sensitivity as Sensitivity
-from exudyn_rotor.linear.stability.sensitivity import sensitivity as sensitivity
 from exudyn_rotor.linear.stability.stability import Stability as Stability
 from exudyn_rotor.linear.stability.stability import StabilityMap as StabilityMap
 from exudyn_rotor.linear.stability.stability import stability as stability

@@ -180,7 +180,7 @@ CALLS = {
     "BaseRecord": {"times": [0.0, 0.01, 0.02, 0.03], "accelerations": np.eye(4)[:, :3]},
     "BaseRecord.from_csv": lambda w: {"path": w.table, "unit": "g"},
     "BaseRecord.integrals": {"times": [0.0, 0.02]},
-    "BaseResponse.between": {"place": "left", "other": "left"},
+    "BaseResponse.displacement": {"place": "left", "other": "left"},
     "ClearanceStop": {"stiffness": 1e7},
     "DirectCurrentMotor": {"stall_torque": 5.0, "no_load_speed": 90.0},
     "Drag": {"linear": 0.1},

@@ -23,9 +23,7 @@ from exudyn_rotor.linear.response.response import (
     STILL,
     UnbalanceResponse,
     resolved_peak,
-    undamped_resonances,
     warn_of_coarse_peaks,
-    warn_of_undamped,
 )
 from exudyn_rotor.results import Result, numbers, storable, text_table, words
 from exudyn_rotor.units import Units
@@ -50,15 +48,14 @@ class SeparationMargins(Result):
     places : tuple of str, length p
         Where each peak was seen.
     peaks, sizes : ndarray, shape (p,)
-        Critical speed N_c [rad/s] and major semi-axis of the orbit there [m]; infinite where
-        nothing damps the resonance.
+        Critical speed N_c [rad/s] and major semi-axis of the orbit there [m].
     half_power : ndarray, shape (p, 2)
         Speeds N₁ and N₂ beside the peak where the size is 0.707 of it [rad/s], on the peak's own
         flanks: NaN where the response does not fall so far before the valley to the next peak, or
         before it ends. The table remarks these peaks.
     amplification : ndarray, shape (p,)
         ``AF = N_c / (N₂ − N₁)``; by one side alone, twice its distance, where the other is NaN;
-        NaN where both are, and infinite without damping.
+        NaN where both are.
     required, actual : ndarray, shape (p,)
         Separation margins, as shares of the lowest operating speed for peaks below it, of the
         highest for peaks above. Within the operating speeds the actual margin is 0.
@@ -85,7 +82,7 @@ class SeparationMargins(Result):
 
     places: tuple[str, ...] = words("peaks")
     peaks: np.ndarray = numbers("peaks")
-    sizes: np.ndarray = numbers("peaks", finite=False, least=0.0)
+    sizes: np.ndarray = numbers("peaks", least=0.0)
     half_power: np.ndarray = numbers("peaks", 2, finite=False)
     amplification: np.ndarray = numbers("peaks", finite=False)
     required: np.ndarray = numbers("peaks", least=0.0)
@@ -129,10 +126,7 @@ class SeparationMargins(Result):
         low, high = shown.speeds(self.operating_range)
         lines = [f"operating range {low:.6g} to {high:.6g} {shown.speed}"]
         lines += text_table(self.columns(units)) if self.places else ["no peak"]
-        damped = np.isfinite(self.sizes)
-        if not np.all(damped):
-            lines.append("inf: nothing damps the resonance; give supports or the rotor damping")
-        if np.any(np.isnan(self.half_power[damped])):
+        if np.any(np.isnan(self.half_power)):
             lines.append(
                 "-: no fall to 0.707 of the peak before the valley to the next peak or the end; "
                 "the factor is by the other side"
@@ -147,8 +141,7 @@ class SeparationMargins(Result):
             style = {"color": plotting.COLORS[i % 5], "ls": plotting.LINES[i % 5], "lw": 1.4}
             style["marker"] = "." if len(self.speeds) == 1 else None
             ax.semilogy(shown.speeds(self.speeds), 1e6 * curve, label=place, **style)
-        damped = np.isfinite(self.sizes)
-        for size, sides in zip(self.sizes[damped], self.half_power[damped], strict=True):
+        for size, sides in zip(self.sizes, self.half_power, strict=True):
             ax.plot(shown.speeds(sides), [1e6 * HALF_POWER * size] * 2, "k|-", lw=0.8, ms=6)
         low, high = self.operating_range
         sides = [self.required[self.peaks < low], self.required[self.peaks > high]]
@@ -169,8 +162,7 @@ class SeparationMargins(Result):
             if np.isnan(self.amplification[i]) or np.any(near):
                 continue
             labelled.append(i)
-            size = self.sizes[i] if np.isfinite(self.sizes[i]) else np.nanmax(self.curves)
-            place = shown.speeds(self.peaks[i]), 1e6 * size
+            place = shown.speeds(self.peaks[i]), 1e6 * self.sizes[i]
             given = {"textcoords": "offset points", "xytext": (4, 3), "fontsize": 8}
             labels.append(ax.annotate(f"AF {self.amplification[i]:.1f}", place, **given))
         plotting.keep_apart(labels)
@@ -210,8 +202,8 @@ def separation_margins(
     Warns
     -----
     UserWarning
-        If nothing damps a peak, or the speeds are too far apart to show one, or do not reach over
-        the operating range and the largest margins beside it, where a peak would count.
+        If the speeds are too far apart to show a peak, as of a resonance that nothing damps, or do
+        not reach over the operating range and the largest margins beside it, where a peak counts.
 
     Examples
     --------
@@ -236,21 +228,16 @@ def separation_margins(
     names = response.places
     if places is not None:
         names = checks.different(checks.labels(places, "places", response.places), "places")
-    speeds, peaks, coarse, endless = response.speeds, [], [], []
+    speeds, peaks, coarse = response.speeds, [], []
     _warn_of_speeds_left_out(speeds, limits)
     curves = np.array([response.semi_axes(name)[0] for name in names]).reshape(-1, len(speeds))
     for name, curve in zip(names, curves, strict=True):
         known = np.isfinite(curve)
         speeds, curve = response.speeds[known], curve[known]
-        undamped = [(name, float(at)) for at in undamped_resonances(response, name)]
-        peaks += [(*one, np.inf, (np.nan, np.nan)) for one in undamped]
-        endless += undamped
         rows, _ = find_peaks(curve, prominence=_RIPPLE * curve.max(initial=0.0))
         valleys = [first + int(np.argmin(curve[first:last])) for first, last in pairwise(rows)]
         ends = zip(rows, [0, *valleys], [*valleys, len(curve) - 1], strict=False)
         for row, start, end in ends:
-            if any(speeds[row - 1] < at < speeds[row + 1] for _, at in undamped):
-                continue
             place, size, is_near = resolved_peak(speeds, curve, row)
             below, above = slice(start, row + 2), slice(row - 1, end + 1)
             sides = (
@@ -260,10 +247,9 @@ def separation_margins(
             peaks.append((name, place, size, sides))
             coarse += [] if is_near else [(name, float(speeds[row]))]
     warn_of_coarse_peaks(coarse)
-    warn_of_undamped(endless)
     peaks.sort(key=lambda peak: peak[1])
     at, half_power = np.array([peak[1] for peak in peaks]), [peak[3] for peak in peaks]
-    factors = np.array([_amplification(*peak[1:]) for peak in peaks])
+    factors = np.array([_amplification(peak[1], peak[3]) for peak in peaks])
     low, high = limits
     above = at > high
     actual = np.maximum(np.where(above, at / high - 1.0, 1.0 - at / max(low, 1e-300)), 0.0)
@@ -323,9 +309,7 @@ def _half_power(speeds: np.ndarray, curve: np.ndarray, size: float) -> float:
     return float(min(roots, key=lambda x: abs(x - np.interp(2.0, levels[1:], at[1:]))))
 
 
-def _amplification(peak: float, size: float, sides: tuple[float, float]) -> float:
-    if np.isinf(size):
-        return np.inf
+def _amplification(peak: float, sides: tuple[float, float]) -> float:
     distances = np.abs(np.array(sides) - peak)
     known = distances[~np.isnan(distances)]
     return float(peak / (2.0 * known.mean())) if known.size else np.nan

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from exudyn_rotor.linear.equations import UnconvergedError, others
-from exudyn_rotor.linear.solve.forced import static_motion
+from exudyn_rotor.linear.solve.forced import static_motions
 from exudyn_rotor.static.resting import (
     HELD,
     UNLOADED,
@@ -118,7 +118,7 @@ def _solved(
         A[own, :k] = -scale * (one.A @ U[i] + one.A_s @ U_s[i])
         A[own, own] = -scale * unit * one.B - one.is_rigid * _RIGID * unit * most * np.eye(2)
         b[own] = -scale * one.c
-    x = static_motion(A, b)
+    x = static_motions(A[None], b[None, :, None])[0, :, 0]
     if np.any(np.isnan(x)):
         return None, np.zeros((len(U), 2))
     return x[:k], unit * x[k:].reshape(-1, 2)

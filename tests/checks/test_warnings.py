@@ -150,7 +150,6 @@ ELSEWHERE = {
     "linear/modal/resonance.py:warn": "none are looked for",
     "linear/response/steady_response.py:_warn_of_missing": "no values at",
     "linear/response/response.py:warn_of_coarse_peaks": "too far apart to give its size and width",
-    "linear/response/response.py:warn_of_undamped": "nothing damps the resonance at",
     "evaluation/separation.py:_warn_of_speeds_left_out": "count, and the response is known from",
     "linear/model/build.py:warn_of_omissions": "campbell finds modes without it",
     "linear/model/build.py:_warn_of_mesh": "counts as uneven",

@@ -68,7 +68,6 @@ def map_of(stiffness=1e4, rotor=POINT, at="at"):
         (lambda: UNSTEADY.matrices(9.0), "repeat every revolution"),
         (lambda: forced().phasor(order=7), "no harmonic 7; there are 1"),
         (lambda: forced().plot(ax=Figure().subplots()), "ax: needs two Axes"),
-        (lambda: forced(loads=()), "the rotor itself is balanced"),
         (lambda: forced(loads=(), own=False, point_mass=0.1), "own=False"),
         (lambda: er.linear_model(on_springs()[0], body=None), "RotorBody"),
         (lambda: er.linear_model(on_springs()[1]), "target: needs"),

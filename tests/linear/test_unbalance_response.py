@@ -135,7 +135,6 @@ STIFFNESS, DAMPING = (2e5, 3e5), (500.0, 400.0)
         ({"at": "top"}, "no such interface; the rotor has: mid, left, right"),
         ({"at": 10}, "nodes 0 to 9"),
         ({"at": [(0.0, 1.0)]}, "needs the name of an interface"),
-        ({"at": ["mid", "mid"]}, "named twice"),
         ({"at": []}, "no interfaces"),
         ({"frame": "moving"}, "frame: 'moving' is unknown"),
         ({"tolerance": 0.0}, "tolerance"),

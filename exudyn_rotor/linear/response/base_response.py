@@ -85,24 +85,21 @@ class BaseResponse(AtPlaces):
     motion: np.ndarray = numbers("steps", "places", 6, finite=False)
     speed: float = 0.0
 
-    def displacement(self, place: str) -> np.ndarray:
-        """Return the displacement of a place over time, shape (t, 3) [m]."""
-        return self.motion[:, self._at(place), :3]
+    def displacement(self, place: str, other: str | None = None) -> np.ndarray:
+        """Return the displacement of a place over time, shape (t, 3) [m].
 
-    def between(self, place: str, other: str) -> np.ndarray:
-        """Return the displacement of a place against another, shape (t, 3) [m].
-
-        Of a journal against its foundation: ``between("left", "left (foundation)")``.
+        Against another place, if one is named, as of a journal against its foundation:
+        ``displacement("left", "left (foundation)")``.
         """
-        return self.displacement(place) - self.motion[:, self._at(other, "other"), :3]
+        moved = self.motion[:, self._at(place), :3]
+        return moved if other is None else moved - self.motion[:, self._at(other, "other"), :3]
 
     def peak(self, place: str, other: str | None = None) -> tuple[float, float]:
         """Return the largest displacement across the axis [m], and its time [s].
 
         Against another place, if one is named.
         """
-        moved = self.displacement(place) if other is None else self.between(place, other)
-        across = np.hypot(moved[:, 0], moved[:, 1])
+        across = np.hypot(*self.displacement(place, other)[:, :2].T)
         return float(across.max()), float(self.time[np.argmax(across)])
 
     def table(self, *, units: str = "rpm") -> str:
@@ -293,7 +290,8 @@ class _ShakenRotor:
         with np.errstate(over="ignore", invalid="ignore"):  # told by who asked
             if self.is_constant:
                 turn = int(np.ceil(np.sqrt(count)))  # any number of steps
-                by_state, added = self._exact(step, angles[:-1], lines)
+                by_state, by_line = self._exact(step)
+                added = _moved(by_line, angles[:-1], lines)
             else:
                 turn = min(round(2.0 * np.pi / abs(self.speed) / step), count)
                 by_state, by_line = self._radau(step)
@@ -301,10 +299,7 @@ class _ShakenRotor:
                 for n, X in enumerate(_matrices(by_line, angles[:turn])):
                     added[n::turn] = lines[n::turn] @ X.T
             states = _followed(by_state, angles[:turn], added)
-            motion = np.zeros((count + 1, len(self.seen), 6))
-            for place, seen in enumerate(self.seen):
-                for n, U in seen.items():
-                    motion[:, place] += (np.exp(1j * n * angles)[:, None] * (states @ U.T)).real
+            motion = np.stack([_moved(U, angles, states) for U in self.seen], axis=1)
         return times, motion
 
     def _lines(self, times: np.ndarray, step: float) -> np.ndarray:
@@ -315,23 +310,18 @@ class _ShakenRotor:
         slope = 12.0 * moment / step**3
         return np.concatenate([mean - 0.5 * step * slope, slope], axis=1)
 
-    def _exact(
-        self, step: float, angles: np.ndarray, lines: np.ndarray
-    ) -> tuple[Terms, np.ndarray]:
-        """Return what a step does with the state (2k, 2k), and what lines (t, 6) add, (t, 2k)."""
-        A = at_angle(self.A, 0.0)
-        size, added = len(A), 0.0
+    def _exact(self, step: float) -> tuple[Terms, Terms]:
+        """Return Fourier terms of what a step does with state (2k, 2k) and line (2k, 6)."""
+        A, by_line = at_angle(self.A, 0.0), {}
+        size, at_rest = len(A), np.zeros((6, len(A)))
         for n, load in self.loads.items():
-            generator = np.zeros((size + 6, size + 6), dtype=complex)
-            generator[:size, :size], generator[:size, size : size + 3] = A, load
-            generator[size : size + 3, size + 3 :] = np.eye(3)
-            generator[size:, size:] += 1j * n * self.speed * np.eye(6)
-            by_line = scipy.linalg.expm(step * generator)[:size, size:]
-            added = added + (np.exp(1j * n * angles)[:, None] * (lines @ by_line.T)).real
-        return {0: scipy.linalg.expm(step * A)}, added
+            turning = 1j * n * self.speed * np.eye(6) + np.eye(6, k=3)  # and a line grows
+            generator = np.block([[A, load, np.zeros((size, 3))], [at_rest, turning]])
+            by_line[n] = scipy.linalg.expm(step * generator)[:size, size:]
+        return {0: scipy.linalg.expm(step * A)}, by_line
 
     def _radau(self, step: float) -> tuple[Terms, Terms]:
-        """Return Fourier terms of what a step does with state (2k, 2k) and line (2k, 6)."""
+        """Return the same of periodic equations."""
         size, first = len(self.A[0]), 2.0 * np.pi * np.arange(_ANGLES) / _ANGLES
         stages = np.add.outer(first, self.speed * step * _STAGES)
         rates, loads = (at_angle(each, stages) for each in (self.A, self.loads))
@@ -353,6 +343,12 @@ def _matrices(terms: Terms, angles: np.ndarray) -> Iterator[np.ndarray]:
     """Give the matrices at spin angles [rad], one after the other."""
     for first in range(0, len(angles), _AT_ONCE):
         yield from at_angle(terms, angles[first : first + _AT_ONCE])
+
+
+def _moved(terms: Terms, angles: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Return the products (t, r) of a matrix at spin angles [rad] and vectors (t, k)."""
+    turned = ((np.exp(1j * n * angles)[:, None], X) for n, X in terms.items())
+    return sum(wave * (vectors @ X.T) for wave, X in turned).real
 
 
 def _followed(by_state: Terms, angles: np.ndarray, added: np.ndarray) -> np.ndarray:

@@ -12,12 +12,10 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.linear.equations import Terms, turned
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.theory.rotating_axes import FRAMES, turning_harmonics
+from exudyn_rotor.theory.rotating_axes import FRAMES
 
 At = str | int | Sequence[float]
 Harmonics = dict[int, np.ndarray]
-_BALANCED = 1e-13  # rounding leaves this much of the unbalance of a perfectly balanced mesh
 
 # ------------------------------------------------------------------ places
 
@@ -55,9 +53,8 @@ class Place:
                 f"at: {self.label!r}: turns with {self.ratio:g} times the speed of the analysis; "
                 f"give train.relative_to({owner!r}), over the speed of that rotor"
             )
-        turning = turning_harmonics(6) if frame == "rotor" and speed else {0: np.eye(6)}
-        pairs = product(self.seen.items(), turning.items())
-        return _sum({m + n: U.T @ (R @ wrench)} for (m, U), (n, R) in pairs)
+        seen = turned(self.seen, -1) if frame == "rotor" and speed else self.seen
+        return {n: U.T @ wrench for n, U in seen.items()}
 
 
 def place(model: LinearModel, at: At, speed: float = 1.0) -> Place:
@@ -106,9 +103,6 @@ def places(model: LinearModel, at: Sequence[At] | None, speed: float = 1.0) -> l
     observed = [place(model, one, speed) for one in (model.interfaces if at is None else at)]
     if not observed:
         raise ValueError("at: the rotor has no interfaces; name mesh nodes or positions to look at")
-    labels = [one.label for one in observed]
-    if len(set(labels)) < len(labels):
-        raise ValueError(f"at: a place is named twice: {', '.join(labels)}")
     return observed
 
 
@@ -346,10 +340,11 @@ def total(
 
 def unbalance_load(model: LinearModel, unbalances: Sequence[Unbalance], own: bool) -> Harmonics:
     """Return the harmonics (k,) of the load per Ω² of all unbalances."""
-    balanced = all(_is_balanced(rotor) for rotor in _turning(model).values())
-    if not unbalances and (balanced or not own):
-        reason = "the rotor itself is balanced" if own else "own=False leaves out the rotor's own"
-        raise ValueError(f"no unbalance, so no response: {reason}; give unbalances=[Unbalance(…)]")
+    if not (unbalances or own):
+        raise ValueError(
+            "no unbalance, so no response: own=False leaves out the rotor's own; give "
+            "unbalances=[Unbalance(…)]"
+        )
     of_rotor = model.unbalance() if own else {0: np.zeros(model.size)}
     return _sum([of_rotor, *(unbalance._harmonics(model, 1.0) for unbalance in unbalances)])
 
@@ -365,31 +360,15 @@ def _sum(parts: Iterable[Harmonics]) -> Harmonics:
 def in_words(model: LinearModel, unbalances: Sequence[Unbalance], own: bool) -> tuple[str, ...]:
     """Return the unbalances as text, the own one with its amount beside those that are given."""
     given, found = sum(unbalance.amount for unbalance in unbalances), list(map(str, unbalances))
-    for name, rotor in _turning(model).items() if own else ():
-        amount = np.linalg.norm(_static_unbalance(rotor))
+    for name, rotor in model.rotors.items() if own else ():
+        if model.ratios[name] != 1.0:  # it turns with another speed
+            continue
+        off = rotor.center_of_mass - rotor.axis.project(rotor.center_of_mass)
+        amount = rotor.invariants.mass * np.linalg.norm(off)
         share = f", {amount / given:.2g} of the amount given" if given else ""
         whose = f"rotor {name!r}" if name else "the rotor"
         found.append(f"eccentricity of {whose}, with its mesh: {1e6 * amount:.4g} g mm{share}")
     return tuple(found)
-
-
-def _turning(model: LinearModel) -> dict[str, ReducedRotor]:
-    """Return the rotors that turn with the speed of the analysis, by their names."""
-    return {name: rotor for name, rotor in model.rotors.items() if model.ratios[name] == 1.0}
-
-
-def _static_unbalance(rotor: ReducedRotor) -> np.ndarray:
-    """Return mass times eccentricity (3,) [kg m]."""
-    off = rotor.center_of_mass - rotor.axis.project(rotor.center_of_mass)
-    return rotor.invariants.mass * off
-
-
-def _is_balanced(rotor: ReducedRotor) -> bool:
-    """Return whether centre of mass and principal axis are on the spin axis but for rounding."""
-    mass, J, e = rotor.invariants.mass, rotor.invariants.J, rotor.axis.direction
-    couple, second = np.cross(e, J @ e), np.trace(J)
-    static = np.linalg.norm(_static_unbalance(rotor)) * np.sqrt(second / mass)
-    return bool(static + np.linalg.norm(couple) <= _BALANCED * second)
 
 
 def _vector(value: ArrayLike, name: str, unit: str) -> np.ndarray:

@@ -27,10 +27,9 @@ _IN_TABLES = (*DIRECTIONS[:3], "twist")
 _TOGETHER = (*DIRECTIONS[:2], *CIRCULAR), ("e",), DIRECTIONS[3:5], ("twist",)  # of one harmonic
 HALF_POWER = np.sqrt(0.5)  # of the size at a peak
 STILL = 1e-6  # share of a peak below which a neighbour stands still, as at rest without a load
-_REVERSED = 1e-6  # phase [rad] beside half a turn that damping is not seen by
-_CLOSE, _TURNED = 1e-6, 0.3  # share of the range, and phase [rad] that turns within it undamped
 _CONSTANT = 1e-12  # share of the largest frequency that is none
 _NO_MOTION = 1e-12  # of the largest amplitude
+_LABELLED = 6  # points of a curve in its plane
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,8 +98,11 @@ class Response(AtPlaces, ModelResult):
 
     @property
     def main_order(self) -> int:
-        """The harmonic with the largest displacement across the axis, or along it if none is."""
-        return self._largest(DIRECTIONS[: 2 if np.any(self._sizes[:, :2]) else 3])
+        """The main harmonic: under unbalance the one with the largest displacement across the axis.
+
+        Under harmonic loads that with the largest motion, of rotations at the :attr:`radius`.
+        """
+        return self._main(DIRECTIONS)
 
     @property
     def _sizes(self) -> np.ndarray:
@@ -115,7 +117,7 @@ class Response(AtPlaces, ModelResult):
 
     def _main(self, directions: Sequence[str]) -> int:
         """Return the harmonic that is shown of directions: an unbalance acts across the axis."""
-        return self.main_order
+        return self._largest(DIRECTIONS[: 2 if np.any(self._sizes[:, :2]) else 3])
 
     def phasor(
         self, place: str | None = None, direction: str = "n1", order: int | None = None
@@ -137,9 +139,9 @@ class Response(AtPlaces, ModelResult):
         ValueError
             For an unknown place or direction, or a harmonic that does not matter.
         """
-        if checks.choice(direction, "direction", (*DIRECTIONS, *CIRCULAR)) in CIRCULAR:
-            return self.whirl(place, order)[CIRCULAR.index(direction)]
         order = self._order(order, (direction,))
+        if direction in CIRCULAR:
+            return self.whirl(place, order)[CIRCULAR.index(direction)]
         return self._harmonic(place, order)[:, DIRECTIONS.index(direction)]
 
     def whirl(
@@ -170,21 +172,18 @@ class Response(AtPlaces, ModelResult):
         """Return the highest resonance: where the major semi-axis is largest [rad/s], its size [m].
 
         Between three points by a parabola of 1/size². A warning tells where they are too far
-        apart to show a resonance; ``refine=True`` of the analysis adds points there. A resonance
-        that nothing damps has an infinite size, with a warning.
+        apart to show a resonance, as of one that nothing damps; ``refine=True`` of the analysis
+        adds points there.
 
         Raises
         ------
         ValueError
             If the motion has no maximum between the first and the last point.
         """
-        endless = undamped_resonances(self, place, order)
-        if endless.size:
-            warn_of_undamped([(self._named(place), float(at)) for at in endless])
-            return float(endless[0]), np.inf
         major, _ = self.semi_axes(place, order)
+        name, known = self.places[self._at(place)], np.isfinite(major)
+        values, major = self.abscissa[known], major[known]
         inner = np.flatnonzero((major[1:-1] > major[:-2]) & (major[1:-1] >= major[2:])) + 1
-        name, values = self._named(place), self.abscissa
         if inner.size == 0:
             raise ValueError(
                 f"{name}: the motion has no peak between {values[0]:g} and {values[-1]:g} rad/s; "
@@ -196,10 +195,8 @@ class Response(AtPlaces, ModelResult):
             warn_of_coarse_peaks([(name, float(values[index]))])
         return at, size
 
-    def orbit(
-        self, value: float, place: str | None = None, order: int | None = None, points: int = 181
-    ) -> np.ndarray:
-        """Return one revolution of a harmonic across e, shape (points, 2) [m].
+    def orbit(self, value: float, place: str | None = None, order: int | None = None) -> np.ndarray:
+        """Return one revolution of a harmonic across e, a point for each degree, (361, 2) [m].
 
         Parameters
         ----------
@@ -207,14 +204,12 @@ class Response(AtPlaces, ModelResult):
             Speed or frequency [rad/s]; the nearest computed one is taken.
         place, order
             See :meth:`phasor`.
-        points : int, optional
         """
-        points = checks.count(points, "points", least=2)
         index, order = self._nearest(value), self._order(order, CIRCULAR)
         motion = self._harmonic(place, order)[index, :2]
         sense = -1.0 if self.rates(order)[index] < 0.0 else 1.0
-        angle = sense * np.linspace(0.0, 2.0 * np.pi, points)
-        return (motion * np.exp(1j * angle)[:, None]).real
+        turn = np.exp(1j * sense * np.radians(np.arange(361)))
+        return (motion * turn[:, None]).real
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return sizes and phases as columns: one row for each point, place and harmonic.
@@ -313,14 +308,12 @@ class Response(AtPlaces, ModelResult):
         size, phase = pair
         style = {"lw": 1.4, "marker": "." if len(values) == 1 else None}  # one point is no line
         curves = [self.phasor(place, name, order) for name in names]
-        kinds = [_micro(name) for name in names]
         for name, curve, color, line in zip(names, curves, cycle(COLORS), cycle(LINES)):
-            name = f"{name} [{_micro(name)}]" if len(set(kinds)) > 1 else name
             size.plot(values, 1e6 * np.abs(curve), label=name, color=color, ls=line, **style)
             phase.plot(values, _phase(curve), color=color, ls=line, **style)
         if np.any(np.nan_to_num(curves)):  # nothing is nowhere on a log scale
             size.set_yscale("log")
-        size.set_ylabel(f"amplitude [{', '.join(dict.fromkeys(kinds))}]")
+        size.set_ylabel(f"amplitude [{', '.join(dict.fromkeys(map(_micro, names)))}]")
         size.set_title(self._title(place, order), loc="right", fontsize=10)
         phase.set(xlabel=f"{self._what} [{unit}]", ylabel="phase [deg]")
         phase.yaxis.set_major_locator(MultipleLocator(90.0))
@@ -340,7 +333,7 @@ class Response(AtPlaces, ModelResult):
     ) -> Axes:
         """Draw the complex amplitude [µm] or [µrad] as a curve in its plane (Nyquist diagram).
 
-        A damped resonance is a loop; its place across from the start is the critical speed. Five
+        A damped resonance is a loop; its place across from the start is the critical speed. Some
         points are labelled with their speed or frequency.
 
         Parameters
@@ -358,10 +351,8 @@ class Response(AtPlaces, ModelResult):
         known = np.isfinite(curve)
         values, curve, ax = values[known], curve[known], axes_or_new(ax, (5.5, 5.5))
         ax.plot(curve.real, curve.imag, color=COLORS[0], lw=1.4)
-        path = np.cumsum(np.abs(np.diff(curve, prepend=curve[:1])))
-        even = np.searchsorted(path, np.linspace(0.0, path[-1], 5)) if path.size else []
         style = {"textcoords": "offset points", "xytext": (5, 4), "fontsize": 8}
-        for index in np.unique(even).astype(int):
+        for index in range(0, len(curve), max(1, len(curve) // _LABELLED)):
             point = curve.real[index], curve.imag[index]
             ax.plot(*point, "o", color=COLORS[1], ms=4)
             ax.annotate(f"{values[index]:.5g} {unit}", point, **style)
@@ -408,7 +399,7 @@ class Response(AtPlaces, ModelResult):
         for points, color in zip(orbits.values(), cycle(COLORS)):
             x, y = 1e6 * points.T
             ax.plot(x[0], y[0], "o", color=color, ms=5)
-            ax.annotate("", (x[24], y[24]), (x[20], y[20]), arrowprops=arrow | {"color": color})
+            ax.annotate("", (x[48], y[48]), (x[40], y[40]), arrowprops=arrow | {"color": color})
         ax.set(xlabel="n1 [µm]", ylabel="n2 [µm]")
         nearest = f"{self._what} {shown[self._nearest(value)]:.4g} {unit}"
         ax.set_title(nearest, loc="right", fontsize=10)
@@ -436,6 +427,8 @@ class Response(AtPlaces, ModelResult):
 
     def _order(self, order: int | None, directions: Sequence[str]) -> int:
         """Return a harmonic that matters, by default the main one of directions."""
+        for direction in directions:
+            checks.choice(direction, "direction", (*DIRECTIONS, *CIRCULAR))
         if order is None:
             return self._main(directions)
         order = checks.whole_number(order, "order")
@@ -515,11 +508,6 @@ class HarmonicResponse(Response):
     _over: ClassVar[str] = "frequencies"
     _what: ClassVar[str] = "frequency"
 
-    @property
-    def main_order(self) -> int:
-        """The harmonic with the largest motion, of rotations at the :attr:`radius`."""
-        return self._largest(DIRECTIONS)
-
     def _main(self, directions: Sequence[str]) -> int:
         together = [group for group in _TOGETHER if not set(group).isdisjoint(directions)]
         return self._largest([name for group in together for name in group if name in DIRECTIONS])
@@ -558,65 +546,19 @@ def resolved_peak(at: np.ndarray, size: np.ndarray, index: int) -> tuple[float, 
     return float(at[1] + place), float(size[1] / np.sqrt(max(least, 0.25))), is_near
 
 
-def undamped_resonances(
-    response: Response, place: str | None = None, order: int | None = None
-) -> np.ndarray:
-    """Return where resonances across the axis lie that nothing damps [rad/s].
-
-    From a point before to one behind, a displacement turns by half a revolution, and it grows
-    towards both; without damping it turns so within any width.
-    """
-    motion = np.stack([response.phasor(place, name, order) for name in DIRECTIONS[:2]], axis=1)
-    motion[response.semi_axes(place, order)[0] == 0.0] = 0.0  # rounding
-    at, known = response.abscissa, np.all(np.isfinite(motion), axis=1)
-    missing, at, found = at[~known], at[known], {}
-    close = np.diff(at) < _CLOSE * np.ptp(at) if at.size else np.zeros(0)
-    largest = np.abs(motion[known]).max(axis=1, initial=0.0)
-    for u in motion[known].T if len(at) > 2 else ():
-        size = np.abs(u)
-        moves = size > STILL * largest
-        turned = np.abs(np.angle(u[1:] * u[:-1].conj()))
-        passed = (turned > np.pi - _REVERSED) | (close & (turned > _TURNED))
-        before, behind = np.r_[0.0, np.diff(size)[:-1]], np.r_[np.diff(size)[1:], 0.0]
-        grows = (before >= 0.0) & (behind <= 0.0) & moves[1:] & moves[:-1]
-        for i in np.flatnonzero(passed & grows).tolist():
-            between = missing[(missing > at[i]) & (missing < at[i + 1])]
-            middle = np.average(at[i : i + 2], weights=size[i : i + 2])
-            found[i] = between[0] if between.size else middle
-    return np.array([found[i] for i in sorted(found)])
-
-
-def warn_of_undamped(peaks: Sequence[tuple[str, float]]) -> None:
-    """Warn of resonances [rad/s] at places that nothing damps, once for all."""
-    if not peaks:
-        return
-    name, speed = _first_of(peaks)
-    warnings.warn(
-        f"{name}: nothing damps the resonance at {speed}, so that its size and amplification are "
-        "infinite; give supports or the rotor damping",
-        UserWarning,
-        stacklevel=user_level(),
-    )
-
-
 def warn_of_coarse_peaks(coarse: Sequence[tuple[str, float]]) -> None:
     """Warn of peaks [rad/s] at places whose neighbours are too far apart, once for all."""
     if not coarse:
         return
-    name, speed = _first_of(coarse)
+    name, at = coarse[0]
+    more = f" (and {len(coarse) - 1} more)" if len(coarse) > 1 else ""
     warnings.warn(
-        f"{name}: the points around the peak at {speed} are too far apart to give its size and "
-        "width; compute the response with refine=True, or give more points there",
+        f"{name}: the points around the peak at {at:g} rad/s{more} are too far apart to give its "
+        "size and width; compute the response with refine=True, or give more points there; of a "
+        "resonance that nothing damps both are infinite",
         UserWarning,
         stacklevel=user_level(),
     )
-
-
-def _first_of(peaks: Sequence[tuple[str, float]]) -> tuple[str, str]:
-    """Return the place and speed of the first peak, and how many more there are, as text."""
-    name, at = peaks[0]
-    more = f" (and {len(peaks) - 1} more)" if len(peaks) > 1 else ""
-    return name, f"{at:g} rad/s{more}"
 
 
 def _phase(values: np.ndarray) -> np.ndarray:

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import ClassVar
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,6 +24,7 @@ from exudyn_rotor.linear.response.loads import (
     BaseAcceleration,
     HarmonicForce,
     Harmonics,
+    Place,
     Unbalance,
     checked_places,
     in_words,
@@ -39,7 +39,7 @@ from exudyn_rotor.solvers.factor import one_thread
 from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.units import Units
 
-_AT_ONCE = 2_000_000  # entries of the matrices that are solved in one call
+_ALONG = 1e-6  # share of motion along the axis under unbalance: no static stretch by the rotation
 _MOST_TURN = 0.3  # phase [rad] between neighbours: 1 − cos(0.15) = 1 % of a peak lies between
 _SMALL = 1e-3  # share of the largest motion below which a motion does not count
 _NARROWEST = 1e-7  # of the range: without damping a resonance has no width
@@ -123,8 +123,28 @@ def unbalance_response(
     """
     values = checks.spin_speeds(speeds, allow_negative)
     unbalances = checks.instances(unbalances, "unbalances", Unbalance)
-    options = at, frame, tolerance, refine, accuracy
-    sweep = _OverSpeed(*options, unbalances=unbalances, own=checks.flag(own, "own"))
+    checks.flag(own, "own")
+
+    def solve(model: LinearModel, speeds: np.ndarray) -> tuple[Harmonics, np.ndarray]:
+        load, shape = unbalance_load(model, unbalances, own), (len(speeds), model.size)
+        known, found = np.ones(len(speeds), dtype=bool), {0: np.zeros(shape, dtype=complex)}
+        moving = np.flatnonzero(speeds)  # at rest there is no load
+        if moving.size:
+            stack = model.at_all(speeds[moving])
+            model.warn_beyond(np.abs(speeds[moving]))
+            known[moving] = stack.known
+            rows = moving[stack.known]
+            acting = {n: speeds[rows, None] ** 2 * F for n, F in load.items()}
+            # no unbalance acts along the axis, where nothing may hold the rotor
+            options = {"held": model.moving_basis, "tolerance": tolerance}
+            part = stack if np.all(known) else stack[stack.known]
+            for n, X in forced_motions(part, acting, np.zeros(len(rows)), **options).items():
+                found[n] = np.zeros(shape, dtype=complex)
+                found[n][rows] = X
+            found[0][~known] = np.nan
+        return found, known
+
+    sweep = _Sweep(at, frame, tolerance, refine, accuracy, solve)
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening).for_responses
     warn_of_omissions(model, np.abs(values).max())
     values, found = sweep.over(model, values)
@@ -188,7 +208,18 @@ def harmonic_response(
     )
     speed = checks.number(speed, "speed", "rad/s")
     loads = checks.instances(loads, "loads", (HarmonicForce, BaseAcceleration))
-    sweep = _OverFrequency(at, frame, tolerance, refine, accuracy, loads=loads, speed=speed)
+
+    def solve(model: LinearModel, frequencies: np.ndarray) -> tuple[Harmonics, np.ndarray]:
+        load = total(loads, model, speed)
+        if not any(map(np.any, load.values())):
+            what = "give loads=[HarmonicForce(…)] that move the rotor"
+            raise ValueError(f"no load, so no response: {what}")
+        model.warn_beyond(np.abs(np.add.outer(frequencies, speed * np.array(list(load)))))
+        options = {"driven": model.free_spins, "tolerance": tolerance}
+        found = forced_over(model, speed, load, frequencies, **options)
+        return found, np.ones(len(frequencies), dtype=bool)
+
+    sweep = _Sweep(at, frame, tolerance, refine, accuracy, solve, speed)
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening).for_responses
     warn_of_omissions(model, speed)
     values, found = sweep.over(model, values)
@@ -200,16 +231,19 @@ def harmonic_response(
 
 @dataclass(frozen=True, eq=False)
 class _Sweep:
-    """Steady motions at places, seen at a spin `speed` or any but 0, over speeds or frequencies."""
+    """Steady motions at places over speeds, or at one speed over the frequency of loads.
+
+    What `solve` returns for a model and speeds or frequencies (s,) are coordinates by harmonics,
+    and where there are equations for them.
+    """
 
     at: Sequence[At] | At | None
     frame: str
     tolerance: float
     refine: bool
     accuracy: float | None
-    speed: float = field(default=1.0, kw_only=True)
-    unit: ClassVar[str]
-    share_along: ClassVar[float] = 1.0  # by which motion along the axis counts
+    solve: Callable[[LinearModel, np.ndarray], tuple[Harmonics, np.ndarray]]
+    speed: float | None = None
 
     def __post_init__(self) -> None:
         checks.keep(self, at=checked_places(self.at))
@@ -218,20 +252,24 @@ class _Sweep:
         checks.flag(self.refine, "refine")
         checks.accuracy(self.accuracy)
 
+    @one_thread()
     def over(self, model: LinearModel, values: np.ndarray) -> tuple[np.ndarray, dict[str, object]]:
         """Return speeds or frequencies, and the fields of a response there."""
         motions, known = self._motions(model, values)
         _warn_of_missing(values, motions, known)
         if self.refine:
             values, motions = self._refined(model, values, motions)
-        motions, observed = self.joined(motions, values), places(model, self.at, self.speed)
-        solve = self._joined_motions
-        errors = basis_errors(model, self.accuracy, values, motions, solve, self.share_along)
+        motions, observed = self._joined(motions, values), self._places(model)
+        along, unit = (_ALONG, "rpm") if self.speed is None else (1.0, "Hz")
+
+        def better(model: LinearModel, values: np.ndarray) -> Harmonics:
+            return self._joined(self._motions(model, values)[0], values)
 
         def told(row: int, place: int) -> str:
-            where = f"{Units.of(self.unit).speeds(values[row]):.5g} {self.unit}"
+            where = f"{Units.of(unit).speeds(values[row]):.5g} {unit}"
             return f"the motion of {observed[place].label!r} at {where}"
 
+        errors = basis_errors(model, self.accuracy, values, motions, better, along)
         warn(errors, told, model, self.accuracy)
         orders = np.array(sorted(motions))
         motion = np.stack([motions[n] for n in orders.tolist()], axis=2)
@@ -255,17 +293,39 @@ class _Sweep:
 
     def _motions(self, model: LinearModel, values: np.ndarray) -> tuple[Harmonics, np.ndarray]:
         """Return the motions of places, and at which values there are equations, (s,)."""
-        observed = places(model, self.at, self.speed)
-        frame = self.frame if self.speed else "inertial"  # at θ = 0 the axes are the same
-        found, known = self.coordinates(model, values)
+        frame = self.frame if self.speed != 0.0 else "inertial"  # at θ = 0 the axes are the same
+        observed, (found, known) = self._places(model), self.solve(model, values)
         parts = [one.motion(found, frame) for one in observed]
         none = np.zeros((len(values), 6), dtype=complex)
         orders = sorted({n for part in parts for n in part})
         motions = {n: np.stack([part.get(n, none) for part in parts], axis=1) for n in orders}
         return motions, known
 
-    def _joined_motions(self, model: LinearModel, values: np.ndarray) -> Harmonics:
-        return self.joined(self._motions(model, values)[0], values)
+    def _places(self, model: LinearModel) -> list[Place]:
+        """Return the places as seen at rest, or at any other speed."""
+        return places(model, self.at, 0.0 if self.speed == 0.0 else 1.0)
+
+    def _joined(self, motions: Harmonics, values: np.ndarray) -> Harmonics:
+        """Return motions in which no two harmonics ω + nΩ have one frequency.
+
+        Where ω + nΩ = −(ω + mΩ), the conjugate of the harmonic with the negative rate is added to
+        the other one.
+        """
+        if self.speed == 0.0:
+            return motions
+        sense = 1.0 if self.speed is None else np.sign(self.speed)
+        twice = 0.0 * values if self.speed is None else 2.0 * values / self.speed  # 2ω/Ω
+        joined = {n: a.copy() for n, a in motions.items()}
+        nearest = np.round(twice)
+        meets = np.abs(twice - nearest) <= _WHOLE * np.maximum(np.abs(twice), 1.0)
+        for both in np.unique(nearest[meets]).astype(int):
+            rows = meets & (nearest == both)
+            for n, a in motions.items():
+                if sense * (2 * n + both) < 0.0:
+                    partner = joined.setdefault(-both - n, np.zeros_like(a))
+                    partner[rows] += a[rows].conj()
+                    joined[n][rows] = 0.0
+        return joined
 
     def _refined(
         self, model: LinearModel, values: np.ndarray, motions: Harmonics
@@ -287,94 +347,6 @@ class _Sweep:
             values, motions = values[order], {n: a[order] for n, a in motions.items()}
         kept = ~_is_missing(motions) | np.isin(values, given)
         return values[kept], {n: a[kept] for n, a in motions.items()}
-
-
-@dataclass(frozen=True, eq=False)
-class _OverSpeed(_Sweep):
-    """The motion of an unbalanced rotor over its speed, in harmonics n ≥ 0 of it."""
-
-    unbalances: Sequence[Unbalance] = field(kw_only=True)
-    own: bool = field(kw_only=True)
-    unit: ClassVar[str] = "rpm"
-    share_along: ClassVar[float] = 1e-6  # no static stretch by the rotation
-
-    def coordinates(self, model: LinearModel, values: np.ndarray) -> tuple[Harmonics, np.ndarray]:
-        """Return the coordinates of a model, and at which speeds (s,) it has equations."""
-        load = unbalance_load(model, self.unbalances, self.own)
-        moving, known = np.flatnonzero(values), np.ones(len(values), dtype=bool)
-        if not moving.size:  # at rest there is no load
-            return {0: np.zeros((len(values), model.size), dtype=complex)}, known
-        stack = model.at_all(values[moving])
-        model.warn_beyond(np.abs(values[moving]))
-        known[moving] = stack.known
-        if not np.all(known):
-            stack = stack[stack.known]
-        rows = moving[known[moving]]
-        squares, none = values[rows, None] ** 2, np.zeros(len(rows))
-        # no unbalance acts along the axis, where nothing may hold the rotor
-        options = {"held": model.moving_basis, "tolerance": self.tolerance}
-
-        def solve(part: slice) -> Harmonics:
-            acting = {n: squares[part] * F for n, F in load.items()}
-            return forced_motions(stack[part], acting, none[part], **options)
-
-        found = {}
-        for n, X in _in_parts(solve, len(rows), model.size).items():
-            found[n] = np.zeros((len(values), model.size), dtype=complex)
-            found[n][~known] = np.nan
-            found[n][rows] = X
-        return found, known
-
-    def joined(self, motions: Harmonics, values: np.ndarray) -> Harmonics:
-        """Return real periodic motions by their harmonics n ≥ 0: ``Re Σ a_n exp(inΩt)``."""
-        return _joined(motions, np.zeros(len(values)))
-
-
-@dataclass(frozen=True, eq=False)
-class _OverFrequency(_Sweep):
-    """The motion under harmonic loads over their frequency, in harmonics ω + nΩ."""
-
-    loads: Sequence[HarmonicForce | BaseAcceleration] = field(kw_only=True)
-    unit: ClassVar[str] = "Hz"
-
-    def coordinates(self, model: LinearModel, values: np.ndarray) -> tuple[Harmonics, np.ndarray]:
-        """Return the coordinates of a model, and at which frequencies (s,) it has equations."""
-        load = total(self.loads, model, self.speed)
-        if not any(map(np.any, load.values())):
-            what = "give loads=[HarmonicForce(…)] that move the rotor"
-            raise ValueError(f"no load, so no response: {what}")
-        model.warn_beyond(np.abs(np.add.outer(values, self.speed * np.array(list(load)))))
-        options = {"driven": model.free_spins, "tolerance": self.tolerance}
-
-        def solve(part: slice) -> Harmonics:
-            return forced_over(model, self.speed, load, values[part], **options)
-
-        return _in_parts(solve, len(values), model.size), np.ones(len(values), dtype=bool)
-
-    def joined(self, motions: Harmonics, values: np.ndarray) -> Harmonics:
-        """Return motions in which no two harmonics ω + nΩ have one frequency."""
-        if self.speed == 0.0:
-            return motions
-        return _joined(motions, 2.0 * values / self.speed, np.sign(self.speed))
-
-
-def _joined(motions: Harmonics, twice: np.ndarray, sense: float = 1.0) -> Harmonics:
-    """Return motions in which no two harmonics ω + nΩ have one frequency, given 2ω/Ω (s,).
-
-    Where ω + nΩ = −(ω + mΩ), the conjugate of the harmonic with the negative rate is added to the
-    other one. Ω has the sign `sense`.
-    """
-    joined = {n: a.copy() for n, a in motions.items()}
-    nearest = np.round(twice)
-    nearest[np.abs(twice - nearest) > _WHOLE * np.maximum(np.abs(twice), 1.0)] = np.nan
-    for both in np.unique(nearest[np.isfinite(nearest)]).astype(int):
-        rows = nearest == both
-        for n, a in motions.items():
-            if sense * (2 * n + both) < 0.0:
-                partner = joined.setdefault(-both - n, np.zeros_like(a))
-                partner[rows] += a[rows].conj()
-                joined[n][rows] = 0.0
-    return joined
 
 
 def _is_missing(motions: Harmonics) -> np.ndarray:
@@ -408,19 +380,10 @@ def _turns(motions: Harmonics) -> np.ndarray:
     return np.where(matters, turned, 0.0).max(axis=1)
 
 
-@one_thread()
-def _in_parts(solve: Callable[[slice], Harmonics], count: int, size: int) -> Harmonics:
-    """Return harmonics (count, size), solved for some of the rows at a time: for memory."""
-    most = max(1, _AT_ONCE // size**2)
-    return _stacked(*(solve(slice(first, first + most)) for first in range(0, count, most)))
-
-
-def _stacked(*parts: Harmonics) -> Harmonics:
-    """Return harmonics at all values of parts; one may be in some of them only."""
-    if len(parts) == 1:
-        return parts[0]
-    none = [np.zeros_like(next(iter(part.values()))) for part in parts]
+def _stacked(first: Harmonics, second: Harmonics) -> Harmonics:
+    """Return harmonics at the values of both; one may be in either of them only."""
+    none = [np.zeros_like(next(iter(each.values()))) for each in (first, second)]
     return {
-        n: np.concatenate([part.get(n, zero) for part, zero in zip(parts, none, strict=True)])
-        for n in sorted({n for part in parts for n in part})
+        n: np.concatenate([first.get(n, none[0]), second.get(n, none[1])])
+        for n in sorted({*first, *second})
     }

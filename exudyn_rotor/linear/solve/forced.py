@@ -61,15 +61,12 @@ def forced_motions(
         loads = {n: F @ held for n, F in loads.items()}
         found = forced_motions(system.projected(held), loads, rates, tolerance=tolerance)
         return {n: X @ held.T for n, X in found.items()}
-    if driven is not None and not driven.shape[1]:
-        driven = None
-    rates = np.asarray(rates, dtype=float)
     shape = len(rates), system.size
     acting = {n: np.broadcast_to(F, shape) for n, F in loads.items() if np.any(F)}
     if system.is_constant:
         mean = system.matrices()
         return {
-            n: _solved(*_stiffness(system, mean, rates, [n]), F[..., None], driven)[..., 0] + 0j
+            n: _harmonic(system, mean, rates, n, F[..., None], driven)[..., 0]
             for n, F in acting.items()
         }
     if not np.any(rates):  # only the real part of all harmonics together is a load
@@ -91,29 +88,29 @@ def _rate(rates: np.ndarray, order: int, speed: np.ndarray) -> np.ndarray:
     return np.where(np.abs(nu) <= _STILL * np.maximum(np.abs(rates), np.abs(speed)), 0.0, nu)
 
 
-def _stiffness(
-    system: PeriodicSystem, mean: tuple[np.ndarray, ...], rates: np.ndarray, orders: Sequence[int]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the dynamic stiffnesses (h s, k, k) of harmonics, and their frequencies (h s,)."""
+def _harmonic(
+    system: PeriodicSystem,
+    mean: tuple[np.ndarray, ...],
+    rates: np.ndarray,
+    order: int,
+    F: np.ndarray,
+    driven: np.ndarray | None,
+) -> np.ndarray:
+    """Return a harmonic (s, k, c) by itself under loads (s, k, c), NaN where there is none.
+
+    At the frequency zero it is static: free motions that a load does not act on rest.
+    """
     M, D, K = mean
-    nu = np.array([_rate(rates, n, system.speed) for n in orders])
-    w = nu[..., None, None]
+    nu = _rate(rates, order, system.speed)
+    w = nu[:, None, None]
     Z = K - w**2 * M
     if np.any(nu):
         Z = Z + 1j * (w * D)
     for n, H in system.H:
-        Z = Z + 1j * np.sign(_rate(nu, -n, system.speed))[..., None, None] * H
-    return Z.reshape(-1, *Z.shape[2:]), nu.ravel()
-
-
-def _solved(Z: np.ndarray, nu: np.ndarray, F: np.ndarray, driven: np.ndarray | None) -> np.ndarray:
-    """Return solutions (s, k, c) under loads (s, k, c), NaN where there is none.
-
-    Those of frequency zero are static: free motions that a load does not act on rest.
-    """
+        Z = Z + 1j * np.sign(_rate(nu, -n, system.speed))[:, None, None] * H
     X, still = np.full(F.shape, np.nan, dtype=complex), nu == 0.0
     if np.any(still):
-        X[still] = _static(Z[still], F[still], driven)
+        X[still] = static_motions(Z[still], F[still], driven)
     if not np.all(still):
         Z, F = Z[~still], F[~still]
         moved = _one_by_one(Z, F)
@@ -134,11 +131,14 @@ def _one_by_one(A: np.ndarray, b: np.ndarray) -> np.ndarray:
         return np.concatenate([_one_by_one(A[i : i + 1], b[i : i + 1]) for i in range(len(A))])
 
 
-def _static(A: np.ndarray, F: np.ndarray, driven: np.ndarray | None) -> np.ndarray:
-    """Return the motions (s, k, c) under constant loads (s, k, c)."""
-    if driven is not None:
+def static_motions(A: np.ndarray, F: np.ndarray, driven: np.ndarray | None = None) -> np.ndarray:
+    """Return the motions (s, k, c) by stiffnesses (s, k, k) under constant loads (s, k, c).
+
+    Free motions that a load does not act on rest; NaN where it acts on a motion that nothing holds.
+    """
+    if driven is not None and driven.shape[1]:
         basis = others(driven)  # mixes no soft coordinates with stiff ones
-        return basis @ _static(basis.T @ A @ basis, basis.T @ F, None)
+        return basis @ static_motions(basis.T @ A @ basis, basis.T @ F)
     size = np.abs(A).max(axis=2)
     resisted = size > _FREE * size.max(axis=1, initial=0.0, keepdims=True)
     scale = 1.0 / np.sqrt(np.where(resisted, size, 1.0))[..., None]
@@ -149,20 +149,6 @@ def _static(A: np.ndarray, F: np.ndarray, driven: np.ndarray | None) -> np.ndarr
     for i in np.flatnonzero(~np.all(held, axis=1)):
         X[i] = _beside_free(A[i], b[i])
     return scale * X
-
-
-def static_motion(A: np.ndarray, load: np.ndarray) -> np.ndarray:
-    """Return the motion (k,) under a constant load; free motions that it does not act on rest.
-
-    NaN where it acts on a motion that nothing holds.
-
-    Parameters
-    ----------
-    A : ndarray, shape (k, k)
-        Stiffness.
-    load : ndarray, shape (k,)
-    """
-    return _static(A[None], load[None, :, None], None)[0, :, 0]
 
 
 def _beside_free(A: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -245,13 +231,11 @@ def _chain(
     r, standing = B.shape[1], not np.any(rates)
     # at frequencies ±nΩ, under conjugate loads, motions are conjugate
     solved = [n for n in orders if n >= 0 or not standing or -n not in orders]
-    F = np.zeros((len(solved), s, system.size, 1 + r), dtype=complex)
-    F[..., 1:] = B
-    for place, n in enumerate(solved):
-        F[place, ..., 0] = loads.get(n, 0.0)
-    mean = system.M, system.D[0].real, system.K[0].real
-    X = _solved(*_stiffness(system, mean, rates, solved), F.reshape(-1, *F.shape[2:]), driven)
-    alone = dict(zip(solved, X.reshape(F.shape), strict=True))
+    mean, alone = (system.M, system.D[0].real, system.K[0].real), {}
+    for n in solved:
+        F = np.zeros((s, system.size, 1 + r), dtype=complex)
+        F[..., 0], F[..., 1:] = loads.get(n, 0.0), B
+        alone[n] = _harmonic(system, mean, rates, n, F, driven)
     alone |= {n: alone[-n].conj() for n in orders if n not in alone}
     each = np.stack([alone[n] for n in orders], axis=1)  # (s, h, k, 1 + r)
     seen = B.T @ each

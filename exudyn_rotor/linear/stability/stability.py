@@ -47,8 +47,10 @@ from exudyn_rotor.units import Units
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_SHOWN = 4.0  # times the strongest decay of lateral motions: what is drawn reaches down to there
+_SHOWN = 4.0  # times the strongest decay of lateral motions: no faster one is drawn
 WHAT = "stability finds exponents"  # of structural damping, for the warning
+# what a map has at points without values; all else is NaN there
+_NOTHING = {"stable": False, "whirl_codes": UNKNOWN, "nodal_diameters": -1}
 _EVEN = 1e-6  # relative difference of ratios of values that are spaced logarithmically
 
 
@@ -122,6 +124,12 @@ class Stability(OfMotions, ModelResult):
         return np.abs(self.exponents.real) > self.bounds[:, None]
 
     @property
+    def _growth(self) -> np.ndarray:
+        """Real parts [1/s], 0 of motions that are neutral, shape (s, k)."""
+        known = ~np.isnan(self.exponents)
+        return np.where(known & ~self._moving, 0.0, self.exponents.real)
+
+    @property
     def least_stable(self) -> np.ndarray:
         """Column of the least stable motion at each speed, of those that are not neutral, (s,)."""
         return np.argmax(self._moving, axis=1)
@@ -136,10 +144,8 @@ class Stability(OfMotions, ModelResult):
         family : {'lateral', 'torsional', 'axial', 'disc', 'other', 'foundation'}
         """
         checks.choice(family, "family", FAMILIES)
-        growth = np.where(self._moving, self.exponents.real, 0.0)
-        own = (self.families == family) & ~np.isnan(self.exponents)
-        largest = np.where(own, growth, -np.inf).max(axis=1, initial=-np.inf)
-        return np.where(np.isfinite(largest), largest, np.nan)
+        growth = np.where(self.families == family, self._growth, np.nan)
+        return np.fmax.reduce(growth, axis=1, initial=np.nan)
 
     def least_stable_of(self, family: str) -> tuple[int, int] | None:
         """Return row and column of a family's least stable motion over all speeds.
@@ -156,8 +162,7 @@ class Stability(OfMotions, ModelResult):
         if not np.any(told):
             return None
         growth = np.where(told, self.exponents.real, -np.inf)
-        largest = growth.max() - np.nanmax(self.bounds)
-        row, column = np.unravel_index(np.argmax(growth >= largest), growth.shape)
+        row, column = np.argwhere(growth >= growth.max() - np.nanmax(self.bounds))[0]
         return int(row), int(column)
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
@@ -165,13 +170,12 @@ class Stability(OfMotions, ModelResult):
 
         Where all motions are neutral none is the least stable: no growth, frequency NaN, '-'.
         """
-        shown = Units.of(units)
-        rows, none = (np.arange(len(self.speeds)), self.least_stable), ~self._moving.any(axis=1)
+        shown, none = Units.of(units), ~self._moving.any(axis=1)
+        rows = np.arange(len(self.speeds)), self.least_stable
         heard = np.where(none, np.nan, shown.frequencies(self.frequencies_inertial[rows]))
-        growth = np.where(none & np.isfinite(self.growth), 0.0, self.exponents[rows].real)
         return {
             f"speed [{shown.speed}]": shown.speeds(self.speeds),
-            "growth [1/s]": growth,
+            "growth [1/s]": self._growth[rows],
             **{f"{name} [1/s]": self.growth_of(name) for name in FAMILIES},
             f"inertial [{shown.frequency}]": heard,
             "nodal diameters": np.where(none, -1, self.nodal_diameters[rows]),
@@ -206,36 +210,37 @@ class Stability(OfMotions, ModelResult):
         return _in_words(self.exponents[at].real, place, heard, whirl, self.log_decrement[at])
 
     def plot(self, ax: Axes | None = None, *, units: str = "rpm") -> Axes:
-        """Draw the growth over the spin speed, of each family and of the least stable motion.
+        """Draw the growth of each family over the spin speed; unstable speeds are shaded.
 
-        Unstable speeds are shaded; the picture ends below the strongest decay of lateral motions,
-        which others would hide. `units` are 'rpm', 'Hz' or 'SI', rad/s.
+        Decays that are much faster than the strongest one of lateral motions are left out.
+        `units` are 'rpm', 'Hz' or 'SI', rad/s.
         """
         shown = Units.of(units)
         ax = plotting.axes_or_new(ax)
         speeds = shown.speeds(self.speeds)
-        found = {family: self.growth_of(family) for family in FAMILIES}
-        moving = [growth for growth in found.values() if np.any(np.nan_to_num(growth))]
-        if moving:  # others are free or rest at all speeds
-            ax.plot(speeds, np.fmax.reduce(moving), color="0.8", lw=6.0, label="least stable")
-        for (family, growth), color in zip(found.items(), plotting.COLORS, strict=True):
+        least = _SHOWN * np.fmin.reduce(self.growth_of("lateral"), initial=0.0) or -np.inf
+        for family, color in zip(FAMILIES, plotting.COLORS, strict=True):
+            growth = self.growth_of(family)
+            growth[growth < least] = np.nan
             if not np.all(np.isnan(growth)):
                 ax.plot(speeds, growth, ".-", color=color, lw=1.3, label=family)
-        drawn = [growth for growth in found.values() if not np.all(np.isnan(growth))] or [0.0]
-        low, high = np.nanmin(drawn), np.nanmax(drawn)
-        lateral = np.fmin.reduce(found["lateral"], initial=0.0)
-        low = max(low, _SHOWN * lateral) if lateral < 0.0 else low
-        room = 0.05 * (high - low) or 1.0
-        limits = low - room, high + room
-        shade = {"where": self.growth > self.bounds, "color": plotting.COLORS[1], "alpha": 0.2}
-        ax.fill_between(speeds, *limits, lw=0.0, **shade)
-        ax.set_ylim(limits)
+        ax.fill_between(
+            speeds, 0.0, 1.0, where=self.growth > self.bounds, transform=ax.get_xaxis_transform(),
+            color=plotting.COLORS[1], alpha=0.2, lw=0.0,
+        )  # fmt: skip
         ax.axhline(0.0, color="0.3", lw=0.8)
-        ax.set_xlabel(f"spin speed [{shown.speed}]")
-        ax.set_ylabel("largest growth [1/s]")
+        ax.set(xlabel=f"spin speed [{shown.speed}]", ylabel="largest growth [1/s]")
         ax.grid(alpha=0.3)
         plotting.legend_above(ax, 4)
         return ax
+
+
+def least_stable(found: Stability) -> dict[str, np.ndarray]:
+    """Return the least stable motion at each speed by the names that :class:`StabilityMap` has."""
+    rows = np.arange(len(found.speeds)), found.least_stable
+    names = "frequencies_inertial", "log_decrement", "whirl_codes", "nodal_diameters"
+    told = {name: getattr(found, name)[rows] for name in names}
+    return {"least_stable_growth": found._growth[rows], **told}
 
 
 def stability(
@@ -332,8 +337,8 @@ def of_motions(
     growth = np.fmax.reduce(values.real, axis=1, initial=np.nan)
     moving = np.abs(values.real) > bounds[:, None]
     if errors is not None:
-        least_stable = np.argmax(moving, axis=1)[:, None]
-        errors = np.take_along_axis(np.where(moving, errors, np.nan), least_stable, 1)[:, 0]
+        rows = np.arange(len(values)), np.argmax(moving, axis=1)
+        errors = np.where(moving, errors, np.nan)[rows]
     return Stability(
         speeds=found.motions.speeds,
         exponents=values.real + 1j * found.rotor,
@@ -441,8 +446,8 @@ class StabilityMap(OfMotions, Result):
         Free motions, which are neutral, do not count.
         """
         first, second = self.labels
-        lines = [f"growth [1/s]; columns: {second}", f"{first:>24}"]
-        lines[-1] += "".join(f"{value:13.5g} " for value in self.y).rstrip()
+        names = "".join(f"{value:13.5g} " for value in self.y)
+        lines = [f"growth [1/s]; columns: {second}", f"{first:>24}{names}".rstrip()]
         marks = np.where(self.stable | np.isnan(self.growth), " ", "*")
         for value, growth, marked in zip(self.x, self._shown, marks, strict=True):
             entries = (f"{g:13.5g}{mark}" for g, mark in zip(growth, marked, strict=True))
@@ -472,21 +477,16 @@ class StabilityMap(OfMotions, Result):
         neutral = np.where(self.stable, np.minimum(self._shown, 0.0), self._shown)
         growth = np.ma.masked_invalid(neutral).T
         largest = np.abs(growth).max() or 1.0
+        style = {"cmap": "RdBu_r", "vmin": -largest, "vmax": largest}
         if min(self.growth.shape) == 1:  # contours need two values of each
-            places = np.meshgrid(self.x, self.y)
-            limits = {"vmin": -largest, "vmax": largest}
-            filled = ax.scatter(*places, c=growth.ravel(), cmap="RdBu_r", **limits)
-            ax.figure.colorbar(filled, ax=ax, label="growth [1/s]")
-            return ax
-        from matplotlib.ticker import MaxNLocator
-
-        levels = MaxNLocator(20, symmetric=True).tick_values(-largest, largest)
-        filled = ax.contourf(self.x, self.y, growth, levels, cmap="RdBu_r")
+            filled = ax.scatter(*np.meshgrid(self.x, self.y), c=growth.ravel(), **style)
+        else:
+            filled = ax.contourf(self.x, self.y, growth, 20, **style)
+            if self.stable.any() and not self.stable.all():
+                verdict = np.where(self.stable, -1.0, 1.0).T
+                crossing = growth if growth.min() < -1e-6 * largest else verdict
+                ax.contour(self.x, self.y, crossing, [0.0], colors="black", linewidths=1.2)
         ax.figure.colorbar(filled, ax=ax, label="growth [1/s]")
-        if not (self.stable.all() or not self.stable.any()):
-            verdict = np.where(self.stable, -1.0, 1.0).T
-            crossing = growth if growth.min() < -1e-6 * largest else verdict
-            ax.contour(self.x, self.y, crossing, [0.0], colors="black", linewidths=1.2)
         return ax
 
 
@@ -571,47 +571,31 @@ def stability_map(
     warn_of_refused(refused, shape[0] * shape[1])
     models = [points[0][1] for points in alike.values()]
     warn_of_omissions(max(models, key=lambda one: one.has_structural_damping), what=WHAT)
-    growth, moving, inertial, decrement, errors = np.full((5, *shape), np.nan)
-    stable, codes = np.zeros(shape, dtype=bool), np.full(shape, UNKNOWN, dtype=np.int64)
-    diameters = np.full(shape, -1, dtype=np.int64)
     corners = itertools.product(*((0, size - 1) for size in shape))
     judged = {*corners, (shape[0] // 2, shape[1] // 2)}
+    grids, errors = {}, np.full(shape, np.nan)
     for points in alike.values():
         places, models, speeds, coefficients = zip(*points, strict=True)
         model, content = models[0], Content.of(models[0])
         stack = model.at_points(np.array(speeds), coefficients)
         motions = motions_in(model, stack, "auto", tolerance, held=True)
-        found = of_motions(model, content, motions, None)
-        rows, at = (np.arange(len(points)), found.least_stable), tuple(np.array(places).T)
-        neutral = np.abs(found.growth) <= found.bounds
-        growth[at], stable[at] = np.where(neutral, 0.0, found.growth), found.stable
-        decays = np.where(found._moving, found.exponents.real, 0.0)[rows]
-        moving[at] = np.where(np.isnan(found.growth), np.nan, decays)
-        inertial[at], decrement[at] = found.frequencies_inertial[rows], found.log_decrement[rows]
-        codes[at], diameters[at] = found.whirl_codes[rows], found.nodal_diameters[rows]
+        found, at = of_motions(model, content, motions, None), tuple(np.array(places).T)
+        growth = np.where(np.abs(found.growth) <= found.bounds, 0.0, found.growth)
+        told = least_stable(found) | {"growth": growth, "stable": found.stable}
+        for name, values in told.items():
+            grids.setdefault(name, np.full(shape, _NOTHING.get(name, np.nan)))[at] = values
         for row, place in enumerate(places):
             if place in judged and basis_error.is_known(models[row], accuracy):
                 alone = of_motions(models[row], content, motions[[row]], accuracy)
                 errors[place] = alone.basis_errors[0]
-    known = not np.all(np.isnan(errors))
     basis_error.warn(
         errors,
         lambda a, b: f"the least stable motion at ({grid[0][a]:.5g}, {grid[1][b]:.5g})",
         models[0],
         accuracy,
     )
-    return StabilityMap(
-        *grid,
-        growth,
-        stable,
-        inertial,
-        codes,
-        diameters,
-        decrement,
-        names,
-        basis_errors=errors if known else None,
-        least_stable_growth=moving,
-    )
+    known = not np.all(np.isnan(errors))
+    return StabilityMap(*grid, labels=names, basis_errors=errors if known else None, **grids)
 
 
 def _built(build: Callable, point: tuple[float, float]) -> tuple[LinearModel, float]:

@@ -1,21 +1,20 @@
 """Limits of stability over the spin speed or any other parameter.
 
-The margin g(p) is the largest growth of a motion that is not neutral, less what rounding can make
-of it: positive where the rotor is unstable. It is computed at samples; where a peak of it comes
-near zero between samples a few values look whether it crosses. Each change of its sign is found by
-Brent's method, on the stable side of it by the growth of the motion that grows on the other.
+The margin is the largest growth of a motion that is not neutral, positive where the rotor is
+unstable. It is computed at samples, and each change of its sign is found by Brent's method.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import brentq
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given
@@ -27,7 +26,12 @@ from exudyn_rotor.linear.model.linear_model import LinearModel, warn_of_refused
 from exudyn_rotor.linear.over import NOT_KNOWN, basis_column, motions_in, table_lines
 from exudyn_rotor.linear.solve.hill import Beside
 from exudyn_rotor.linear.solve.motions import Motions
-from exudyn_rotor.linear.stability.stability import WHAT, check_options, of_motions
+from exudyn_rotor.linear.stability.stability import (
+    WHAT,
+    check_options,
+    least_stable,
+    of_motions,
+)
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.solvers.factor import one_thread
@@ -39,9 +43,7 @@ if TYPE_CHECKING:
 _SMALL = 0.1  # share of the range that a limit counts as at least
 _SPEED = "speed [rad/s]"  # how the names of parameters end that are shown in other units
 Supports = Sequence[Given] | Given
-_ROOT = 1e-7  # of the largest parameter: error of a limit
-_INNER, _TURNING = 3, 2  # parts of the interval between two samples; in axes of the rotor
-_PEAKS, _STEPS = 6, 6  # peaks that are looked at, each with so many values
+_ROOT = 1e-8  # of the largest parameter: where the search for a limit stops
 _ASIDE = 1e-4  # of the range, or half of an unstable one: where the growing motion is named
 
 
@@ -156,38 +158,34 @@ class StabilityThresholds(OfMotions, Result):
 
 @dataclass(eq=False)
 class _Margin:
-    """By how much the least stable motion grows beyond rounding [1/s], over a parameter.
+    """Growth of the least stable motion that is not neutral [1/s], over a parameter.
 
-    As many motions as rest at every sample, like a free spin, do not count. Values are computed
-    once, NaN where there are no coefficients. Where the parameter is the speed, one `model` has
-    all of them.
+    Below zero where all are neutral, NaN where there are no coefficients; each value is computed
+    once. Where the parameter is the speed, one `model` has all of them.
     """
 
     model_at: Callable[[float], tuple[LinearModel, float]]
     tolerance: float
     model: LinearModel | None = None
     known: dict[float, float] = field(default_factory=dict)
-    seen: dict[float, Motions] = field(default_factory=dict)
-    resting: int | None = None
     beside: Beside | None = None
 
-    def at(self, points: Sequence[float]) -> None:
+    def look_at(self, points: Sequence[float]) -> None:
         """Compute the margin at points, with one warning where there are no coefficients."""
-        found, refused = [], []
-        together = [points] if self.model else [[point] for point in points]
+        self.known |= dict.fromkeys(points, np.nan)
+        refused, together = [], [points] if self.model else [[point] for point in points]
         for group in together:
             try:
-                motions = self.motions(group)
-                found += zip(group, motions.values.real, motions.bounds, strict=True)
-                self.seen |= {point: motions[[i]] for i, point in enumerate(group)}
+                found = self.motions(group)
             except NO_EQUATIONS as error:
                 refused.append((f"{group[0]:.5g}", error))
+            else:
+                growth, bounds = found.values.real, found.bounds[:, None]
+                moving = np.where(np.abs(growth) > bounds, growth, np.nan)
+                margins = np.fmax.reduce(moving, axis=1)
+                margins = np.where(np.isnan(margins), -found.bounds, margins)
+                self.known |= dict(zip(group, margins.tolist(), strict=True))
         warn_of_refused(refused, len(together))
-        if self.resting is None:
-            rest = [np.sum(np.abs(growth) <= b) for _, growth, b in found if np.isfinite(b)]
-            self.resting = int(min(rest))
-        self.known |= dict.fromkeys(points, np.nan)
-        self.known |= {point: self.of(growth, bound) for point, growth, bound in found}
 
     def motions(self, points: Sequence[float], richer: bool = False) -> Motions:
         """Return the motions at points of one model, or of a richer one."""
@@ -199,67 +197,20 @@ class _Margin:
         self.beside = self.beside if richer else found.beside
         return found
 
-    def of(self, growth: np.ndarray, bound: float) -> float:
-        """Return the margin of the growth of all motions, (k,)."""
-        counted = growth[np.argsort(np.abs(growth))[self.resting :]]
-        counted = counted[np.isfinite(counted)]
-        return float(max(np.where(np.abs(counted) <= bound, 0.0, counted), default=0.0)) - bound
+    def least_stable(self, point: float, richer: bool = False) -> dict[str, np.ndarray]:
+        """Return the least stable motion at a point, that of the richer model if asked for."""
+        model = self.model_at(point)[0]
+        model = model.richer if richer else model
+        state = of_motions(model, Content.of(model), self.motions([point], richer), None)
+        return least_stable(state)
 
     def __call__(self, point: float) -> float:
         """Return the margin at a point between two that have one; negative where it has none."""
         if point not in self.known:
-            try:
-                self.at([point])
-            except NO_EQUATIONS:
-                self.known[point] = np.nan
+            with suppress(*NO_EQUATIONS):
+                self.look_at([point])
         margin = self.known[point]
         return -1.0 if np.isnan(margin) else margin
-
-    @property
-    def course(self) -> tuple[list[float], list[float]]:
-        """Points with a margin, ascending, and the margins."""
-        points = sorted(p for p, margin in self.known.items() if not np.isnan(margin))
-        return points, [self.known[p] for p in points]
-
-    def look_at_peaks(self) -> None:
-        """Look whether a margin that comes near zero between points crosses it."""
-        points, margins = self.course
-        candidates = []
-        for i, margin in enumerate(margins):
-            sign = 1.0 if margin > 0.0 else -1.0  # a peak below zero, or a gap above
-            near = [j for j in (i - 1, i + 1) if 0 <= j < len(points)]
-            away = [sign * (margins[j] - margin) for j in near]
-            if min(away) >= 0.0 and 0.0 < sign * margin < max(away):
-                candidates.append((sign * margin, sign, (points[near[0]], points[near[-1]])))
-        for _, sign, ends in sorted(candidates)[:_PEAKS]:
-            minimize_scalar(
-                lambda p, sign=sign: sign * self(float(p)), bounds=ends, method="bounded",
-                options={"maxiter": _STEPS},
-            )  # fmt: skip
-
-    def changes(self, root: float) -> list[tuple[float, bool]]:
-        """Return each limit between neighbouring points, and whether it is unstable above."""
-        found = []
-        for (a, low), (b, high) in pairwise(zip(*self.course, strict=True)):
-            if (low > 0.0) != (high > 0.0):
-                limit = brentq(self._of_one, a, b, xtol=root, rtol=1e-15)
-                found.append((float(limit), high > 0.0))
-        return found
-
-    def _of_one(self, point: float) -> float:
-        """Return the margin; of a stable point that of the motion that grows at the nearest other.
-
-        It has no kink at the limit, where the margin is often that of other motions on one side.
-        """
-        margin = self(point)
-        if margin > 0.0 or np.isnan(self.known[point]):
-            return margin
-        grows = min((p for p in self.seen if self.known[p] > 0.0), key=lambda p: abs(p - point))
-        beside, here = self.seen[grows], self.seen[point]
-        shape = beside.main[0, :, np.nanargmax(beside.values[0].real)]
-        alike = np.maximum(*(np.abs(each @ here.main[0]) for each in (shape, shape.conj())))
-        growth = here.values[0, np.argmax(np.where(np.isnan(here.values[0]), -1.0, alike))].real
-        return min(float(growth - here.bounds[0]), -1e-300)  # as brentq needs a sign
 
 
 def stability_threshold(
@@ -269,7 +220,7 @@ def stability_threshold(
     *,
     supports: Supports | Callable[[float], Supports] = (),
     speed: float | None = None,
-    samples: int = 24,
+    samples: int = 60,
     label: str | None = None,
     body: RotorBody | Sequence[RotorBody] | None = None,
     stiffening: str = "auto",
@@ -280,10 +231,8 @@ def stability_threshold(
     """Find the limits of stability over the spin speed or another parameter.
 
     Each is found to 1e-7 of the largest parameter, with the motion that grows there. The range is
-    looked at in `samples` intervals with three steps each (two of an uneven rotor, whose equations
-    may be periodic, which takes a hundred times longer), and closer where the growth has a peak
-    near zero. A range that is narrower than a step can be missed, as one of a parametric resonance
-    with little damping: take more `samples` where that matters.
+    looked at in `samples` intervals. A range that is narrower than one of these can be missed, as
+    one of a parametric resonance with little damping: take more where that matters.
 
     Parameters
     ----------
@@ -346,15 +295,13 @@ def stability_threshold(
             return linear_model(target, supports=supports(point), **made), speed
 
         margin, kinks = _Margin(model_at, tolerance), np.zeros(0)
-        model = model_at(0.5 * (low + high))[0]
     else:
         checks.number(low, "low", "rad/s", least=0.0)
         if speed is not None:
             raise ValueError("speed: is the parameter, from low to high; leave it out")
         margin = _over_speed(target, high, tolerance, supports=supports, **made)
-        model, kinks = margin.model, margin.model.table_speeds
-    parts = _INNER if model.axes == "inertial" else _TURNING
-    points = np.linspace(low, high, parts * samples + 1)
+        kinks = margin.model.table_speeds
+    points = np.linspace(low, high, samples + 1)
     points = np.union1d(points, kinks[(kinks > low) & (kinks < high)])
     return _found(margin, points.tolist(), label, accuracy)
 
@@ -371,28 +318,24 @@ def _found(
     margin: _Margin, points: list[float], label: str, accuracy: float | None
 ) -> StabilityThresholds:
     """Return the limits between points."""
-    margin.at(points)
-    margin.look_at_peaks()
-    points, margins = margin.course
+    margin.look_at(points)
+    points = [point for point in points if not np.isnan(margin.known[point])]
     low, high = points[0], points[-1]
-    found = margin.changes(_ROOT * max(abs(low), abs(high)))
-    values, onset = np.array([v for v, _ in found]), np.array([up for _, up in found], dtype=bool)
-    ends = [-np.inf, *values, np.inf]
-    heard, codes, diameters, shifts = [], [], [], []
+    changes = [(a, b) for a, b in pairwise(points) if (margin(a) > 0.0) != (margin(b) > 0.0)]
+    root = _ROOT * max(abs(low), abs(high))
+    values = [brentq(margin, *change, xtol=root, rtol=1e-15) for change in changes]
+    onset = [margin(above) > 0.0 for _, above in changes]
+    ends, growing, shifts = [-np.inf, *values, np.inf], [], []
     for place, value in enumerate(values):
         # what grows within the unstable range beside the limit
         width = ends[place + 2 if onset[place] else place] - value
         aside = np.sign(width) * min(_ASIDE * (high - low), 0.5 * abs(width))
-        model = margin.model_at(value + aside)[0]
-        state = of_motions(model, Content.of(model), margin.motions([value + aside]), None)
-        which = 0, state.least_stable[0]
-        heard.append(state.frequencies_inertial[which])
-        codes.append(state.whirl_codes[which])
-        diameters.append(state.nodal_diameters[which])
+        growing.append(margin.least_stable(value + aside))
+        slope = growing[-1]["least_stable_growth"][0] / aside
+        model = margin.model_at(value)[0]
         if basis_error.is_known(model, accuracy):
-            better = None if model.is_full else margin.motions([value], richer=True)
-            grown = margin.of(better.values.real[0], better.bounds[0]) if better else 0.0
-            shifts.append(grown * aside / state.exponents[which].real)
+            richer = None if model.is_full else margin.least_stable(value, richer=True)
+            shifts.append(richer["least_stable_growth"][0] / slope if richer else 0.0)
     errors = None
     if accuracy is not None and len(shifts) == len(values):
         errors = np.abs(shifts) / np.maximum(np.abs(values), _SMALL * (high - low))
@@ -400,17 +343,10 @@ def _found(
         errors, lambda i: f"the limit of stability at {values[i]:.5g}, {label},",
         margin.model_at(points[0])[0], accuracy,
     )  # fmt: skip
+    names = ("frequencies_inertial", "whirl_codes", "nodal_diameters")
+    named = ([motion[name][0] for motion in growing] for name in names)
     return StabilityThresholds(
-        values=values,
-        onset=onset,
-        frequencies_inertial=np.array(heard),
-        whirl_codes=np.array(codes, dtype=np.int64),
-        nodal_diameters=np.array(diameters, dtype=np.int64),
-        low=low,
-        high=high,
-        unstable_at_low=bool(margins[0] > 0.0),
-        label=label,
-        basis_errors=errors,
+        values, onset, *named, low, high, margin(low) > 0.0, label, basis_errors=errors
     )
 
 
@@ -427,10 +363,10 @@ def unstable_ranges(
 ) -> np.ndarray:
     """Return the unstable speed ranges, shape (r, 2) [rad/s].
 
-    The search is that of :func:`stability_threshold`, which divides its samples further, with
-    `speeds` alone; limits have an error of 1e-7 of the highest speed, and a range narrower than
-    the spacing can be missed. A range that is open at the first or last speed ends there. For the
-    other arguments see :func:`stability_threshold`.
+    The search is that of :func:`stability_threshold` between neighbouring `speeds`; limits have an
+    error of 1e-7 of the highest speed, and a range narrower than the spacing can be missed. A range
+    that is open at the first or last speed ends there. For the other arguments see
+    :func:`stability_threshold`.
 
     Examples
     --------

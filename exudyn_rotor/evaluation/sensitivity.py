@@ -27,11 +27,11 @@ from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import Terms
-from exudyn_rotor.linear.modal.whirl import Content
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
-from exudyn_rotor.linear.over import forced_over, motions_over
+from exudyn_rotor.linear.over import forced_over
+from exudyn_rotor.linear.stability.stability import stability
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.solid_rotor import SolidRotor
@@ -41,8 +41,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 ZONES = {"A": 3.0, "B": 4.0, "C": 5.0, "D": np.inf}  # largest |S|, ISO 14839-3:2006
-_NEAR_LARGEST = 0.8  # share of the largest |S| above which a peak is looked at
-_ROUNDS, _AROUND = 3, 9  # how often, and with how many points between its neighbours
+_ROUNDS, _AROUND = 2, 33  # how often a peak is looked at, and with how many points around it
 _SENSOR = slice(3, 6)  # ports of a controller; the bearing's come first
 
 
@@ -141,7 +140,7 @@ def sensitivity(
     frequencies : array_like, shape (f,)
         Where S is computed [rad/s], ascending, above zero. The closed loop's own frequencies
         between the first and the last, of motions with damping, are added, and points around the
-        largest peaks.
+        largest peak of each axis.
     supports : sequence of MagneticBearing, and others
         Of a rotor; a train has its own.
     foundation : Foundation, optional
@@ -173,10 +172,10 @@ def sensitivity(
     >>> bearings = [MagneticBearing(interface=name, **parts) for name in ("left", "right")]
     >>> print(sensitivity(rotor, np.geomspace(10.0, 5e3, 50), supports=bearings).table())
     axis      peak |S|  peak [dB]  at [Hz]  zone
-    left, 1    1.66895    4.44887  160.631  A
-    left, 2    1.66895    4.44887  160.631  A
-    right, 1   1.66895    4.44887  160.631  A
-    right, 2   1.66895    4.44887  160.631  A
+    left, 1    1.66895    4.44887  160.633  A
+    left, 2    1.66895    4.44887  160.633  A
+    right, 1   1.66895    4.44887  160.633  A
+    right, 2   1.66895    4.44887  160.633  A
     """
     checks.instance(rotor, "rotor", (ReducedRotor, SolidRotor, RotorTrain))
     values = checks.ascending(frequencies, "frequencies", "rad/s")
@@ -198,16 +197,16 @@ def sensitivity(
         for element, motion in zip(assembly.elements, assembly.motions, strict=True)
         if isinstance(element.law, ControlledSupport)
     ]
-    motions = motions_over(model, [speed], held=True)
-    heard, growth = Content.of(model).named(motions).inertial[0], motions.values.real[0]
-    worst = np.nanargmax(growth)
-    if growth[worst] > motions.bounds[0]:
+    state = stability(model, [speed], accuracy=None)
+    heard, growth = state.frequencies_inertial[0], state.exponents.real[0]
+    if not state.stable[0]:
+        worst = state.least_stable[0]
         raise ValueError(
             f"supports: unstable at {speed:g} rad/s: a motion of {heard[worst]:.4g} rad/s grows by "
             f"{growth[worst]:.4g} 1/s, and there is no sensitivity of an unstable loop; see "
             "stability(…), change the controller"
         )
-    own = heard[np.abs(growth) > motions.bounds[0]]
+    own = heard[np.abs(growth) > state.bounds[0]]
     values = np.union1d(values, own[(own > values[0]) & (own < values[-1])])
 
     def found(at: np.ndarray) -> np.ndarray:
@@ -219,23 +218,12 @@ def sensitivity(
 
     rows = found(values)
     for _ in range(_ROUNDS):  # a wide peak is at no own frequency
-        more = np.setdiff1d(_around_peaks(values, np.abs(rows)), values)
-        if more.size:
-            values, rows = np.r_[values, more], np.hstack([rows, found(more)])
-            order = np.argsort(values)
-            values, rows = values[order], rows[:, order]
+        largest = np.nanargmax(np.abs(rows), axis=1)
+        sides = np.clip([largest - 1, largest + 1], 0, len(values) - 1)
+        values = np.union1d(values, np.linspace(*values[sides], _AROUND))
+        rows = found(values)
     names = [f"{name}, {number}" for name, _ in bearings for number in (1, 2)]
     return Sensitivity(tuple(names), values, rows, speed)
-
-
-def _around_peaks(values: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    """Return frequencies between the neighbours of the largest peaks of sizes (axes, f)."""
-    sizes = np.nan_to_num(sizes)
-    middle = sizes[:, 1:-1]
-    is_peak = (middle >= sizes[:, :-2]) & (middle >= sizes[:, 2:])
-    is_peak &= middle >= _NEAR_LARGEST * sizes.max(axis=1, keepdims=True)
-    at = np.flatnonzero(np.any(is_peak, axis=0)) + 1
-    return np.linspace(values[at - 1], values[at + 1], _AROUND + 2)[1:-1].ravel()
 
 
 def _of_axis(
