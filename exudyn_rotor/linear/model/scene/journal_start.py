@@ -21,29 +21,29 @@ from exudyn_rotor.theory.rotating_axes import into_rotor_frame, parts_across
 _SOFT = 1e-8  # of the stiffest mode: resistance of free motions, which are preferred
 
 
-def journal_start(scene: LinearScene, speed: float, orders: np.ndarray) -> np.ndarray:
-    """Return harmonics (h, k) of the motion with all journals at rest in their equilibria.
+def journal_start(scene: LinearScene, speed: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the motion with all journals at rest in their equilibria, at a spin speed [rad/s].
 
-    At a spin speed [rad/s]; the orders (h,) have −1, 0 and 1 among them.
+    Orders (3,) and harmonics (3, k).
 
     Raises
     ------
     UnconvergedError
         Where a bearing has no equilibrium under its load.
     """
-    harmonics = np.zeros((len(orders), scene.size), dtype=complex)
-    at = {n: orders.tolist().index(n) for n in (-1, 0, 1)}
+    orders = np.array([-1, 0, 1])
+    harmonics = np.zeros((3, scene.size), dtype=complex)
     loads = _static_loads(scene.body)
-    harmonics[at[0]] = scene.N.T @ _tilts(scene, speed, loads)
+    harmonics[1] = scene.N.T @ _tilts(scene, speed, loads)
     # where the origin is the centre of mass, its displacement is from its place at rest
     back = into_rotor_frame(-scene.apart - scene.moved)  # from where the given state has it
     for n, shift in ((0, scene.apart), *back.items()):
-        harmonics[at[n]] += scene.translation(shift)
+        harmonics[1 + n] += scene.translation(shift)
     cage = scene.body.placement.angle
     places = {one.interface: _place(one, load, speed, cage) for one, load in loads.items()}
     places = {name: place for name, place in places.items() if np.any(place)}
     if not places:
-        return harmonics
+        return orders, harmonics
     source, columns = scene.body.selection.source, scene.columns
     U = np.vstack([interface_motion(source, name)[:2] @ columns for name in places])
     resistance = np.einsum("ir,ij,jr->r", columns, source.invariants.K, columns)
@@ -52,8 +52,8 @@ def journal_start(scene: LinearScene, speed: float, orders: np.ndarray) -> np.nd
     turned = [into_rotor_frame(np.array([*place, 0.0])) for place in places.values()]
     for n in (-1, 1):
         target = np.concatenate([harmonic[n][:2] for harmonic in turned])
-        harmonics[at[n], scene.touching] += motion @ target
-    return harmonics
+        harmonics[1 + n, scene.touching] += motion @ target
+    return orders, harmonics
 
 
 def _tilts(scene: LinearScene, speed: float, loads: dict[Bearing, np.ndarray]) -> np.ndarray:

@@ -20,8 +20,6 @@ from exudyn_rotor import checks
 from exudyn_rotor.calls import kept
 from exudyn_rotor.linear.equations import others
 from exudyn_rotor.linear.model.body import RotorAlone
-from exudyn_rotor.linear.model.spin import ARM
-from exudyn_rotor.linear.model.turning import interface_motion
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.plan import turned_origin
@@ -30,7 +28,7 @@ from exudyn_rotor.multibody.rotor.rotor_items import known_rotors
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 from exudyn_rotor.multibody.supports.ends import BaseEnd
 from exudyn_rotor.theory.axis import SpinAxis, skew
-from exudyn_rotor.theory.rotating_axes import axes_of, axial_skew
+from exudyn_rotor.theory.rotating_axes import axes_of
 
 # objects without forces: grounds and constraints
 _FORCELESS = ("Ground", "ConnectorCoordinate", "ConnectorCoordinateVector", "ConnectorDistance")
@@ -211,30 +209,6 @@ class LinearScene:
     def by_columns(self) -> np.ndarray:
         """Unknowns that move the rotor by the coordinates of the reduced rotor, (r, n)."""
         return np.linalg.pinv(self._with_spin)[: self.columns.shape[1]]
-
-    @cached_property
-    def spin_by_columns(self) -> np.ndarray:
-        """Turn of a free spin by the coordinates of the reduced rotor, (1, n); else (0, n)."""
-        return np.linalg.pinv(self._with_spin)[self.columns.shape[1] :]
-
-    @cached_property
-    def centring(self) -> np.ndarray:
-        """Unknowns (k,) that keep interfaces on the axis as the rotor turns by one rad.
-
-        The origin moves about the axis, and what is off the axis by the mesh alone is kept there,
-        as by :meth:`Spin.centred`.
-        """
-        source, about = self.body.selection.source, axial_skew(3)
-        found = self.translation(about @ self.apart)
-        if not self.is_spin_free or not source.interfaces:
-            return found
-        U = np.array([interface_motion(source, name)[:2] for name in source.interfaces])
-        about_axis = self._with_spin[:, -1]
-        arms = U @ about_axis
-        near = self.mass * np.sum(arms**2, axis=1) <= ARM * (about_axis @ about_axis)
-        across = (U[near] @ self.columns).reshape(-1, self.columns.shape[1])
-        found[self.touching] -= np.linalg.pinv(across) @ arms[near].ravel()
-        return found
 
     @kept
     def held(self, alone: RotorAlone) -> np.ndarray:

@@ -6,7 +6,7 @@ it turns with what carries the bearing, and that friction on this changes, by ab
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property, lru_cache
@@ -15,16 +15,18 @@ from typing import NamedTuple
 import exudyn
 import numpy as np
 
+from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
+from exudyn_rotor.linear.model.spin import ARM
 from exudyn_rotor.multibody.evaluation import evaluating, without_forces
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
+from exudyn_rotor.theory.rotating_axes import axial_skew
 from exudyn_rotor.theory.stiffening import stiffening
 
 _KEPT = 48  # angles whose terms of the rotor, and whose turned axes, are kept
 _LOADS = 2  # Exudyn's word for loads that depend on places and rates
-# share of a lateral stiffness per mass, or 1/s², below which one on the spin is rounding
-_SLOW = 1e-6
+_WINDING = 1e-3  # share of a stiffness on the spin that a point off the axis has in the mean
 
 
 class Forces(NamedTuple):
@@ -160,27 +162,37 @@ class Probe:
                 D[places[:, None], places] += by_rate
         return Forces(force[self.scene.free], self._of_free(K), self._of_free(D))
 
-    def on_spin(self, theta: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return stiffness and damping by Exudyn's forces on and by a free spin, (f + 1, f + 1).
+    def check_free_spin(self, angles: Iterable[float]) -> None:
+        """Refuse what Exudyn has as a spring about the axis of a free spin, in the mean of angles.
 
-        Of the free coordinates, then the spin; zero between the former. They are those of the
-        undeformed state without loads: moments of static forces by small motions are left out.
+        By the undeformed state without loads: what remains is no moment of a static force.
+
+        Raises
+        ------
+        UnconvergedError
         """
-        scene, T, found = self.scene, self.turn(theta)[0], []
-        lateral = T[:, scene.touching] / self.metres[scene.touching]
+        scene, stiffness = self.scene, []
+        if not scene.is_spin_free:
+            return
         places = np.r_[scene.free, self.spin]
-        centred = np.eye(len(places))
-        centred[:-1, -1] = T @ scene.centring
         apart, moved = (scene.translation(x) for x in (scene.apart, scene.moved))
-        x = T @ apart - self.turn(0.0)[0] @ (apart + moved)
-        self._set(theta, x, self.turn(theta)[1] @ apart)
-        for X in self._exudyn_slopes(loads=0):
-            X = centred.T @ X[np.ix_(places, places)] @ centred
-            most = np.abs(np.einsum("ij,ik,kj->j", lateral, X[:-1, :-1], lateral)).max(initial=0.0)
-            least = _SLOW * max(most / scene.mass, 1.0) * scene.body.motion.invariants.Theta
-            X[:-1, :-1] = 0.0
-            found.append(X if abs(X[-1, -1]) > least else 0.0 * X)
-        return tuple(found)
+        for theta in angles:
+            T, T1, _ = self.turn(theta)
+            self._set(theta, T @ apart - self.turn(0.0)[0] @ (apart + moved), T1 @ apart)
+            K = self._exudyn_slopes(loads=0)[0][np.ix_(places, places)]
+            lateral = T[:, scene.touching] / self.metres[scene.touching]
+            most = np.abs(np.einsum("ij,ik,kj->j", lateral, K[:-1, :-1], lateral)).max(initial=0.0)
+            about_axis = np.r_[T @ scene.translation(axial_skew(3) @ scene.apart), 1.0]
+            stiffness.append(about_axis @ K @ about_axis)
+        held = abs(np.mean(stiffness))
+        least = ARM * max(most / scene.mass, 1.0) * scene.body.motion.invariants.Theta
+        if held > max(least, _WINDING * np.abs(stiffness).max()):
+            raise UnconvergedError(
+                f"linear scene at {self.speed:g} rad/s: a spring of Exudyn holds the free spin, "
+                f"{held:.3g} N m/rad; give a flywheel as a second rotor, "
+                "connect_rotors(FlexibleCoupling(…), …), a spring to the ground as "
+                "Support(…, tilt_stiffness=…), or analyse the reduced rotor with these in a list"
+            )
 
     def _exudyn_slopes(self, loads: int = _LOADS) -> tuple[np.ndarray, np.ndarray]:
         """Return less the derivatives of Exudyn's forces at the present state.

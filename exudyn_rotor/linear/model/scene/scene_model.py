@@ -30,7 +30,7 @@ from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.scene.journal_start import journal_start
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.linear.model.scene.probe import Probe, probing
-from exudyn_rotor.linear.model.scene.steady_motion import WINDS_UP, newton, winds_up
+from exudyn_rotor.linear.model.scene.steady_motion import newton
 from exudyn_rotor.multibody.supports.connector import Connector
 from exudyn_rotor.multibody.supports.ends import BaseEnd
 
@@ -40,14 +40,7 @@ _SAME_LOAD, _NO_LOAD = 1e-6, 1e-9  # of a load, and of the rotor's weight
 _SAME = 0.05  # share of the stiffness of motions by which the unevenness of a mesh may change it
 _PACES = 0.0, 1e-4, 1e-2, 1.0  # speeds that are compared, over a frequency of the scene
 _SAME_SLOPE, _NO_SLOPE = 1e-6, 1e-12  # shares of a stiffness that are rounding of a difference
-_WOUND = 0.2  # the same by moments of springs about the axis, whose mean over a turn is 1e-5 then
 _ROUNDING = 1e-7  # share of a matrix of Exudyn's differences that is their rounding
-_NOT_HELD = 1e-6  # share of a stiffness on the spin that leaves it free
-_TURNS_OTHERWISE = (
-    "linear scene at {:g} rad/s: an object acts otherwise as the rotor turns; let it act at "
-    "interfaces, body.marker(name), or add a Support of frame='rotor' in its place; give a part "
-    "that turns with the rotor to it, add_disc(…) or add_point_mass(…) of SolidRotor"
-)
 # y(θ) by constant coordinates of a model: rows of the unknowns y, places of the coordinates, terms
 Part = tuple[np.ndarray, slice, Terms]
 
@@ -203,24 +196,6 @@ class SceneModel(LinearModel):
                 K = K + self._foreign(probe, undeformed, assembly)["K", 0, 0]
         return assembly, K
 
-    @cached_property
-    def _neutral(self) -> tuple[np.ndarray, np.ndarray]:
-        shifts, spins = super()._neutral
-        assembly, K = self._held_at_rest
-        if spins.size or not self.scene.is_spin_free or not self._has_foreign:
-            return shifts, spins
-        spin, pair = self.bodies[0].spin, np.zeros((2, self.size, 1))
-        pair[:, assembly.slices[0], 0] = spin.turn, spin.momentum
-        along, share = _turned_along(assembly, pair[0, :, 0], K, K)
-        if share > _NOT_HELD:
-            return shifts, spins
-        for body, at in zip(self.bodies, assembly.slices, strict=False):
-            if isinstance(body, StandingBody):
-                pair[:, at, 0] = along[at], body.M @ along[at]
-        pair[1] /= np.linalg.norm(pair[1])
-        pair[0] /= np.sum(pair[0] * pair[1])
-        return shifts, pair
-
     # ------------------------------------------------------------------ equations
 
     def at(self, speed: float, frequency: float | None = None) -> PeriodicSystem:
@@ -251,7 +226,7 @@ class SceneModel(LinearModel):
         ------
         UnconvergedError
             Where it changes as the rotor turns, but for the unevenness of the mesh, and where it
-            holds the spin at a speed.
+            holds a free spin.
         """
         moved, found = _Standing.of(probe, self.in_scene(assembly), assembly), []
         # what stands still has two harmonics in axes that turn
@@ -259,64 +234,33 @@ class SceneModel(LinearModel):
         angles = 2.0 * np.pi * np.arange(count) / count
         # where nothing moves, damping adds no stiffness
         seen = probe.at_rest() if self.is_undamped else probe
+        seen.check_free_spin(angles)
         for theta in angles:
             x, v = state(theta)
-            _, *slopes = seen.forces(theta, x, 0.0 * v if self.is_undamped else v, laws=False)
-            found.append(self._of_assembly(*slopes, *moved.by_coordinates(theta)))
+            _, K, D = seen.forces(theta, x, 0.0 * v if self.is_undamped else v, laws=False)
+            if self.is_undamped:
+                K, D = 0.5 * (K + K.T), 0.5 * (D - D.T)
+            by_z, by_rate = moved.by_coordinates(theta)
+            K, D = by_z.T @ _without_rounding(K) @ by_z + by_z.T @ D @ by_rate, by_z.T @ D @ by_z
+            found.append([D, _without_rounding(K)])
         orders = np.fft.fftfreq(count, 1.0 / count).round().astype(int)
         spectrum = np.fft.fft(np.array(found), axis=0) / count
-        on_spin, is_wound = self._on_spin(seen, moved, assembly, angles)
-        _, share = _turned_along(assembly, self._spin_row(assembly), spectrum[0, 1], on_spin[0, 1])
-        if is_wound and share > _NOT_HELD and probe.speed:
-            raise UnconvergedError(WINDS_UP.format(probe.speed))
         if not self.turns or not probe.speed:
             size = np.sqrt(np.abs(np.diag(assembly.K + spectrum[0, 1].real)))
-            least = _WOUND if is_wound else _SAME
-            least = least * np.outer(size, size) + _ROUNDING * size.max() ** 2
+            least = _SAME * np.outer(size, size) + _ROUNDING * size.max() ** 2
             if np.any(np.abs(spectrum[1:, 1]) > least):
-                told = WINDS_UP if is_wound else _TURNS_OTHERWISE
-                raise UnconvergedError(told.format(probe.speed))
+                raise UnconvergedError(
+                    f"linear scene at {probe.speed:g} rad/s: an object acts otherwise as the rotor "
+                    "turns; let it act at interfaces, body.marker(name), or add a Support of "
+                    "frame='rotor' in its place; give a part that turns with the rotor to it, "
+                    "add_disc(…) or add_point_mass(…) of SolidRotor"
+                )
             orders, spectrum = orders[:1], spectrum[:1]
         powers: Powers = {}
-        for n, (D, K) in zip(orders.tolist(), spectrum + on_spin[: len(spectrum)], strict=True):
+        for n, (D, K) in zip(orders.tolist(), spectrum, strict=True):
             put(powers, "D", 0, {n: D})
             put(powers, "K", 0, {n: K})
         return powers
-
-    def _on_spin(
-        self, probe: Probe, moved: _Standing, assembly: Assembly, angles: np.ndarray
-    ) -> tuple[np.ndarray, bool]:
-        """Return what foreign forces add on and by a free spin, harmonics (n, 2, l, l).
-
-        Damping and stiffness, and whether a spring about the axis is among them.
-        """
-        s, found, held = self._spin_row(assembly), [], []
-        for theta in angles if self.scene.is_spin_free else ():
-            by_z, by_rate = moved.by_coordinates(theta)
-            wide = np.vstack([by_z, s]), np.vstack([by_rate, 0.0 * s])
-            slopes = probe.on_spin(theta)
-            found.append(self._of_assembly(*slopes, *wide))
-            held.append(slopes[0][-1, -1])
-        if not np.any(found):
-            return np.zeros((len(angles), 2, len(s), len(s))), False
-        return np.fft.fft(np.array(found), axis=0) / len(angles), winds_up(held)
-
-    def _of_assembly(
-        self, K: np.ndarray, D: np.ndarray, by_z: np.ndarray, by_rate: np.ndarray
-    ) -> list[np.ndarray]:
-        """Return damping and stiffness by the coordinates of an assembly, of Exudyn's."""
-        if self.is_undamped:
-            K, D = 0.5 * (K + K.T), 0.5 * (D - D.T)
-        K = by_z.T @ _without_rounding(K) @ by_z + by_z.T @ D @ by_rate
-        return [by_z.T @ D @ by_z, _without_rounding(K)]
-
-    def _spin_row(self, assembly: Assembly) -> np.ndarray:
-        """Return the turn of a free spin by the coordinates of an assembly, (l,)."""
-        row = np.zeros(assembly.size)
-        for body, place in zip(assembly.bodies, assembly.slices, strict=True):
-            if isinstance(body, RotorBody) and len(self.scene.spin_by_columns):
-                row[place] = _by_rotor(self.scene, body, self.scene.spin_by_columns)[0][0].real
-        return row
 
     @property
     def pattern(self) -> tuple:
@@ -339,7 +283,7 @@ class SceneModel(LinearModel):
         for body, place in zip(assembly.bodies, assembly.slices, strict=True):
             if isinstance(body, RotorBody):
                 rows = np.flatnonzero(scene.touching)
-                yield rows, place, _by_rotor(scene, body, scene.by_columns)
+                yield rows, place, _by_rotor(scene, body)
             elif isinstance(body, StandingBody):
                 yield scene.others, place, {0: np.eye(body.size)}
 
@@ -361,7 +305,7 @@ class SceneModel(LinearModel):
             unit = -1.0 / one.support.film.radius if is_pads else 1.0
             parts.append((scene.own_unknowns(one), place, {0: unit * np.eye(body.size)}))
         state = _Standing.of(probe, parts, assembly)
-        start = journal_start(scene, speed, np.arange(-1, 2)).sum(axis=0).real
+        start = journal_start(scene, speed)[1].sum(axis=0).real
         z = np.linalg.lstsq(state.of_unknowns(0.0)[0], start, rcond=1e-9)[0]
         own = la.block_diag(*(body.K[0] + speed * sum(body.K[1:2]) for body in assembly.bodies))
         still, by_z, by_rate = probe.at_rest(), *state.by_coordinates(0.0)
@@ -384,11 +328,9 @@ class SceneModel(LinearModel):
             z,
             metres,
             lambda z: _TOLERANCE * max(np.abs(z * metres).max(), _SMALLEST),
-            lambda _: (
-                f"linear scene at {speed:g} rad/s: no equilibrium found; is there a load that "
-                "nothing holds, or a bearing or a magnetic force stronger than what holds the "
-                "rotor? A damped run from rest shows what it does"
-            ),
+            f"linear scene at {speed:g} rad/s: no equilibrium found; is there a load that nothing "
+            "holds, or a bearing or a magnetic force stronger than what holds the rotor? A damped "
+            "run from rest shows what it does",
             yields=True,
         )
         return replace(state, z=z)
@@ -462,28 +404,11 @@ class _Standing:
         return tuple(X @ self.z for X in self.by_coordinates(theta))
 
 
-def _turned_along(
-    assembly: Assembly, turn: np.ndarray, K: np.ndarray, on_spin: np.ndarray
-) -> tuple[np.ndarray, float]:
-    """Return how things beside a rotor turn with it, (l,), and which share of stiffness is left.
-
-    By the stiffness (l, l), and that `on_spin`, for coordinates `turn` of the rotor.
-    """
-    whole, along, beside = np.zeros(len(K)), np.zeros(len(K)), np.zeros(len(K), dtype=bool)
-    whole[assembly.slices[0]] = turn[assembly.slices[0]]
-    for body, place in zip(assembly.bodies, assembly.slices, strict=True):
-        beside[place] = isinstance(body, StandingBody)
-    force = on_spin.real @ whole
-    along[beside] = -np.linalg.lstsq(K.real[np.ix_(beside, beside)], force[beside])[0]
-    resistance = whole @ force
-    return along, abs(resistance + whole @ on_spin.real @ along) / max(abs(resistance), 1e-300)
-
-
-def _by_rotor(scene: LinearScene, body: RotorBody, rows: np.ndarray) -> Terms:
-    """Return rows (r, n) by columns of the reduced rotor by its coordinates, (r, l)."""
+def _by_rotor(scene: LinearScene, body: RotorBody) -> Terms:
+    """Return the unknowns that move the rotor by its coordinates, (r, l)."""
     source, alone = scene.body.selection.source, body.alone
     Q = alone.Q if len(alone.Q) == source.size else source.in_attached.T @ alone.Q
-    L = rows @ Q
+    L = scene.by_columns @ Q
     if body.is_apart:
         L = body.spin.about_axis(L)
     if not body.mean:
