@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState
 from exudyn_rotor.nonlinear.scene import check_origin, foundation_below
-from exudyn_rotor.theory.axis import skew
 
 
 def state_in_scene(
@@ -36,20 +33,11 @@ def state_in_scene(
             "foundation of the scene"
         )
     scene = LinearScene.of_rotor(body)
-    rest = scene.rest.copy()
-    rest[scene.free[: scene.count]] = 0.0
     (y, y_t), (turn, turn_t) = scene.of_coordinates(np.array([x[:size], x_t[:size]]))
-    # a free spin departs from the mean rotation
-    state = replace(scene, rest=rest).state(y, y_t, angle + turn, speed + turn_t)
+    state = scene.state(y, y_t, angle + turn, speed + turn_t)  # a free spin departs from the mean
     q, q_t = state.q.copy(), state.q_t.copy()
     if base is not None:
         places = np.asarray(body.mbs.systemData.GetObjectLTGODE2(base.objects["physics"]))
         T = base.foundation.mode_shapes
         q[places], q_t[places] = T @ x[size:], T @ x_t[size:]
-    # the circle on which an eccentric rotor about its axis carries the frame's origin
-    motion, places = body.motion, scene.free[: scene.count]
-    across, N = body.axis.radial(body.frame.origin), motion.free_directions
-    A = motion.orientation @ body.axis.rotation(angle)
-    q[places] += N.T @ (A - motion.orientation) @ across
-    q_t[places] += speed * N.T @ A @ skew(body.axis.direction) @ across
     return StartState(q, q_t, angle, speed)

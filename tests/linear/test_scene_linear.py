@@ -237,16 +237,19 @@ def test_what_acts_otherwise_as_the_rotor_turns_is_refused():
     assert not linear_model(mbs, body=body, axes="rotor").at(SPEED).is_constant
 
 
-def test_forces_on_a_free_spin():
+def test_a_constraint_holds_a_free_spin():
     mbs, body = with_item(CoordinateConstraint, velocityLevel=True, offset=SPEED)
     lateral = campbell(in_a_list(modes=0), [SPEED]).frequencies_inertial[0, 1:]
     found = campbell(mbs, [SPEED], body=body).frequencies_inertial[0]
     np.testing.assert_allclose(found, lateral, rtol=1e-6)
-    for inertia in (0.0, 0.02):
-        mbs, body = with_item(CoordinateSpringDamper, stiffness=50.0, inertia=inertia)
-        for analysis in (lambda: stability(mbs, [SPEED], body=body), lambda: steady_state(body)):
-            with pytest.raises(ValueError, match="holds the free spin, 50 N m/rad"):
-                analysis()
+
+
+@pytest.mark.parametrize("inertia", [0.0, 0.02])
+def test_springs_on_a_free_spin_are_refused(inertia):
+    mbs, body = with_item(CoordinateSpringDamper, stiffness=50.0, inertia=inertia)
+    for analysis in (lambda: stability(mbs, [SPEED], body=body), lambda: steady_state(body)):
+        with pytest.raises(ValueError, match="holds the free spin, 50 N m/rad"):
+            analysis()
 
 
 # ------------------------------------------------------------------ as in lists

@@ -108,12 +108,8 @@ class SteadyState:
             angles = np.array([checks.number(angle, "angle", "rad")])
         rows = scene.interface_motion(interface)
         seen = (np.exp(1j * np.outer(angles, self.orders)) @ self.harmonics).real @ rows.T
-        start = np.zeros((2, 3))
-        if scene.count:  # a frame that moves starts in its origin, which may be off the axis
-            start[0, :2] = (scene.axes.T @ body.axis.radial(body.frame.origin))[:2]
         turns = np.array([axial_rotation(theta) for theta in angles])
-        motion = np.einsum("tij,tkj->tki", turns, seen.reshape(-1, 2, 3) - start) + start
-        motion[:, 0] += scene.moved
+        motion = np.einsum("tij,tkj->tki", turns, seen.reshape(-1, 2, 3))
         return motion.mean(axis=0).ravel()
 
 
@@ -230,5 +226,5 @@ def _begin(scene: LinearScene, start: SteadyState | StartState) -> tuple[np.ndar
     if of_steady:
         return start.orders, start.harmonics
     T = scene.turn(start.angle)[0]
-    y = np.linalg.lstsq(T, (start.q - scene.rest)[scene.free])[0]
+    y = np.linalg.lstsq(T, (start.q - scene.rest)[scene.free])[0] - scene.undeformed
     return np.array([0]), y[None].astype(complex)

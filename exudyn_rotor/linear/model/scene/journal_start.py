@@ -35,10 +35,6 @@ def journal_start(scene: LinearScene, speed: float) -> tuple[np.ndarray, np.ndar
     harmonics = np.zeros((3, scene.size), dtype=complex)
     loads = _static_loads(scene.body)
     harmonics[1] = scene.N.T @ _tilts(scene, speed, loads)
-    # where the origin is the centre of mass, its displacement is from its place at rest
-    back = into_rotor_frame(-scene.apart - scene.moved)  # from where the given state has it
-    for n, shift in ((0, scene.apart), *back.items()):
-        harmonics[1 + n] += scene.translation(shift)
     cage = scene.body.placement.angle
     places = {one.interface: _place(one, load, speed, cage) for one, load in loads.items()}
     places = {name: place for name, place in places.items() if np.any(place)}

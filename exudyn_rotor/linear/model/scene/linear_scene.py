@@ -22,7 +22,6 @@ from exudyn_rotor.linear.equations import others
 from exudyn_rotor.linear.model.body import RotorAlone
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
 from exudyn_rotor.multibody.full.full_body import reduced_body
-from exudyn_rotor.multibody.rotor.plan import turned_origin
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState
 from exudyn_rotor.multibody.rotor.rotor_items import known_rotors
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
@@ -41,6 +40,8 @@ _TURNED = 1e-3  # share of a constraint by which it is one of the spin
 class LinearScene:
     """The unknowns y of a scene: the rotor's turn with it, those of everything else do not.
 
+    They are zero where the rotor turns about its axis undeformed, and all else is as it was given.
+
     Attributes
     ----------
     body : RotorBody
@@ -49,7 +50,7 @@ class LinearScene:
     N : ndarray, shape (len(free), k)
         Motions that the scene's constraints allow.
     rest : ndarray
-        All coordinates of the given state.
+        All coordinates of the given state, the rotor's where its origin is on the axis.
     is_spin_free : bool
         Whether the spin is a coordinate of linear equations.
     """
@@ -69,10 +70,7 @@ class LinearScene:
         own = np.delete(body.layout.unknowns, [count] if body.formulation.has_spin else [])
         free = np.asarray(body.mbs.systemData.GetObjectLTGODE2(body.objects["physics"]))[own]
         made = cls(body, free, np.eye(len(free)), rest, body.formulation.has_spin)
-        rest[free[count:]] = 0.0
-        # where the rotor is when it has turned back
-        turned = turned_origin(body.selection, body.placement.rotation, rest[made.spin_coordinate])
-        rest[free[:count]] -= body.motion.free_directions.T @ turned
+        rest[free] = -made.turn(0.0)[0] @ made.undeformed
         return made
 
     @classmethod
@@ -157,22 +155,10 @@ class LinearScene:
         return axes_of(SpinAxis(self.body.motion.invariants.direction))
 
     @cached_property
-    def apart(self) -> np.ndarray:
-        """Place of the rotor's origin off the axis, along (n1, n2, e) that turn, (3,)."""
-        return self.axes.T @ self.body.axis.radial(self.body.frame.origin)
-
-    @cached_property
-    def moved(self) -> np.ndarray:
-        """Displacement of the rotor, turned back, in the given state [m].
-
-        Along (n1, n2, e) that stand still, (3,).
-        """
-        given = self.body.motion.free_directions @ self.rest[self.free[: self.count]]
-        return self.body.standing_axes.T @ given
-
-    def translation(self, x: np.ndarray) -> np.ndarray:
-        """Return the unknowns (k,) of a displacement of the rotor's origin (3,)."""
-        return self.N[: self.count].T @ x[: self.count]
+    def undeformed(self) -> np.ndarray:
+        """The rotor's origin off the axis as unknowns (k,), which ``T(θ)`` turns about the axis."""
+        apart = self.axes.T @ self.body.axis.radial(self.body.frame.origin)
+        return self.N[: self.count].T @ apart[: self.count]
 
     @cached_property
     def touching(self) -> np.ndarray:
@@ -242,7 +228,7 @@ class LinearScene:
         return motion @ self.N
 
     def turn(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return T, T', T'' of the free scene coordinates ``T(θ) y``; ' is the derivative by θ."""
+        """Return T, T', T'' by θ: the free coordinates are ``rest + T(θ) (y + undeformed)``."""
         motion, c = self.body.motion, self.count
         A = motion.orientation @ SpinAxis(motion.invariants.direction).rotation(theta)
         e = skew(motion.invariants.direction)
@@ -264,6 +250,7 @@ class LinearScene:
             Of the spin [rad], [rad/s].
         """
         T, T1, _ = self.turn(angle)
+        y = y + self.undeformed
         q, q_t = self.rest.copy(), np.zeros(len(self.rest))
         q[self.free] += T @ y
         q_t[self.free] = T @ y_t + speed * T1 @ y

@@ -21,7 +21,6 @@ from exudyn_rotor.linear.model.spin import ARM
 from exudyn_rotor.multibody.evaluation import evaluating, without_forces
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
-from exudyn_rotor.theory.rotating_axes import axial_skew
 from exudyn_rotor.theory.stiffening import stiffening
 
 _KEPT = 48  # angles whose terms of the rotor, and whose turned axes, are kept
@@ -118,7 +117,7 @@ class Probe:
         return metres
 
     def _rotor_terms(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Return the rotor's M, D, K and constant force at Ω, in the free coordinates."""
+        """Return M, D, K of the rotor and the force on it undeformed at Ω, free coordinates."""
         body, size = self.scene.body, len(self.scene.free)
         form = replace(
             body.motion.formulation, spin=ConstantSpeed(self.speed, theta), spin_coupling="full"
@@ -137,7 +136,9 @@ class Probe:
         by_q, by_v = motion.jacobian(0.0, zero, zero)
         full = np.zeros((3, size, size))
         full[:, : motion.size, : motion.size] = motion.mass_matrix(0.0, zero), -by_v, -by_q
-        return *full, np.r_[motion.forces(0.0, zero, zero), np.zeros(size - motion.size)]
+        constant = np.r_[motion.forces(0.0, zero, zero), np.zeros(size - motion.size)]
+        moved = (X @ self.scene.undeformed for X in self.turn(theta)[::-1])
+        return *full, constant - sum(X @ x for X, x in zip(full, moved, strict=True))
 
     # ------------------------------------------------------------------ forces
 
@@ -175,14 +176,14 @@ class Probe:
         if not scene.is_spin_free:
             return
         places = np.r_[scene.free, self.spin]
-        apart, moved = (scene.translation(x) for x in (scene.apart, scene.moved))
+        still = np.zeros((2, len(scene.free)))
         for theta in angles:
-            T, T1, _ = self.turn(theta)
-            self._set(theta, T @ apart - self.turn(0.0)[0] @ (apart + moved), T1 @ apart)
+            T, T1, _ = scene.turn(theta)
+            self._set(theta, *still)
             K = self._exudyn_slopes(loads=0)[0][np.ix_(places, places)]
             lateral = T[:, scene.touching] / self.metres[scene.touching]
             most = np.abs(np.einsum("ij,ik,kj->j", lateral, K[:-1, :-1], lateral)).max(initial=0.0)
-            about_axis = np.r_[T @ scene.translation(axial_skew(3) @ scene.apart), 1.0]
+            about_axis = np.r_[T1 @ scene.undeformed, 1.0]
             stiffness.append(about_axis @ K @ about_axis)
         held = abs(np.mean(stiffness))
         least = ARM * max(most / scene.mass, 1.0) * scene.body.motion.invariants.Theta
@@ -222,10 +223,11 @@ class Probe:
         return theta / self.speed if self.speed else 0.0
 
     def _set(self, theta: float, x: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Put a deviation x of the free coordinates and their rates v into the scene."""
+        """Put the undeformed rotor, deviations x of free coordinates and their rates v there."""
         data, q, q_t = self.mbs.systemData, self.scene.rest.copy(), 0.0 * self.scene.rest
-        q[self.scene.free] += x
-        q_t[self.scene.free] = v
+        T, T1, _ = self.turn(theta)
+        q[self.scene.free] += x + T @ self.scene.undeformed
+        q_t[self.scene.free] = v + T1 @ self.scene.undeformed
         q[self.spin], q_t[self.spin] = theta, self.speed
         data.SetODE2Coordinates(q)
         data.SetODE2Coordinates_t(q_t)
