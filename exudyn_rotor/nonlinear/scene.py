@@ -18,7 +18,11 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.model.build import Target
-from exudyn_rotor.linear.model.scene.linear_scene import check_scene, known_objects
+from exudyn_rotor.linear.model.scene.linear_scene import (
+    check_scene,
+    known_objects,
+    objects_beside,
+)
 from exudyn_rotor.linear.model.scene.scene_train import scene_train
 from exudyn_rotor.linear.response.loads import HarmonicForce
 from exudyn_rotor.multibody.full.full_body import reduced_body
@@ -119,15 +123,13 @@ def _in_mesh(base: SceneFoundation, body: RotorBody) -> Foundation:
 
 def _check_objects(body: RotorBody, base: SceneFoundation | None) -> None:
     """Refuse all objects but known ones."""
-    mbs, known = body.mbs, known_objects(body)
+    known = known_objects(body)
     known |= set() if base is None else set(map(int, base.objects.values()))
-    for number in set(range(mbs.systemData.NumberOfObjects())) - known:
-        item = mbs.GetObject(number)
-        if item["objectType"] != "Ground":
-            raise ValueError(
-                f"mbs: object {number} ({item['objectType']} {item['name']!r}) is no law of this "
-                f"package; {_INSTEAD}"
-            )
+    for item in objects_beside(body.mbs, known):
+        raise ValueError(
+            f"mbs: object {item['name']!r} ({item['objectType']}) is no law of this package; "
+            f"{_INSTEAD}"
+        )
 
 
 def _loads(

@@ -216,12 +216,11 @@ def _begin(scene: LinearScene, start: SteadyState | StartState) -> tuple[np.ndar
     how = "steady_state(body) makes one, and its state()"
     checks.instance(start, "start", (SteadyState, StartState), how)
     of_steady = isinstance(start, SteadyState)
-    given = (start.scene.size, start.scene.count) if of_steady else (len(start.q), scene.count)
-    wanted = (scene.size if of_steady else len(scene.rest)), scene.count
-    if given != wanted:
+    given, own = (start.scene.rest, start.scene.count) if of_steady else (start.q, scene.count)
+    if (len(given), own) != (len(scene.rest), scene.count):
         raise ValueError(
-            f"start: has {given[0]} coordinates with {given[1]} translations of the rotor, this "
-            f"scene {wanted[0]} with {wanted[1]}; it is of another scene"
+            f"start: has {len(given)} coordinates, this scene {len(scene.rest)}; it is of another "
+            "scene"
         )
     if of_steady:
         return start.orders, start.harmonics

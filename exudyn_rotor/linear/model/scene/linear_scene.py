@@ -29,8 +29,6 @@ from exudyn_rotor.multibody.supports.ends import BaseEnd
 from exudyn_rotor.theory.axis import SpinAxis, skew
 from exudyn_rotor.theory.rotating_axes import axes_of
 
-# objects without forces: grounds and constraints
-_FORCELESS = ("Ground", "ConnectorCoordinate", "ConnectorCoordinateVector", "ConnectorDistance")
 _HELD = 1e-8  # share of a motion of the rotor that is none of the scene
 _TOUCHED = 1e-14  # entry of a constraint below which it is none of a coordinate
 _TURNED = 1e-3  # share of a constraint by which it is one of the spin
@@ -182,19 +180,18 @@ class LinearScene:
         about_axis = source.invariants.moved(source.axis.project(center) - center).g
         return np.column_stack([self.columns, about_axis])
 
+    @cached_property
+    def _by_columns(self) -> np.ndarray:
+        return np.linalg.pinv(self._with_spin)
+
     def of_coordinates(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return unknowns (…, r) that move the rotor, and the turn of a free spin (…).
 
         By the coordinates (…, n) of the reduced rotor.
         """
-        found = x @ np.linalg.pinv(self._with_spin).T
+        found = x @ self._by_columns.T
         count = self.columns.shape[1]
         return found[..., :count], found[..., count:].sum(axis=-1)
-
-    @cached_property
-    def by_columns(self) -> np.ndarray:
-        """Unknowns that move the rotor by the coordinates of the reduced rotor, (r, n)."""
-        return np.linalg.pinv(self._with_spin)[: self.columns.shape[1]]
 
     @kept
     def held(self, alone: RotorAlone) -> np.ndarray:
@@ -264,11 +261,9 @@ class LinearScene:
     def foreign_items(self) -> list[dict]:
         """Objects and loads that are neither the rotor's own nor its supports, as dictionaries."""
         mbs, body = self.body.mbs, self.body
-        objects = set(range(mbs.systemData.NumberOfObjects())) - known_objects(body)
         weight = set() if body.gravity_load is None else {int(body.gravity_load)}
         loads = set(range(mbs.systemData.NumberOfLoads())) - weight
-        items = filter(_has_force, map(mbs.GetObject, sorted(objects)))
-        return [*items, *map(mbs.GetLoad, sorted(loads))]
+        return [*objects_beside(mbs, known_objects(body)), *map(mbs.GetLoad, sorted(loads))]
 
     @cached_property
     def others(self) -> np.ndarray:
@@ -298,13 +293,10 @@ def known_objects(body: RotorBody) -> set[int]:
     return found | {int(number) for one in body.supports for number in one.objects}
 
 
-def _has_force(item: dict) -> bool:
-    """Return whether an object may have a force: no ground, no constraint, no mere mass."""
-    kind = item["objectType"]
-    if kind == "GenericODE2":
-        names = "stiffnessMatrix", "dampingMatrix", "forceVector", "forceUserFunction"
-        return any(np.any(item[name]) for name in names)
-    return kind not in _FORCELESS and not kind.startswith("Joint")
+def objects_beside(mbs: exudyn.MainSystem, known: set[int]) -> list[dict]:
+    """Return all objects but known ones and grounds, as dictionaries."""
+    numbers = sorted(set(range(mbs.systemData.NumberOfObjects())) - known)
+    return [item for item in map(mbs.GetObject, numbers) if item["objectType"] != "Ground"]
 
 
 def check_body(mbs: exudyn.MainSystem, body: RotorBody) -> None:

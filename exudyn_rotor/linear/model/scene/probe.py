@@ -36,15 +36,6 @@ class Forces(NamedTuple):
     D: np.ndarray
 
 
-class LinearPoint(NamedTuple):
-    """M, D, K (k, k) at one angle, and the residual of y (k,)."""
-
-    M: np.ndarray
-    D: np.ndarray
-    K: np.ndarray
-    residual: np.ndarray
-
-
 class Probe:
     """Forces and masses at any state of a scene, spin Ω, beside the rotor's own terms.
 
@@ -242,16 +233,15 @@ class Probe:
         """Return the residual of y, with its rate and acceleration, at one angle (k,)."""
         return self._balance(theta, *state, slopes=False)[-1]
 
-    def linearised(self, theta: float, *state: np.ndarray) -> LinearPoint:
-        """Return the scene linearised about y, with its rate and acceleration, at one angle."""
+    def linearised(self, theta: float, *state: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Return M, D, K (k, k) about y, its rate and acceleration at one angle, and residual (k,).
+
+        The residual is what the motion leaves unbalanced.
+        """
         M, D, K, residual = self._balance(theta, *state, slopes=True)
         T, T1, T2 = self.turn(theta)
-        return LinearPoint(
-            T.T @ M @ T,
-            T.T @ (2.0 * M @ T1 + D @ T),
-            T.T @ (M @ T2 + D @ T1 + K @ T),
-            residual,
-        )
+        by_rate, by_place = 2.0 * M @ T1 + D @ T, M @ T2 + D @ T1 + K @ T
+        return T.T @ M @ T, T.T @ by_rate, T.T @ by_place, residual
 
     def _balance(
         self, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray, slopes: bool

@@ -34,8 +34,7 @@ from exudyn_rotor.linear.model.scene.steady_motion import newton
 from exudyn_rotor.multibody.supports.connector import Connector
 from exudyn_rotor.multibody.supports.ends import BaseEnd
 
-_WAVE_FREE = 0.99  # share of a held motion that must be no lateral wave
-_TOLERANCE, _SMALLEST = 1e-8, 1e-5  # of an equilibrium, and [m] of the least that counts as one
+_TOLERANCE = 1e-8  # of an equilibrium
 _SAME_LOAD, _NO_LOAD = 1e-6, 1e-9  # of a load, and of the rotor's weight
 _SAME = 0.05  # share of the stiffness of motions by which the unevenness of a mesh may change it
 _PACES = 0.0, 1e-4, 1e-2, 1.0  # speeds that are compared, over a frequency of the scene
@@ -123,35 +122,14 @@ class SceneModel(LinearModel):
     def _alone(self, name: str, whole: bool) -> RotorAlone:
         return self.scene.rotor(super()._alone(name, whole), whole)
 
-    @cached_property
-    def _own_unevenness(self) -> dict[str, float]:
-        alone = super()._alone("", False)
-        held = self.scene.held(alone)  # a motion held across the axis turns with the rotor
-        still = np.linalg.norm(alone.turning.still @ held, axis=0)
-        return {"": np.inf} if np.any(still <= _WAVE_FREE) else super()._own_unevenness
-
     @property
     def _is_alike(self) -> bool:
         return not self._has_foreign and super()._is_alike
 
     @cached_property
     def stiffness_varies(self) -> bool:
-        """Whether a stiffness depends on the speed; a foreign one may, with the equilibrium.
-
-        A constant one counts as such, too, where it is negative for a motion: speeds are searched
-        one by one then.
-        """
-        varies = super().stiffness_varies
-        if varies or not self._has_foreign:
-            return varies
-        if not self._is_list:
-            return True
-        try:
-            rest, basis = self.at(0.0), self.moving_basis
-        except NO_EQUATIONS:
-            return True
-        K = rest.K[0] if basis is None else rest.projected(basis).K[0]
-        return bool(np.linalg.eigvalsh(0.5 * (K + K.T)).min(initial=1.0) <= 0.0)
+        """Whether a stiffness depends on the speed; a foreign one may, with the equilibrium."""
+        return super().stiffness_varies or (self._has_foreign and not self._is_list)
 
     @property
     def richer(self) -> LinearModel | None:
@@ -327,7 +305,7 @@ class SceneModel(LinearModel):
             unbalanced,
             z,
             metres,
-            lambda z: _TOLERANCE * max(np.abs(z * metres).max(), _SMALLEST),
+            _TOLERANCE,
             f"linear scene at {speed:g} rad/s: no equilibrium found; is there a load that nothing "
             "holds, or a bearing or a magnetic force stronger than what holds the rotor? A damped "
             "run from rest shows what it does",
@@ -408,7 +386,7 @@ def _by_rotor(scene: LinearScene, body: RotorBody) -> Terms:
     """Return the unknowns that move the rotor by its coordinates, (r, l)."""
     source, alone = scene.body.selection.source, body.alone
     Q = alone.Q if len(alone.Q) == source.size else source.in_attached.T @ alone.Q
-    L = scene.by_columns @ Q
+    L = scene.of_coordinates(Q.T)[0].T
     if body.is_apart:
         L = body.spin.about_axis(L)
     if not body.mean:

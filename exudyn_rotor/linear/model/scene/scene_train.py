@@ -14,7 +14,11 @@ import numpy as np
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.linear.model.rotor_train import Link, RotorTrain
-from exudyn_rotor.linear.model.scene.linear_scene import check_body, known_objects
+from exudyn_rotor.linear.model.scene.linear_scene import (
+    check_body,
+    known_objects,
+    objects_beside,
+)
 from exudyn_rotor.multibody.drives import SceneConnection
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.rotor_items import known_rotors
@@ -129,11 +133,9 @@ def _check_nothing_else(mbs: exudyn.MainSystem, bodies: Sequence[RotorBody]) -> 
     """Refuse objects that are not of the rotors, their supports and connections."""
     known = set().union(*map(known_objects, bodies))
     known |= {int(number) for body in bodies for one in body.drives for number in one.objects}
-    for number in set(range(mbs.systemData.NumberOfObjects())) - known:
-        item = mbs.GetObject(number)
-        if item["objectType"] != "Ground":
-            raise ValueError(
-                f"linear scene: object {number} ({item['objectType']} {item['name']!r}) is neither "
-                "of the rotors nor added by add_supports or connect_rotors, so that a train does "
-                f"not have it; {_BY_HAND}"
-            )
+    for item in objects_beside(mbs, known):
+        raise ValueError(
+            f"linear scene: {item['name']!r} ({item['objectType']}) is neither of the rotors nor "
+            "added by add_supports or connect_rotors, so that a train does not have it; "
+            f"{_BY_HAND}"
+        )

@@ -30,7 +30,6 @@ _LEFT_OUT = 3  # harmonics fewer than samples
 _ROUGH_SAMPLES = 48  # from which on the harmonics of a contact count as enough:
 _ROUGH = 1e-3  # share of the motion that the highest may have,
 _SLOWLY = 0.01  # where twice the samples leave more of them than this share
-_SOLVED = 0.01  # of what the harmonics leave out, beyond which more iterations are of no use
 _UNHELD = 1e-6  # m/s² by which loads may accelerate what nothing holds: round-off
 _BALANCED = 1e-8  # m/s² that may be left where a contact resists with the square of its depth,
 _FEW_ITERATIONS, _MOST_ITERATIONS = 4, 60  # after these
@@ -43,10 +42,6 @@ _AS_MUCH = 1.0 + 1e-9  # times what is unbalanced: the same but for rounding
 _ROUNDING = 1e-13  # of the largest stiffness: what turning by a skew axis leaves of none
 _NOISE = 1e-10  # share of the largest row below which a row of a stiffness is round-off
 _SINGULAR = 1e-12  # reciprocal condition of a stiffness that leaves a motion free
-
-
-class _UnheldError(UnconvergedError):
-    """Where the search begins, nothing holds a load."""
 
 
 def steady_motion(
@@ -81,9 +76,8 @@ def _turning(probe: Probe, tolerance: float, start: Motion | None) -> Motion:
     while samples <= _MOST_SAMPLES:
         try:
             motion, tail = _Search(probe, samples, tolerance).found(motion)
-        except UnconvergedError as error:  # a film that is all but closed is unlike itself at few
-            is_told = isinstance(error, _UnheldError) or samples >= _ROUGH_SAMPLES
-            if is_told or start is not None:
+        except UnconvergedError:  # a film that is all but closed is unlike itself at few
+            if samples >= _ROUGH_SAMPLES or start is not None:
                 raise
             motion, tail = None, np.inf
         is_rough = samples >= _ROUGH_SAMPLES and _SLOWLY * before < tail <= _ROUGH
@@ -163,14 +157,15 @@ class _Search:
             self._unbalanced,
             self._parts(values),
             np.tile(probe.metres, 2 * count + 1),
-            self._goal,
+            self.tolerance,
             self._lost,
             yields=not probe.speed,
         )
-        size, tail = self._sizes(parts)
-        mean, upper = self._harmonics(parts)
-        motion = np.concatenate([upper[::-1].conj(), mean, upper])
-        return (np.arange(-count, count + 1), motion), tail / size
+        parts = parts.reshape(2 * count + 1, -1)
+        upper = (parts[1 : count + 1] - 1j * parts[count + 1 :]) / np.sqrt(2.0)
+        motion = np.concatenate([upper[::-1].conj(), parts[:1], upper])
+        sizes = np.abs(motion * probe.metres).max(axis=1)
+        return (np.arange(-count, count + 1), motion), sizes[:2].max() / max(sizes.max(), _SMALLEST)
 
     # ------------------------------------------------------------------ equations of the parts
 
@@ -200,27 +195,6 @@ class _Search:
         parts = parts.reshape(2 * len(self.orders) + 1, -1)
         return zip(self.angles, *(wave @ parts for wave in self.waves), strict=True)
 
-    def _harmonics(self, parts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the mean (1, k), and the harmonics (h, k) of positive orders."""
-        count = len(self.orders)
-        parts = parts.reshape(2 * count + 1, -1)
-        return parts[:1], (parts[1 : count + 1] - 1j * parts[count + 1 :]) / np.sqrt(2.0)
-
-    # ------------------------------------------------------------------ how far the search is
-
-    def _sizes(self, parts: np.ndarray) -> tuple[float, float]:
-        """Return the size of a motion [m], and what its harmonics leave out at a speed."""
-        harmonics = np.concatenate(self._harmonics(parts))
-        sizes = np.abs(harmonics * self.probe.metres).max(axis=1)
-        tail = sizes[-2:].max() if self.probe.speed else 0.0
-        return float(max(sizes.max(), _SMALLEST)), float(tail)
-
-    def _goal(self, parts: np.ndarray) -> float:
-        """Return the change of a motion that is the last [m]."""
-        size, tail = self._sizes(parts)
-        limit = self.tolerance * size
-        return max(limit, _SOLVED * (tail - limit))
-
     @property
     def _lost(self) -> str:
         return (
@@ -239,7 +213,7 @@ def newton(
     unbalanced: Callable[[np.ndarray], np.ndarray],
     start: np.ndarray,
     metres: np.ndarray,
-    goal: Callable[[np.ndarray], float],
+    tolerance: float,
     lost: str,
     *,
     yields: bool,
@@ -255,8 +229,8 @@ def newton(
         Stiffness (k, k) and what is unbalanced (k,), and the latter alone.
     metres : ndarray, shape (k,)
         Per unit of each coordinate.
-    goal : callable
-        A change up to which is the last [m].
+    tolerance : float
+        Size of the last change relative to the coordinates.
     lost : str
         What to say where there are none.
     """
@@ -268,7 +242,7 @@ def newton(
         pull = np.abs(left / metres).max(initial=0.0)
         held = pull <= _UNHELD * scene.mass
         if not held and not yields:
-            raise (UnconvergedError if iteration else _UnheldError)(lost)
+            raise UnconvergedError(lost)
         if not held:
             softness = pull / reach * np.diag(metres**2)
             step, reach = _solved(K + softness, -residual)[0], _FURTHER * reach
@@ -283,7 +257,8 @@ def newton(
         y = y + share * step
         if np.abs(y * metres).max(initial=0.0) > far or stalled == _STALLED:
             break
-        is_last = held and np.abs(step * metres).max(initial=0.0) < goal(y)
+        goal = tolerance * np.abs(y * metres).max(initial=_SMALLEST)
+        is_last = held and np.abs(step * metres).max(initial=0.0) < goal
         balanced = np.abs(residual / metres).max(initial=0.0) <= enough
         if is_last or (balanced and iteration > _FEW_ITERATIONS):
             return y
