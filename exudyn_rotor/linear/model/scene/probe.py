@@ -96,15 +96,12 @@ class Probe:
     def metres(self) -> np.ndarray:
         """How many metres each of the unknowns counts as, (k,).
 
-        What moves as much kinetic energy as the rotor by a metre; of a light pad or controller
-        at least one.
+        What moves as much kinetic energy as the rotor by a metre; beside the rotor at least one.
         """
         T, scene = self.turn(0.0)[0], self.scene
         masses = np.diag(T.T @ self.rotor_terms(0.0)[0] @ T + self.mass_beside)
         metres = np.sqrt(np.maximum(masses, 1e-300) / scene.mass)
-        for one in scene.body.supports:
-            own = scene.own_unknowns(one)
-            metres[own] = np.maximum(metres[own], 1.0)
+        metres[~scene.touching] = np.maximum(metres[~scene.touching], 1.0)  # of light pads
         return metres
 
     def _rotor_terms(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

@@ -274,11 +274,12 @@ class SceneModel(LinearModel):
         _, controllers = self._elements_for(0, "full")
         assembly = Assembly((*self._bodies(0, speed == 0.0), *controllers), (), 0)
         metres = np.sqrt(np.maximum(np.diag(assembly.M), 1e-300) / scene.mass)
+        beside = slice(assembly.slices[0].stop, None)
+        metres[beside] = np.maximum(metres[beside], 1.0)  # of light pads
         parts = list(self.in_scene(assembly))
         with_own = [one for one in scene.body.supports if one.connector.own]
         first = len(assembly.bodies) - len(controllers)
         for body, place, one in zip(controllers, assembly.slices[first:], with_own, strict=True):
-            metres[place] = np.maximum(metres[place], 1.0)  # of light pads
             is_pads = isinstance(one.support, TiltingPadBearing)
             unit = -1.0 / one.support.film.radius if is_pads else 1.0
             parts.append((scene.own_unknowns(one), place, {0: unit * np.eye(body.size)}))
