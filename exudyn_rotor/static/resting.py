@@ -1,8 +1,8 @@
 """Bearings at rest under a load: the linear equation between place and force beside a state.
 
-Where a bearing has the force R on the journal, which rests at u (and u_s at a sensor),
+Where a bearing has the force R on the journal, which rests at u,
 
-    A u + A_s u_s + B R = c.
+    A u + B R = c.
 
 A film has the equation of its compliance, about its equilibrium under the load −R: films stiffen so
 much that Newton's method in the place would overshoot the clearance. The two films of a floating
@@ -31,13 +31,12 @@ _FILMS = JournalBearing | ShortJournalBearing | TiltingPadBearing
 
 @dataclass(frozen=True, eq=False)
 class Resting:
-    """``A u + A_s u_s + B R = c`` of a bearing, each (2, 2), c (2,).
+    """``A u + B R = c`` of a bearing, each (2, 2), c (2,).
 
     A rigid bearing is next to rigid, so that several under a rigid rotor share its weight.
     """
 
     A: np.ndarray
-    A_s: np.ndarray
     B: np.ndarray
     c: np.ndarray
     is_rigid: bool = False
@@ -54,8 +53,8 @@ class RigidBearing:
 
 Nonlinear = Bearing | MagneticBearing | FloatingRingBearing | RigidBearing
 
-HELD = Resting(np.eye(2), _NONE, _NONE, np.zeros(2), is_rigid=True)  # in the centre
-UNLOADED = Resting(_NONE, _NONE, np.eye(2), np.zeros(2))
+HELD = Resting(np.eye(2), _NONE, np.zeros(2), is_rigid=True)  # in the centre
+UNLOADED = Resting(_NONE, np.eye(2), np.zeros(2))
 
 
 def starting_place(bearing: Nonlinear, speed: float, force: np.ndarray) -> np.ndarray:
@@ -65,21 +64,15 @@ def starting_place(bearing: Nonlinear, speed: float, force: np.ndarray) -> np.nd
     return np.zeros(2)
 
 
-def resting(
-    bearing: Nonlinear,
-    speed: float,
-    place: np.ndarray,
-    sensed: np.ndarray,
-    force: np.ndarray,
-) -> Resting:
-    """Return the equation of a bearing beside places of journal and sensor, and a force on it.
+def resting(bearing: Nonlinear, speed: float, place: np.ndarray, force: np.ndarray) -> Resting:
+    """Return the equation of a bearing beside a place of its journal and a force on it.
 
     A ValueError or ArithmeticError says that a film has no equilibrium under this force.
     """
     if isinstance(bearing, RigidBearing):
         return HELD
     if isinstance(bearing, MagneticBearing):
-        return _of_magnets(bearing, place, sensed)
+        return _of_magnets(bearing, place)
     if isinstance(bearing, FloatingRingBearing):
         films = replace(bearing, load=-force).films(speed)
         rest = sum(film.equilibrium(whirl, -force) for film, whirl in films)
@@ -94,21 +87,21 @@ def resting(
     still = 0.0, 0.0, 0.0, speed
     at = np.array(bearing.law(*place, *still))
     tangent = bearing.slopes(*place, *still)[0]
-    return Resting(tangent, _NONE, np.eye(2), at + tangent @ place)
+    return Resting(tangent, np.eye(2), at + tangent @ place)
 
 
 def _of_compliance(rest: np.ndarray, compliance: np.ndarray, force: np.ndarray) -> Resting:
     """Return the equation of what rests at a place (2,) under less the force (2,) on it."""
-    return Resting(np.eye(2), _NONE, compliance, rest + compliance @ force)
+    return Resting(np.eye(2), compliance, rest + compliance @ force)
 
 
-def _of_magnets(bearing: MagneticBearing, place: np.ndarray, sensed: np.ndarray) -> Resting:
-    """Return the equation of magnets; an integral brings what the sensors show to zero."""
+def _of_magnets(bearing: MagneticBearing, place: np.ndarray) -> Resting:
+    """Return the equation of magnets with sensors where they are; an integral centres them."""
     if bearing.controller.integral:
-        return Resting(_NONE, np.eye(2), _NONE, np.zeros(2))
+        return Resting(np.eye(2), _NONE, np.zeros(2))
     axes, gain = bearing.control_axes, bearing.controller.proportional
-    at = list(zip(-gain * (axes @ sensed), axes @ place, strict=True))
-    force = axes.T @ [bearing.actuator.law(*one) for one in at]
-    by_current, by_place = np.array([bearing.actuator.slopes(*one) for one in at]).T
-    A, A_s = -axes.T @ np.diag(by_place) @ axes, axes.T @ np.diag(gain * by_current) @ axes
-    return Resting(A, A_s, np.eye(2), force + A @ place + A_s @ sensed)
+    states = [(-gain * x, x) for x in axes @ place]
+    force = axes.T @ [bearing.actuator.law(*one) for one in states]
+    by_current, by_place = np.array([bearing.actuator.slopes(*one) for one in states]).T
+    tangent = axes.T @ np.diag(gain * by_current - by_place) @ axes
+    return Resting(tangent, np.eye(2), force + tangent @ place)
