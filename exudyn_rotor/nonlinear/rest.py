@@ -121,16 +121,12 @@ class Unloaded:
         waves = sorted(self.journals)
         C = np.concatenate([self.journals[m] for m in waves])
         wide = N + revolutions * max(map(abs, waves))
-        n = np.arange(-wide, wide + 1)
-        orders = np.array([(k, each) for k in range(K + 1) for each in n if k or each >= 0])
-        half = C @ self.answer(orders @ np.array(rates), C.T)
+        k, n = np.arange(K + 1)[:, None], np.arange(-wide, wide + 1)
+        half = C @ self.answer((rates[0] * k + rates[1] * n).ravel(), C.T)
         d = len(C) // len(waves)
-        known = half.reshape(len(orders), len(waves), d, len(waves), d)
+        half = half.reshape(K + 1, 2 * wide + 1, len(waves), d, len(waves), d)
         # those of −k, −n are conjugates, with opposite m
-        turned = known[::-1, ::-1, :, ::-1].conj()
-        known = np.concatenate([turned[:-1], known]).reshape(
-            2 * K + 1, 2 * wide + 1, len(waves), d, len(waves), d
-        )
+        known = np.concatenate([half[:0:-1, ::-1, ::-1, :, ::-1].conj(), half])
         inside, found = np.arange(-N, N + 1), {}
         for b, m in enumerate(waves):
             for a, other in enumerate(waves):
@@ -183,13 +179,11 @@ class Rest:
 
     def _motion(self, loads: Waves) -> Waves:
         """Return the motion (r,) under loads (r,), by harmonics of both signs."""
-        upper = [order for order in loads if order >= (0, 0)]
-        if not upper:
+        if not loads:
             return {}
-        F = np.array([loads[order] for order in upper])[..., None]
-        x = self.unloaded.answer(np.array(upper) @ np.array(self.rates), F)[..., 0]
-        found = dict(zip(upper, x, strict=True))
-        return {(-k, -n): each.conj() for (k, n), each in found.items()} | found
+        F = np.array(list(loads.values()))[..., None]
+        x = self.unloaded.answer(np.array(list(loads)) @ np.array(self.rates), F)[..., 0]
+        return dict(zip(loads, x, strict=True))
 
 
 def real_rows(journals: Terms) -> np.ndarray:

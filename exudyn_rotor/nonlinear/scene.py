@@ -127,8 +127,7 @@ def _check_objects(body: RotorBody, base: SceneFoundation | None) -> None:
     known |= set() if base is None else set(map(int, base.objects.values()))
     for item in objects_beside(body.mbs, known):
         raise ValueError(
-            f"mbs: object {item['name']!r} ({item['objectType']}) is no law of this package; "
-            f"{_INSTEAD}"
+            f"mbs: {item['objectType']} {item['name']!r} is no law of this package; {_INSTEAD}"
         )
 
 

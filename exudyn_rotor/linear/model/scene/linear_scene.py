@@ -81,8 +81,7 @@ class LinearScene:
         ------
         TypeError, ValueError
             For a system that is not assembled, a body of another system, a second rotor,
-            coordinates of first order, and constraints that turn with the rotor or tie its free
-            spin to something.
+            coordinates of first order, and constraints that turn with the rotor.
         """
         check_scene(mbs, body)
         alone = cls.of_rotor(body)
@@ -99,11 +98,6 @@ class LinearScene:
                 "linear scene: a constraint turns with the rotor; hold the rotor by springs "
                 "(bearings) instead of joints, and give a part that turns with it to the rotor, "
                 "add_disc(…) or add_point_mass(…) of SolidRotor"
-            )
-        if scene.is_spin_free and np.any(holds_spin & (sizes > _TURNED * turned)):
-            raise ValueError(
-                "linear scene: a constraint ties the free spin to another coordinate; use springs, "
-                "or connect_rotors(…) to a second rotor"
             )
         # coordinates that no constraint touches stay as they are
         N = others(C[0].T) if len(C[0]) else scene.N

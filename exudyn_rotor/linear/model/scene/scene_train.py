@@ -135,7 +135,6 @@ def _check_nothing_else(mbs: exudyn.MainSystem, bodies: Sequence[RotorBody]) -> 
     known |= {int(number) for body in bodies for one in body.drives for number in one.objects}
     for item in objects_beside(mbs, known):
         raise ValueError(
-            f"linear scene: {item['name']!r} ({item['objectType']}) is neither of the rotors nor "
-            "added by add_supports or connect_rotors, so that a train does not have it; "
-            f"{_BY_HAND}"
+            f"linear scene: {item['objectType']} {item['name']!r} is neither of the rotors nor "
+            f"added by add_supports or connect_rotors, so that a train does not have it; {_BY_HAND}"
         )
