@@ -12,7 +12,7 @@ from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.response.response import DIRECTIONS, AtPlaces
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState
-from exudyn_rotor.nonlinear.run_start import state_in_scene
+from exudyn_rotor.nonlinear.scene import state_in_scene
 from exudyn_rotor.results import numbers, storable, text_table, words
 from exudyn_rotor.units import IN_HERTZ, Units
 

@@ -154,36 +154,19 @@ class Rest:
         """Ω [rad/s]."""
         return self.unloaded.speed
 
-    def moved(self) -> Waves:
-        """Return q⁰ (d,) by its harmonics (0, n)."""
-        found: Waves = {}
-        for (k, n), x in self._motion(self._given()).items():
-            for m, C in self.unloaded.journals.items():
+    def motion(self, orders: Sequence = (), forces: Sequence[np.ndarray] = ()) -> Waves:
+        """Return the resisted motion (r,) under loads and forces g (d,), by all harmonics."""
+        basis, journals = self.unloaded.basis, self.unloaded.journals
+        given = {(0, self.revolutions * n): basis.T @ F for n, F in self.loads.items()}
+        for (k, n), g in zip(orders, forces, strict=True):
+            for m, C in journals.items():
                 order = k, n + self.revolutions * m
-                found[order] = found.get(order, 0.0) + C @ x
-        return found
-
-    def coordinates(self, forces: np.ndarray, orders: np.ndarray) -> Waves:
-        """Return the motion (k,) under loads and forces g (h, d), by all harmonics."""
-        loads = self._given()
-        for (k, n), g in zip(orders.tolist(), forces, strict=True):
-            for m, C in self.unloaded.journals.items():
-                order = k, n + self.revolutions * m
-                loads[order] = loads.get(order, 0.0) + C.T @ g
-        return {order: self.unloaded.basis @ x for order, x in self._motion(loads).items()}
-
-    def _given(self) -> Waves:
-        """Return the loads (r,) by their harmonics (0, n)."""
-        basis = self.unloaded.basis
-        return {(0, self.revolutions * n): basis.T @ F for n, F in self.loads.items()}
-
-    def _motion(self, loads: Waves) -> Waves:
-        """Return the motion (r,) under loads (r,), by harmonics of both signs."""
-        if not loads:
+                given[order] = given.get(order, 0.0) + C.T @ g
+        if not given:
             return {}
-        F = np.array(list(loads.values()))[..., None]
-        x = self.unloaded.answer(np.array(list(loads)) @ np.array(self.rates), F)[..., 0]
-        return dict(zip(loads, x, strict=True))
+        F = np.array(list(given.values()))[..., None]
+        x = self.unloaded.answer(np.array(list(given)) @ np.array(self.rates), F)[..., 0]
+        return dict(zip(given, x, strict=True))
 
 
 def real_rows(journals: Terms) -> np.ndarray:
