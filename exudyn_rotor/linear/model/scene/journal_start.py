@@ -1,8 +1,8 @@
 """Where the search for the steady motion of a scene begins: journals in their equilibria.
 
 The film of a bearing without load is that of a centred journal, and from there Newton's method
-oversteps the clearance. Begun is therefore with the journals where their static loads hold them,
-and the rotor deformed as little as that allows.
+oversteps the clearance. The search therefore begins with the journals where their static loads hold
+them. How the rotor is deformed there does not matter: its equations are linear.
 """
 
 from __future__ import annotations
@@ -17,8 +17,6 @@ from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.linear.model.turning import interface_motion
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.theory.rotating_axes import into_rotor_frame, parts_across
-
-_SOFT = 1e-8  # of the stiffest mode: resistance of free motions, which are preferred
 
 
 def journal_start(scene: LinearScene, speed: float) -> tuple[np.ndarray, np.ndarray]:
@@ -42,9 +40,7 @@ def journal_start(scene: LinearScene, speed: float) -> tuple[np.ndarray, np.ndar
         return orders, harmonics
     source, columns = scene.body.selection.source, scene.columns
     U = np.vstack([interface_motion(source, name)[:2] @ columns for name in places])
-    resistance = np.einsum("ir,ij,jr->r", columns, source.invariants.K, columns)
-    W = 1.0 / (np.abs(resistance) + _SOFT * max(resistance.max(), 1.0))
-    motion = W[:, None] * U.T @ np.linalg.pinv((U * W) @ U.T)
+    motion = np.linalg.pinv(U)
     turned = [into_rotor_frame(np.array([*place, 0.0])) for place in places.values()]
     for n in (-1, 1):
         target = np.concatenate([harmonic[n][:2] for harmonic in turned])

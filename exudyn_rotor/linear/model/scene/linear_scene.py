@@ -89,19 +89,20 @@ class LinearScene:
         free = np.r_[alone.free, np.setdiff1d(np.arange(len(alone.rest)), rotor)]
         scene = cls(body, free, np.eye(len(free)), alone.rest, alone.is_spin_free)
         with evaluating(mbs) as solver:
-            found = [scene._constraints(solver, angle) for angle in (0.0, 1.0, 2.5)]
-        sizes, turned = np.abs(found[0][:, :-1]).max(axis=1, initial=0.0), np.abs(found[0][:, -1])
-        holds_spin = turned > _TURNED * sizes
-        C = [X[np.abs(X).max(axis=1, initial=0.0) > _TOUCHED] for X in (X[:, :-1] for X in found)]
-        if any(X.shape != C[0].shape or np.abs(X - C[0]).max(initial=0.0) > 1e-6 for X in C):
+            C, *later = [scene._constraints(solver, angle) for angle in (0.0, 1.0, 2.5)]
+        rows, on_spin = C[:, :-1], C[:, -1]
+        if any(np.abs(X[:, :-1] - rows).max(initial=0.0) > 1e-6 for X in later):
             raise ValueError(
                 "linear scene: a constraint turns with the rotor; hold the rotor by springs "
                 "(bearings) instead of joints, and give a part that turns with it to the rotor, "
                 "add_disc(…) or add_point_mass(…) of SolidRotor"
             )
+        sizes = np.abs(rows).max(axis=1, initial=0.0)
+        holds_spin = np.any(np.abs(on_spin) > _TURNED * sizes)
+        rows = rows[sizes > _TOUCHED]
         # coordinates that no constraint touches stay as they are
-        N = others(C[0].T) if len(C[0]) else scene.N
-        return cls(body, free, N, scene.rest, scene.is_spin_free and not np.any(holds_spin))
+        N = others(rows.T) if len(rows) else scene.N
+        return cls(body, free, N, scene.rest, scene.is_spin_free and not holds_spin)
 
     def _constraints(self, solver: exudyn.MainSolverStatic, theta: float) -> np.ndarray:
         """Return the constraints' Jacobian by the free coordinates as unknowns, and the spin."""

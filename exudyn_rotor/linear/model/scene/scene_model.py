@@ -7,7 +7,7 @@ more body, and its forces have Exudyn's own derivatives by the coordinates of th
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -170,7 +170,7 @@ class SceneModel(LinearModel):
         assembly, K = super()._held_at_rest
         if self._has_foreign:
             with probing(self.scene, 0.0) as probe:
-                undeformed = _Standing.of(probe, self.in_scene(assembly), assembly)
+                undeformed = _Standing(probe, self.in_scene(assembly), np.zeros(assembly.size))
                 K = K + self._foreign(probe, undeformed, assembly)["K", 0, 0]
         return assembly, K
 
@@ -206,7 +206,7 @@ class SceneModel(LinearModel):
             Where it changes as the rotor turns, but for the unevenness of the mesh, and where it
             holds a free spin.
         """
-        moved, found = _Standing.of(probe, self.in_scene(assembly), assembly), []
+        moved, found = _Standing(probe, self.in_scene(assembly), np.zeros(assembly.size)), []
         # what stands still has two harmonics in axes that turn
         count = (5 if self.turns else 3) if probe.speed else 1
         angles = 2.0 * np.pi * np.arange(count) / count
@@ -255,15 +255,16 @@ class SceneModel(LinearModel):
 
     # ------------------------------------------------------------------ equilibrium
 
-    def in_scene(self, assembly: Assembly) -> Iterator[Part]:
-        """Yield how the rotor and what is beside it move by the coordinates of an assembly."""
-        scene = self.scene
+    def in_scene(self, assembly: Assembly) -> list[Part]:
+        """Return how the rotor and what is beside it move by the coordinates of an assembly."""
+        scene, parts = self.scene, []
         for body, place in zip(assembly.bodies, assembly.slices, strict=True):
             if isinstance(body, RotorBody):
                 rows = np.flatnonzero(scene.touching)
-                yield rows, place, _by_rotor(scene, body)
+                parts.append((rows, place, _by_rotor(scene, body)))
             elif isinstance(body, StandingBody):
-                yield scene.others, place, {0: np.eye(body.size)}
+                parts.append((scene.others, place, {0: np.eye(body.size)}))
+        return parts
 
     def _equilibrium(self, probe: Probe) -> _Standing:
         """Return the equilibrium under loads that stand still.
@@ -276,14 +277,14 @@ class SceneModel(LinearModel):
         metres = np.sqrt(np.maximum(np.diag(assembly.M), 1e-300) / scene.mass)
         beside = slice(assembly.slices[0].stop, None)
         metres[beside] = np.maximum(metres[beside], 1.0)  # of light pads
-        parts = list(self.in_scene(assembly))
+        parts = self.in_scene(assembly)
         with_own = [one for one in scene.body.supports if one.connector.own]
         first = len(assembly.bodies) - len(controllers)
         for body, place, one in zip(controllers, assembly.slices[first:], with_own, strict=True):
             is_pads = isinstance(one.support, TiltingPadBearing)
             unit = -1.0 / one.support.film.radius if is_pads else 1.0
             parts.append((scene.own_unknowns(one), place, {0: unit * np.eye(body.size)}))
-        state = _Standing.of(probe, parts, assembly)
+        state = _Standing(probe, parts, np.zeros(assembly.size))
         start = journal_start(scene, speed)[1].sum(axis=0).real
         z = np.linalg.lstsq(state.of_unknowns(0.0)[0], start, rcond=1e-9)[0]
         own = la.block_diag(*(body.K[0] + speed * sum(body.K[1:2]) for body in assembly.bodies))
@@ -356,11 +357,6 @@ class _Standing:
     probe: Probe
     parts: list[Part]
     z: np.ndarray
-
-    @classmethod
-    def of(cls, probe: Probe, parts: Iterable[Part], assembly: Assembly) -> _Standing:
-        """Return the undeformed state."""
-        return cls(probe, list(parts), np.zeros(assembly.size))
 
     def of_unknowns(self, theta: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the unknowns y and their rates by z, each (k, l)."""
