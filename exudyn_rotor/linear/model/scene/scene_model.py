@@ -37,8 +37,8 @@ from exudyn_rotor.multibody.supports.ends import BaseEnd
 _TOLERANCE = 1e-8  # of an equilibrium
 _SAME_LOAD, _NO_LOAD = 1e-6, 1e-9  # of a load, and of the rotor's weight
 _SAME = 0.05  # share of the stiffness of motions by which the unevenness of a mesh may change it
-_PACES = 0.0, 1e-4, 1e-2, 1.0  # speeds that are compared, over a frequency of the scene
-_SAME_SLOPE, _NO_SLOPE = 1e-6, 1e-12  # shares of a stiffness that are rounding of a difference
+_SPEEDS = 0.0, 1.0, 1e3  # rad/s, of which the last ones are compared
+_SAME_SLOPE = 1e-6  # share of the largest stiffness that is rounding of a difference
 _ROUNDING = 1e-7  # share of a matrix of Exudyn's differences that is their rounding
 # y(θ) by constant coordinates of a model: rows of the unknowns y, places of the coordinates, terms
 Part = tuple[np.ndarray, slice, Terms]
@@ -88,7 +88,7 @@ class SceneModel(LinearModel):
         """What foreign forces add at rest and at any speed; None where it depends on the speed.
 
         Or where a law depends on its load. User functions and drives may depend on the speed in a
-        way that few speeds do not show; all other forces are compared at speeds far apart.
+        way that few speeds do not show; all other forces are compared at two speeds far apart.
         """
         scene, name = self.scene, "UserFunction"
         functions = [X for one in scene.foreign_items for n, X in one.items() if n.endswith(name)]
@@ -97,24 +97,19 @@ class SceneModel(LinearModel):
             return None
         if not self._has_foreign:
             return {}, {}
-        running, found = self.assembly(1.0), []
-        stiffness = np.abs(np.diag(running.K))
-        pace = np.sqrt(np.median(stiffness / np.maximum(np.diag(running.M), 1e-300))) or 1.0
+        found = []
         try:
-            for speed in np.multiply(_PACES, pace).tolist():
+            for speed in _SPEEDS:
+                assembly = self.assembly(speed)
                 with probing(scene, speed) as probe:
-                    state = self._equilibrium(probe)
-                    found.append(self._foreign(probe, state, self.assembly(speed)))
+                    found.append(self._foreign(probe, self._equilibrium(probe), assembly))
         except NO_EQUATIONS:
             return None
-        rest, first, *others = found
-        size = np.sqrt(stiffness + np.abs(np.diag(first["K", 0, 0])))
-        least = _SAME_SLOPE * np.outer(size, size) + _NO_SLOPE * size.max() ** 2
-        for key, X in first.items():
-            most = least / pace if key[0] == "D" else least
-            if any(np.any(np.abs(one[key] - X) > most) for one in others):
-                return None
-        return rest, first
+        rest, first, last = found
+        changes = [
+            np.abs(last[key] - X).max() / max(np.abs(X).max(), 1e-300) for key, X in first.items()
+        ]
+        return (rest, first) if max(changes) < _SAME_SLOPE else None
 
     def _added(self, speed: float) -> Powers:
         return self._constant[bool(speed)]
