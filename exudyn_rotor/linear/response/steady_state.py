@@ -155,7 +155,7 @@ def steady_state(
     UnconvergedError
         Where there is no steady motion: a load that nothing holds, a resonance without damping,
         a load that does not repeat with every revolution, a stop or a bearing with clearance
-        that the rotor leaves and hits, a spring of Exudyn about the axis that winds up.
+        that the rotor leaves and hits, a spring of Exudyn on a free spin that turns.
 
     Notes
     -----
