@@ -13,17 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.linear.equations import UnconvergedError, others
 from exudyn_rotor.linear.solve.forced import static_motion
-from exudyn_rotor.static.resting import (
-    HELD,
-    UNLOADED,
-    Nonlinear,
-    Resting,
-    RigidBearing,
-    resting,
-    starting_place,
-)
+from exudyn_rotor.static.resting import HELD, UNLOADED, Nonlinear, Resting, resting
 
 _MOST, _CONVERGED = 100, 1e-8  # of Newton's steps; of the largest force, of each place
 _LEAST = 1e-3  # of the largest place: a smaller one, as in a rigid bearing, is rounding of it
@@ -55,9 +48,12 @@ def equilibrium(
     basis, (bearings, speeds, U) = others(driven), journals
     K, load, U = basis.T @ K @ basis, basis.T @ load, U @ basis
     y, R = _solved(K, load, U, [HELD if one.carries else UNLOADED for one in bearings])
-    if y is None or all(isinstance(one, RigidBearing) for one in bearings):
+    if y is None or not bearings:
         return (None if y is None else basis @ y), R
-    begin = [starting_place(*each) for each in zip(bearings, speeds, R, strict=True)]
+    begin = np.zeros_like(R)
+    for i, one in enumerate(bearings):
+        if isinstance(one, RollingBearing) and np.any(R[i]):  # in contact
+            begin[i] = one.equilibrium(speeds[i], -R[i])
     equations = journals.resting(begin, R)
     for step in range(_MOST):
         new_y, new_R = _solved(K, load, U, equations)

@@ -5,7 +5,8 @@ Where a bearing has the force R on the journal, which rests at u,
     A u + B R = c.
 
 A film has the equation of its compliance, about its equilibrium under the load −R: films stiffen so
-much that Newton's method in the place would overshoot the clearance. The two films of a floating
+much that Newton's method in the place would overshoot the clearance. So have magnets, with their
+sensors where they act; an integral brings the journal to the centre. The two films of a floating
 ring carry the same load: their places and compliances add up, beside one speed of the ring. All
 others have the equation of their force at the place.
 """
@@ -20,13 +21,12 @@ import numpy as np
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.magnetic import MagneticBearing
-from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.series import FloatingRingBearing
 from exudyn_rotor.bearings.short_journal import ShortJournalBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 
 _NONE = np.zeros((2, 2))
-_FILMS = JournalBearing | ShortJournalBearing | TiltingPadBearing
+_UNDER_LOAD = JournalBearing | ShortJournalBearing | TiltingPadBearing | MagneticBearing
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,13 +57,6 @@ HELD = Resting(np.eye(2), _NONE, np.zeros(2), is_rigid=True)  # in the centre
 UNLOADED = Resting(_NONE, np.eye(2), np.zeros(2))
 
 
-def starting_place(bearing: Nonlinear, speed: float, force: np.ndarray) -> np.ndarray:
-    """Return where a search begins (2,) [m]: in contact under a force on the journal (2,) [N]."""
-    if isinstance(bearing, RollingBearing) and np.any(force):
-        return bearing.equilibrium(speed, -force)
-    return np.zeros(2)
-
-
 def resting(bearing: Nonlinear, speed: float, place: np.ndarray, force: np.ndarray) -> Resting:
     """Return the equation of a bearing beside a place of its journal and a force on it.
 
@@ -71,16 +64,18 @@ def resting(bearing: Nonlinear, speed: float, place: np.ndarray, force: np.ndarr
     """
     if isinstance(bearing, RigidBearing):
         return HELD
-    if isinstance(bearing, MagneticBearing):
-        return _of_magnets(bearing, place)
+    if isinstance(bearing, MagneticBearing) and bearing.controller.integral:
+        return Resting(np.eye(2), _NONE, np.zeros(2))  # in the centre
     if isinstance(bearing, FloatingRingBearing):
         films = replace(bearing, load=-force).films(speed)
         rest = sum(film.equilibrium(whirl, -force) for film, whirl in films)
         stiffnesses = [film.coefficients(whirl, -force)[0] for film, whirl in films]
         return _of_compliance(rest, sum(map(np.linalg.inv, stiffnesses)), force)
-    if isinstance(bearing, _FILMS):
+    if isinstance(bearing, _UNDER_LOAD):
         if isinstance(bearing, TiltingPadBearing):
             stiffness = bearing.static_stiffness(speed, -force)
+        elif isinstance(bearing, MagneticBearing):
+            stiffness = replace(bearing, load=-force).linearised().static_stiffness
         else:
             stiffness = bearing.coefficients(speed, -force)[0]
         return _of_compliance(bearing.equilibrium(speed, -force), np.linalg.inv(stiffness), force)
@@ -93,15 +88,3 @@ def resting(bearing: Nonlinear, speed: float, place: np.ndarray, force: np.ndarr
 def _of_compliance(rest: np.ndarray, compliance: np.ndarray, force: np.ndarray) -> Resting:
     """Return the equation of what rests at a place (2,) under less the force (2,) on it."""
     return Resting(np.eye(2), compliance, rest + compliance @ force)
-
-
-def _of_magnets(bearing: MagneticBearing, place: np.ndarray) -> Resting:
-    """Return the equation of magnets with sensors where they are; an integral centres them."""
-    if bearing.controller.integral:
-        return Resting(np.eye(2), _NONE, np.zeros(2))
-    axes, gain = bearing.control_axes, bearing.controller.proportional
-    states = [(-gain * x, x) for x in axes @ place]
-    force = axes.T @ [bearing.actuator.law(*one) for one in states]
-    by_current, by_place = np.array([bearing.actuator.slopes(*one) for one in states]).T
-    tangent = axes.T @ np.diag(gain * by_current - by_place) @ axes
-    return Resting(tangent, np.eye(2), force + tangent @ place)

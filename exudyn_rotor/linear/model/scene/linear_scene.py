@@ -295,12 +295,7 @@ def objects_beside(mbs: exudyn.MainSystem, known: set[int]) -> list[dict]:
 
 
 def check_body(mbs: exudyn.MainSystem, body: RotorBody) -> None:
-    """Refuse a system that is not assembled, another one's rotor, and coordinates of first order.
-
-    Raises
-    ------
-    TypeError, ValueError
-    """
+    """Refuse a system not assembled, another one's rotor, and coordinates of first order."""
     checks.instance(mbs, "mbs", exudyn.MainSystem)
     reduced_body(body, how="exudyn_rotor.add_rotor returned it for the rotor in this system")
     if body.mbs is not mbs:
@@ -315,12 +310,7 @@ def check_body(mbs: exudyn.MainSystem, body: RotorBody) -> None:
 
 
 def check_scene(mbs: exudyn.MainSystem, body: RotorBody) -> None:
-    """Refuse what :func:`check_body` does, and a second rotor.
-
-    Raises
-    ------
-    TypeError, ValueError
-    """
+    """Refuse what :func:`check_body` does, and a second rotor."""
     check_body(mbs, body)
     second = [one.name for one in known_rotors(mbs) if one.script is not body.script]
     if second:
