@@ -10,11 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_rotor.bearings.bearing import Bearing
-from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
-from exudyn_rotor.linear.model.turning import interface_motion
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.theory.rotating_axes import into_rotor_frame, parts_across
 
@@ -33,18 +31,14 @@ def journal_start(scene: LinearScene, speed: float) -> tuple[np.ndarray, np.ndar
     harmonics = np.zeros((3, scene.size), dtype=complex)
     loads = _static_loads(scene.body)
     harmonics[1] = scene.N.T @ _tilts(scene, speed, loads)
-    cage = scene.body.placement.angle
-    places = {one.interface: _place(one, load, speed, cage) for one, load in loads.items()}
+    places = {one.interface: _place(one, load, speed) for one, load in loads.items()}
     places = {name: place for name, place in places.items() if np.any(place)}
     if not places:
         return orders, harmonics
-    source, columns = scene.body.selection.source, scene.columns
-    U = np.vstack([interface_motion(source, name)[:2] @ columns for name in places])
-    motion = np.linalg.pinv(U)
+    motion = np.linalg.pinv(np.vstack([scene.interface_motion(name)[:2] for name in places]))
     turned = [into_rotor_frame(np.array([*place, 0.0])) for place in places.values()]
     for n in (-1, 1):
-        target = np.concatenate([harmonic[n][:2] for harmonic in turned])
-        harmonics[1 + n, scene.touching] += motion @ target
+        harmonics[1 + n] += motion @ np.concatenate([harmonic[n][:2] for harmonic in turned])
     return orders, harmonics
 
 
@@ -58,13 +52,13 @@ def _tilts(scene: LinearScene, speed: float, loads: dict[Bearing, np.ndarray]) -
     return found[scene.free]
 
 
-def _place(bearing: Bearing, load: np.ndarray, speed: float, cage: float) -> np.ndarray:
+def _place(bearing: Bearing, load: np.ndarray, speed: float) -> np.ndarray:
     """Return the equilibrium of a journal (2,) [m]; a film at rest does not carry."""
-    if isinstance(bearing, RollingBearing):
-        return bearing.equilibrium(speed, load, cage)
     try:
-        return bearing.equilibrium(speed, load) if speed else np.zeros(2)
+        return bearing.equilibrium(speed, load)
     except (ValueError, ArithmeticError) as error:
+        if not speed:
+            return np.zeros(2)
         where = f"linear scene at {speed:g} rad/s, bearing at {bearing.interface!r}"
         raise UnconvergedError(f"{where}: {error}") from error
 
