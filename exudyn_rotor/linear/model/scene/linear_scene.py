@@ -206,13 +206,7 @@ class LinearScene:
         return alone.within(others(held if whole else la.orth(alone.turning.still @ held)))
 
     def interface_motion(self, name: str) -> np.ndarray:
-        """Return an interface's displacement and rotation along (n1, n2, e), (6, k), rotor frame.
-
-        Raises
-        ------
-        TypeError, ValueError
-            For an interface that is not there.
-        """
+        """Return displacement and rotation of an interface along (n1, n2, e) that turn, (6, k)."""
         columns = self.body.interface_carrier(name).motion  # of modes, in axes of the marker body
         motion = np.zeros((6, len(self.free)))
         motion[: self.count, : self.count] = np.eye(self.count)
@@ -317,7 +311,6 @@ def check_scene(mbs: exudyn.MainSystem, body: RotorBody) -> None:
         raise ValueError(
             f"linear scene: a second rotor in this system, {second[0]!r}; one revolution is a "
             "period for one spin speed only, which steady_state needs. Linear analyses take "
-            "body=[…] with all rotors, on supports of add_supports and linked by these and "
-            "connect_rotors, or a RotorTrain of the reduced rotors and their supports, with gears "
-            "and couplings as Link(…)"
+            "body=[…] with all rotors, on supports of add_supports and linked by connect_rotors, "
+            "or a RotorTrain of the reduced rotors"
         )

@@ -10,7 +10,6 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property, lru_cache
-from typing import NamedTuple
 
 import exudyn
 import numpy as np
@@ -26,14 +25,6 @@ from exudyn_rotor.theory.stiffening import stiffening
 _KEPT = 48  # angles whose terms of the rotor, and whose turned axes, are kept
 _LOADS = 2  # Exudyn's word for loads that depend on places and rates
 _WINDING = 1e-3  # share of a stiffness on the spin that a point off the axis has in the mean
-
-
-class Forces(NamedTuple):
-    """Forces on the free coordinates, and less their derivatives by these and by their rates."""
-
-    values: np.ndarray
-    K: np.ndarray
-    D: np.ndarray
 
 
 class Probe:
@@ -132,10 +123,11 @@ class Probe:
 
     def forces(
         self, theta: float, x: np.ndarray, v: np.ndarray, *, slopes: bool = True, laws: bool = True
-    ) -> Forces:
-        """Return the forces of all but the rotor's own equations, with their derivatives.
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the forces of all but the rotor's own equations on the free coordinates.
 
-        These are zero without `slopes`; without `laws` the forces are what Exudyn has beside them.
+        Then less their derivatives by these and by their rates, zero without `slopes`. Without
+        `laws` the forces are what Exudyn has beside them.
         """
         q, q_t = self._set(theta, x, v)
         size = len(q)
@@ -149,7 +141,7 @@ class Probe:
                 by_place, by_rate = law.slopes(self._time(theta))
                 K[places[:, None], places] += by_place
                 D[places[:, None], places] += by_rate
-        return Forces(force[self.scene.free], self._of_free(K), self._of_free(D))
+        return force[self.scene.free], self._of_free(K), self._of_free(D)
 
     def check_free_spin(self, angles: Iterable[float]) -> None:
         """Refuse what Exudyn has as a spring about the axis of a free spin, in the mean of angles.

@@ -293,7 +293,7 @@ class SceneModel(LinearModel):
             return own + by_z.T @ (K @ by_z + D @ by_rate), own @ z - weight - by_z.T @ force
 
         def unbalanced(z: np.ndarray) -> np.ndarray:
-            force = probe.forces(0.0, by_z @ z, by_rate @ z, slopes=False).values
+            force = probe.forces(0.0, by_z @ z, by_rate @ z, slopes=False)[0]
             return own @ z - weight - by_z.T @ force
 
         z = newton(

@@ -96,8 +96,7 @@ def _check_period(probe: Probe) -> None:
     still = np.zeros((2, len(probe.scene.free)))
     for theta in (0.5, 2.5, 4.5):
         first, again = (
-            probe.forces(angle, *still, slopes=False).values
-            for angle in (theta, theta + 2.0 * np.pi)
+            probe.forces(angle, *still, slopes=False)[0] for angle in (theta, theta + 2.0 * np.pi)
         )
         loads = max(np.abs(first).max(), np.abs(probe.rotor_terms(theta)[3]).max())
         if np.abs(again - first).max() > _PERIODIC * loads + _UNHELD * probe.scene.mass:
@@ -137,10 +136,8 @@ class _Search:
         turned = np.sqrt(2.0) * np.exp(1j * np.outer(self.angles, self.orders))
         found = []
         for power in range(3):
-            mean = np.full((self.samples, 1), float(power == 0))
-            found.append(
-                np.hstack([mean, (rates**power * turned).real, (rates**power * turned).imag])
-            )
+            mean, wave = np.full((self.samples, 1), float(power == 0)), rates**power * turned
+            found.append(np.hstack([mean, wave.real, wave.imag]))
         return tuple(found)
 
     def found(self, start: Motion | None) -> tuple[Motion, float]:
@@ -158,7 +155,12 @@ class _Search:
             self._parts(values),
             np.tile(probe.metres, 2 * count + 1),
             self.tolerance,
-            self._lost,
+            f"linear scene at {probe.speed:g} rad/s: no steady motion found; is there a load that "
+            "nothing holds, a resonance without damping, a stop or a bearing with clearance that "
+            "the rotor leaves and hits, or an oil film that unbalance all but closes, or that "
+            "whirls at half the speed? A run shows what the rotor does there: a damped one from "
+            "rest, or one from the steady_state with less unbalance; periodic_response shows its "
+            "motion on rolling bearings",
             yields=not probe.speed,
         )
         parts = parts.reshape(2 * count + 1, -1)
@@ -194,17 +196,6 @@ class _Search:
         """Return every angle with the motion there, its rate and acceleration."""
         parts = parts.reshape(2 * len(self.orders) + 1, -1)
         return zip(self.angles, *(wave @ parts for wave in self.waves), strict=True)
-
-    @property
-    def _lost(self) -> str:
-        return (
-            f"linear scene at {self.probe.speed:g} rad/s: no steady motion found; is there a load "
-            "that nothing holds, a resonance without damping, a stop or a bearing with clearance "
-            "that the rotor leaves and hits, or an oil film that unbalance all but closes, or that "
-            "whirls at half the speed? A run shows what the rotor does there: a damped one from "
-            "rest, or one from the steady_state with less unbalance; periodic_response shows its "
-            "motion on rolling bearings"
-        )
 
 
 def newton(
