@@ -1,9 +1,10 @@
 """Steady motion of a scene over one revolution, and its equilibria at rest.
 
-Newton's method on the harmonics of the motion (Galerkin): the scene is linearised at several angles
-of a revolution, and the mean over the angles turns what the forces leave unbalanced into a change
-of all harmonics, as much of it as leaves less unbalanced. At rest nothing couples the angles, of
-which three tell how an equilibrium turns in the rotor.
+Newton's method on the harmonics of the motion: the scene is linearised at several angles of a
+revolution, and these equations, times the waves of the harmonics, in the mean over the angles, are
+the linear system of the harmonics (Galerkin's method). Of its solution as large a share is taken as
+leaves less unbalanced. At rest nothing couples the angles, of which three tell how an equilibrium
+turns in the rotor.
 """
 
 from __future__ import annotations
@@ -49,9 +50,9 @@ def steady_motion(
 ) -> Motion:
     """Return the steady motion at a spin speed [rad/s] by its harmonics of the revolution.
 
-    Orders (h,) and harmonics (h, k) of ``y(θ) = Re Σ y_n exp(inθ)``, as deviations from
-    :attr:`LinearScene.rest`. Newton's last change, and the highest harmonics, are below `tolerance`
-    of the motion; the search begins with the motion `start` where one is given.
+    Orders (h,) and harmonics (h, k) of ``y(θ) = Re Σ y_n exp(inθ)``, the unknowns of the scene.
+    Newton's last change, and the highest harmonics, are below `tolerance` of the motion; the search
+    begins with the motion `start` where one is given.
 
     Raises
     ------
