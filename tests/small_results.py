@@ -77,7 +77,7 @@ def results() -> list:
         PeriodicResponse(
             ("left", "node 2"), speeds, [0, 0, 1], ("value", "fold", "computed"), speeds,
             np.column_stack([speeds, 0.5 * speeds]), [[0, 0], [1, -1]],
-            np.repeat(motion, 2, axis=2), ("left", "right"), table, table, table, table - 1.0,
+            np.repeat(motion, 2, axis=2), ("left", "right"), table, table, table,
             speeds, -speeds, speeds + 1j, 2, "spin speed [rad/s]", [[0, 1], [2, -3]],
             coordinates=RNG.normal(size=(3, 2, 5)) + 1j),
         BaseResponse(("left", "node 2"), speeds, motion[:, :, 0].real, 90.0),

@@ -141,9 +141,11 @@ class Balance:
         """q⁰ (h, d)."""
         found = np.zeros((len(self.orders), len(self.laws.springs)), dtype=complex)
         K, N = self.reach
-        for (k, n), q in self.rest.moved().items():
-            if abs(n) <= N:
-                found[(k + K) * (2 * N + 1) + n + N] = q
+        for (k, n), x in self.rest.motion().items():
+            for m, C in self.rest.unloaded.journals.items():
+                order = n + self.rest.revolutions * m
+                if abs(order) <= N:
+                    found[(k + K) * (2 * N + 1) + order + N] += C @ x
         return found
 
     @cached_property
@@ -201,7 +203,8 @@ class Balance:
 
     def coordinates(self, c: np.ndarray) -> Waves:
         """Return the harmonics (k,) of all coordinates of the rest, of both signs."""
-        return self.rest.coordinates(self.harmonics(self.forces(c)[0]), self.orders)
+        moved = self.rest.motion(self.orders.tolist(), self.harmonics(self.forces(c)[0]))
+        return {order: self.rest.unloaded.basis @ x for order, x in moved.items()}
 
     def holds(self, c: np.ndarray) -> bool:
         """Return whether laws and rest hold the mean place of a motion: not in a clearance."""

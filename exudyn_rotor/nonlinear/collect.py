@@ -41,7 +41,7 @@ def collected(
     if all(each is not None for each in own):
         of_run = _stacked([_half(each) for each in own])
         beside = model.coordinates[model.bodies[0].size :]
-    measured = np.array([_at_bearings(point) for point in points])  # (p, 4, b)
+    measured = np.array([_at_bearings(point) for point in points])  # (p, 3, b)
     return PeriodicResponse(
         tuple(one.label for one in observed),
         np.array([point.value for point in points]),
@@ -96,23 +96,18 @@ def _stacked(motions: Sequence[Waves]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _at_bearings(point: Point) -> np.ndarray:
-    """Return largest forces, smallest gaps, loads of elements, shares without force, (4, b)."""
-    balance = point.balance
+    """Return largest forces, smallest gaps, largest loads of elements, (3, b)."""
+    balance, laws = point.balance, point.balance.laws
     motion = balance.motion(point.c)
-    laws, found = balance.laws, []
     forces = laws.along(motion, *balance.phases, balance.rest.speed)[0]
-    forces = np.linalg.norm(forces, axis=-1)
+    found = []
     for b, one in enumerate(laws.bearings):
-        q = motion[:, b, :2]
-        far = np.linalg.norm(q, axis=1)
-        gap = one.clearance_along()
-        least = gap - far.max() if np.isfinite(gap) else np.nan
-        load, away = np.nan, float(np.mean(forces[:, b] == 0.0))
+        q, gap, load = motion[:, b, :2], one.clearance_along(), np.nan
+        least = gap - np.linalg.norm(q, axis=1).max() if np.isfinite(gap) else np.nan
         if isinstance(one, RollingBearing):
             angles = laws.ratios[b] * balance.phases[0] / laws.passes
-            loads = contacts(one, q, angles)[0]
-            load, away = loads.max(), float(np.mean(~np.any(loads, axis=1)))
-        found.append((forces[:, b].max(), least, load, away))
+            load = contacts(one, q, angles)[0].max()
+        found.append((np.linalg.norm(forces[:, b], axis=-1).max(), least, load))
     return np.array(found).T
 
 

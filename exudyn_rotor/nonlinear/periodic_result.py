@@ -12,7 +12,7 @@ from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.response.response import DIRECTIONS, AtPlaces
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState
-from exudyn_rotor.nonlinear.run_start import state_in_scene
+from exudyn_rotor.nonlinear.scene import state_in_scene
 from exudyn_rotor.results import numbers, storable, text_table, words
 from exudyn_rotor.units import IN_HERTZ, Units
 
@@ -63,8 +63,6 @@ class PeriodicResponse(AtPlaces):
         Least distance to the end of the clearance [m], below zero beyond; NaN without clearance.
     element_loads : ndarray, shape (p, b)
         Largest load of an element of a rolling bearing [N]; NaN of others.
-    open_shares : ndarray, shape (p, b)
-        Share of the time without a force.
     errors : ndarray, shape (p,)
         Size of the harmonics left out, relative to the motion.
     growth : ndarray, shape (p,)
@@ -90,7 +88,7 @@ class PeriodicResponse(AtPlaces):
     >>> motion[0, 0, :, 0], motion[0, 0, :, 1] = (0.0, 1e-5), (-2e-5, -1e-5j)
     >>> response = PeriodicResponse(
     ...     ("left",), [100.0], [0], ("value",), [100.0], [[0.0, 100.0]], [[0, 0], [0, 1]], motion,
-    ...     ("left",), [[200.0]], [[1e-4]], [[np.nan]], [[0.0]], [1e-4], [-20.0], [0.28], 1,
+    ...     ("left",), [[200.0]], [[1e-4]], [[np.nan]], [1e-4], [-20.0], [0.28], 1,
     ...     "spin speed [rad/s]", np.zeros((0, 2), dtype=int),
     ... )
     >>> response.stable.tolist(), response.at(100.0).tolist()
@@ -110,7 +108,6 @@ class PeriodicResponse(AtPlaces):
     forces: np.ndarray = numbers("abscissa", "bearings", least=0.0)
     gaps: np.ndarray = numbers("abscissa", "bearings", finite=False)
     element_loads: np.ndarray = numbers("abscissa", "bearings", finite=False)
-    open_shares: np.ndarray = numbers("abscissa", "bearings", least=0.0, most=1.0)
     errors: np.ndarray = numbers("abscissa", finite=False)
     growth: np.ndarray = numbers("abscissa", finite=False)
     multipliers: np.ndarray = numbers("abscissa", dtype=complex, finite=False)
@@ -278,7 +275,6 @@ class PeriodicResponse(AtPlaces):
                 f"force, {name} [N]": self.forces[:, b],
                 f"gap, {name} [m]": self.gaps[:, b],
                 f"element load, {name} [N]": self.element_loads[:, b],
-                f"open, {name}": self.open_shares[:, b],
             }
         return columns | {
             "second frequency [Hz]": IN_HERTZ * self.rates[:, 0],

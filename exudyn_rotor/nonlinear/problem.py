@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from exudyn_rotor.bearings.annular_seal import AnnularSeal
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.given import Given
-from exudyn_rotor.bearings.rolling import RollingBearing, depth_under
+from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.calls import kept
@@ -206,19 +207,9 @@ class Problem:
         for b, (one, ratio) in enumerate(zip(self.laws.bearings, self.laws.ratios, strict=True)):
             pair = slice(2 * b, 2 * b + 2)
             for place, load in zip(places[:, pair], loads[:, pair], strict=True):
-                place[:] = _resting(one, ratio * speed, load)
+                with suppress(ValueError, ArithmeticError):
+                    place[:] = one.equilibrium(ratio * speed, load)
         return places
-
-
-def _resting(one: Bearing, speed: float, load: np.ndarray) -> np.ndarray:
-    """Return about where a journal rests under a load (2,)."""
-    size = float(np.hypot(*load))
-    if isinstance(one, RollingBearing):
-        return max(one.clearance + float(depth_under(one, size)), 0.0) * load / max(size, 1e-300)
-    try:
-        return one.equilibrium(speed, load)
-    except (ValueError, ArithmeticError):
-        return np.zeros(2)
 
 
 def _with_stand_ins(model: LinearModel, speed: float) -> tuple[LinearModel, Laws]:
@@ -261,14 +252,10 @@ def _constant(model: LinearModel, speed: float) -> tuple[LinearModel, LinearMode
 
 def _check_held(model: LinearModel) -> None:
     """Refuse a rotor that supports leave free across its axis."""
-    free = model.free_motions
-    across = [name for name in free if name not in _NOT_ACROSS]
+    across = [name for name in model.free_motions if name not in _NOT_ACROSS]
     # an eccentric rotor spins about its bearings, which is a combination of motions
-    if across and len(free) > model.neutral_motions.shape[1]:
-        given = [one.interface for each in model.supports.values() for one in each]
-        motion = "tilting" if any("tilt" in name for name in across) else "lateral motion"
+    if across and len(model.free_motions) > model.neutral_motions.shape[1]:
         raise ValueError(
-            f"supports: nothing holds the rotor against {motion}: all stand at "
-            f"{', '.join(map(repr, dict.fromkeys(given))) or 'no place'}; add one at another "
+            f"supports: nothing holds the rotor against {' or '.join(across)}; add one at another "
             "interface"
         )

@@ -121,16 +121,12 @@ class Unloaded:
         waves = sorted(self.journals)
         C = np.concatenate([self.journals[m] for m in waves])
         wide = N + revolutions * max(map(abs, waves))
-        n = np.arange(-wide, wide + 1)
-        orders = np.array([(k, each) for k in range(K + 1) for each in n if k or each >= 0])
-        half = C @ self.answer(orders @ np.array(rates), C.T)
+        k, n = np.arange(K + 1)[:, None], np.arange(-wide, wide + 1)
+        half = C @ self.answer((rates[0] * k + rates[1] * n).ravel(), C.T)
         d = len(C) // len(waves)
-        known = half.reshape(len(orders), len(waves), d, len(waves), d)
+        half = half.reshape(K + 1, 2 * wide + 1, len(waves), d, len(waves), d)
         # those of −k, −n are conjugates, with opposite m
-        turned = known[::-1, ::-1, :, ::-1].conj()
-        known = np.concatenate([turned[:-1], known]).reshape(
-            2 * K + 1, 2 * wide + 1, len(waves), d, len(waves), d
-        )
+        known = np.concatenate([half[:0:-1, ::-1, ::-1, :, ::-1].conj(), half])
         inside, found = np.arange(-N, N + 1), {}
         for b, m in enumerate(waves):
             for a, other in enumerate(waves):
@@ -158,38 +154,19 @@ class Rest:
         """Ω [rad/s]."""
         return self.unloaded.speed
 
-    def moved(self) -> Waves:
-        """Return q⁰ (d,) by its harmonics (0, n)."""
-        found: Waves = {}
-        for (k, n), x in self._motion(self._given()).items():
-            for m, C in self.unloaded.journals.items():
+    def motion(self, orders: Sequence = (), forces: Sequence[np.ndarray] = ()) -> Waves:
+        """Return the resisted motion (r,) under loads and forces g (d,), by all harmonics."""
+        basis, journals = self.unloaded.basis, self.unloaded.journals
+        given = {(0, self.revolutions * n): basis.T @ F for n, F in self.loads.items()}
+        for (k, n), g in zip(orders, forces, strict=True):
+            for m, C in journals.items():
                 order = k, n + self.revolutions * m
-                found[order] = found.get(order, 0.0) + C @ x
-        return found
-
-    def coordinates(self, forces: np.ndarray, orders: np.ndarray) -> Waves:
-        """Return the motion (k,) under loads and forces g (h, d), by all harmonics."""
-        loads = self._given()
-        for (k, n), g in zip(orders.tolist(), forces, strict=True):
-            for m, C in self.unloaded.journals.items():
-                order = k, n + self.revolutions * m
-                loads[order] = loads.get(order, 0.0) + C.T @ g
-        return {order: self.unloaded.basis @ x for order, x in self._motion(loads).items()}
-
-    def _given(self) -> Waves:
-        """Return the loads (r,) by their harmonics (0, n)."""
-        basis = self.unloaded.basis
-        return {(0, self.revolutions * n): basis.T @ F for n, F in self.loads.items()}
-
-    def _motion(self, loads: Waves) -> Waves:
-        """Return the motion (r,) under loads (r,), by harmonics of both signs."""
-        upper = [order for order in loads if order >= (0, 0)]
-        if not upper:
+                given[order] = given.get(order, 0.0) + C.T @ g
+        if not given:
             return {}
-        F = np.array([loads[order] for order in upper])[..., None]
-        x = self.unloaded.answer(np.array(upper) @ np.array(self.rates), F)[..., 0]
-        found = dict(zip(upper, x, strict=True))
-        return {(-k, -n): each.conj() for (k, n), each in found.items()} | found
+        F = np.array(list(given.values()))[..., None]
+        x = self.unloaded.answer(np.array(list(given)) @ np.array(self.rates), F)[..., 0]
+        return dict(zip(given, x, strict=True))
 
 
 def real_rows(journals: Terms) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""A scene as a rotor, or a train of rotors, on supports and laws: what harmonic balance takes.
+"""A scene as a rotor, or a train of rotors, on supports and laws, and the start of a run in it.
 
 Laws are known by what :func:`exudyn_rotor.add_supports` added, and Exudyn's own forces by their
 constants. Anything else might be nonlinear, and is refused by its name.
@@ -18,11 +18,16 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.model.build import Target
-from exudyn_rotor.linear.model.scene.linear_scene import check_scene, known_objects
+from exudyn_rotor.linear.model.scene.linear_scene import (
+    LinearScene,
+    check_scene,
+    known_objects,
+    objects_beside,
+)
 from exudyn_rotor.linear.model.scene.scene_train import scene_train
 from exudyn_rotor.linear.response.loads import HarmonicForce
 from exudyn_rotor.multibody.full.full_body import reduced_body
-from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState
 from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation
 
 _INSTEAD = (
@@ -119,15 +124,12 @@ def _in_mesh(base: SceneFoundation, body: RotorBody) -> Foundation:
 
 def _check_objects(body: RotorBody, base: SceneFoundation | None) -> None:
     """Refuse all objects but known ones."""
-    mbs, known = body.mbs, known_objects(body)
+    known = known_objects(body)
     known |= set() if base is None else set(map(int, base.objects.values()))
-    for number in set(range(mbs.systemData.NumberOfObjects())) - known:
-        item = mbs.GetObject(number)
-        if item["objectType"] != "Ground":
-            raise ValueError(
-                f"mbs: object {number} ({item['objectType']} {item['name']!r}) is no law of this "
-                f"package; {_INSTEAD}"
-            )
+    for item in objects_beside(body.mbs, known):
+        raise ValueError(
+            f"mbs: {item['objectType']} {item['name']!r} is no law of this package; {_INSTEAD}"
+        )
 
 
 def _loads(
@@ -151,3 +153,37 @@ def _loads(
             )
         at, axes = named[int(load["markerNumber"])]
         yield HarmonicForce(at, axes.T @ load["loadVector"])
+
+
+def state_in_scene(
+    body: RotorBody, x: np.ndarray, x_t: np.ndarray, beside: int, angle: float, speed: float
+) -> StartState:
+    """Return the state of a scene with a rotor in a motion, everything else at rest.
+
+    `x` and `x_t` (k,) are the coordinates of the reduced rotor in its own axes, those `beside` it,
+    and their rates; `angle` and `speed` are of the spin [rad], [rad/s].
+    """
+    body.check_assembled()
+    check_origin(body)
+    if any(len(one.own_coordinates(body.mbs)) for one in body.supports):
+        raise ValueError(
+            f"body: supports of rotor {body.name!r} have coordinates of their own, controllers or "
+            "pads, in which no run begins; let it settle from steady_state"
+        )
+    size, base = body.selection.source.size, foundation_below(body)
+    standing = 0 if base is None else base.foundation.size
+    if standing != beside or size + standing != len(x):
+        raise ValueError(
+            f"body: rotor {body.name!r} has {size} coordinates and {standing} of a foundation, the "
+            f"response {len(x) - beside} and {beside}; compute it with the reduced rotor and the "
+            "foundation of the scene"
+        )
+    scene = LinearScene.of_rotor(body)
+    (y, y_t), (turn, turn_t) = scene.of_coordinates(np.array([x[:size], x_t[:size]]))
+    state = scene.state(y, y_t, angle + turn, speed + turn_t)  # a free spin departs from the mean
+    q, q_t = state.q.copy(), state.q_t.copy()
+    if base is not None:
+        places = np.asarray(body.mbs.systemData.GetObjectLTGODE2(base.objects["physics"]))
+        T = base.foundation.mode_shapes
+        q[places], q_t[places] = T @ x[size:], T @ x_t[size:]
+    return StartState(q, q_t, angle, speed)

@@ -3,7 +3,7 @@
 With the stiffness K of rotors and linear supports, the loads f, and forces R of the other bearings
 on journals that move by ``u = U y``, Newton's method solves both equations together,
 
-    K y − Σ Uᵀ R = f,    A u + A_s u_s + B R = c  (:mod:`exudyn_rotor.static.resting`).
+    K y − Σ Uᵀ R = f,    A u + B R = c  (:mod:`exudyn_rotor.static.resting`).
 """
 
 from __future__ import annotations
@@ -13,17 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.linear.equations import UnconvergedError, others
 from exudyn_rotor.linear.solve.forced import static_motions
-from exudyn_rotor.static.resting import (
-    HELD,
-    UNLOADED,
-    Nonlinear,
-    Resting,
-    RigidBearing,
-    resting,
-    starting_place,
-)
+from exudyn_rotor.static.resting import HELD, UNLOADED, Nonlinear, Resting, resting
 
 _MOST, _CONVERGED = 100, 1e-8  # of Newton's steps; of the largest force, of each place
 _LEAST = 1e-3  # of the largest place: a smaller one, as in a rigid bearing, is rounding of it
@@ -33,18 +26,14 @@ _SHORTEST = 1e-6  # share of a step below which a film is taken not to carry
 
 
 class Journals(NamedTuple):
-    """Nonlinear bearings (b) at their speeds [rad/s], and what they act on, along (n1, n2).
-
-    Motions (b, 2, k) of the journals in the bearings, and of their sensors.
-    """
+    """Nonlinear bearings (b) at their speeds [rad/s], and the motions (b, 2, k) of the journals."""
 
     bearings: Sequence[Nonlinear]
     speeds: Sequence[float]
     U: np.ndarray
-    U_s: np.ndarray
 
     def resting(self, *at: np.ndarray) -> list[Resting]:
-        """Return the equations beside places of journals and sensors, and forces, each (b, 2)."""
+        """Return the equations beside places of journals and forces, each (b, 2)."""
         return [resting(*each) for each in zip(self.bearings, self.speeds, *at, strict=True)]
 
 
@@ -56,22 +45,25 @@ def equilibrium(
     None for the coordinates where a load acts on a motion that nothing holds. Drives hold the spins
     with the momenta `driven` (k, d). The search begins with journals held in the centre.
     """
-    basis, (bearings, speeds, U, U_s) = others(driven), journals
-    K, load, U, U_s = basis.T @ K @ basis, basis.T @ load, U @ basis, U_s @ basis
-    y, R = _solved(K, load, U, U_s, [HELD if one.carries else UNLOADED for one in bearings])
-    if y is None or all(isinstance(one, RigidBearing) for one in bearings):
+    basis, (bearings, speeds, U) = others(driven), journals
+    K, load, U = basis.T @ K @ basis, basis.T @ load, U @ basis
+    y, R = _solved(K, load, U, [HELD if one.carries else UNLOADED for one in bearings])
+    if y is None or not bearings:
         return (None if y is None else basis @ y), R
-    begin = [starting_place(*each) for each in zip(bearings, speeds, R, strict=True)]
-    equations = journals.resting(begin, U_s @ y, R)
+    begin = np.zeros_like(R)
+    for i, one in enumerate(bearings):
+        if isinstance(one, RollingBearing) and np.any(R[i]):  # in contact
+            begin[i] = one.equilibrium(speeds[i], -R[i])
+    equations = journals.resting(begin, R)
     for step in range(_MOST):
-        new_y, new_R = _solved(K, load, U, U_s, equations)
+        new_y, new_R = _solved(K, load, U, equations)
         if new_y is None:
             return None, R
         share = 1.0 if step < _SLOW else 0.5
         while True:
             tried, forces = y + share * (new_y - y), R + share * (new_R - R)
             try:
-                equations = journals.resting(U @ tried, U_s @ tried, forces)
+                equations = journals.resting(U @ tried, forces)
                 break
             except (ValueError, ArithmeticError):
                 share *= 0.5
@@ -96,11 +88,7 @@ def _is_small(change: np.ndarray, value: np.ndarray, least: float) -> bool:
 
 
 def _solved(
-    K: np.ndarray,
-    load: np.ndarray,
-    U: np.ndarray,
-    U_s: np.ndarray,
-    equations: Sequence[Resting],
+    K: np.ndarray, load: np.ndarray, U: np.ndarray, equations: Sequence[Resting]
 ) -> tuple[np.ndarray | None, np.ndarray]:
     """Return coordinates and forces of the linear equations, forces in units of a stiffness."""
     k, count = len(K), 2 * len(U)
@@ -114,8 +102,8 @@ def _solved(
     for i, one in enumerate(equations):
         own = slice(k + 2 * i, k + 2 * i + 2)
         # the equation of a compliance counts as many times as its forces do
-        scale = unit if np.array_equal(one.A + one.A_s, np.eye(2)) else 1.0
-        A[own, :k] = -scale * (one.A @ U[i] + one.A_s @ U_s[i])
+        scale = unit if np.array_equal(one.A, np.eye(2)) else 1.0
+        A[own, :k] = -scale * one.A @ U[i]
         A[own, own] = -scale * unit * one.B - one.is_rigid * _RIGID * unit * most * np.eye(2)
         b[own] = -scale * one.c
     x = static_motions(A[None], b[None, :, None])[0, :, 0]

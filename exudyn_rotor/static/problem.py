@@ -27,7 +27,6 @@ from exudyn_rotor.linear.response.loads import (
     At,
     BaseAcceleration,
     HarmonicForce,
-    place,
     places,
     total,
 )
@@ -44,10 +43,10 @@ _BALANCED = 1e-3  # share of torques, and of forces at the radius of gyration, l
 class Problem:
     """A rotor on its supports under loads that stand still in the axes of a `frame`.
 
-    The `model` has the linear supports; a bearing is a spring without stiffness there, its sensor
-    another. What each element is stands in `acting`: a support or link, a bearing, or the number of
-    the element whose sensor it is. The inner part of a bearing in series comes before the outer
-    one, whose numbers are `outer`; the place of its ring is among the coordinates.
+    The `model` has the linear supports; a bearing is a spring without stiffness there. What each
+    element is stands in `acting`: a support, a link or a bearing. The inner part of a bearing in
+    series comes before the outer one, whose numbers are `outer`; the place of its ring is among the
+    coordinates.
     """
 
     model: LinearModel
@@ -90,9 +89,6 @@ class Problem:
                     outer.append(len(acting) - 1)
                     springs = [replace(one, inner=springs[0], outer=springs[1])]
                 plain[name] += springs
-                if getattr(one, "sensor", None):
-                    plain[name].append(Support(one.sensor))
-                    acting.append(len(acting) - 1)
         acting += model.links
         # at rest nothing is averaged, and all modes count, halves of pairs among them
         axes = "inertial" if frame == "inertial" and speed else "rotor"
@@ -152,20 +148,16 @@ class Problem:
         spins = model.free_spins
         if len(model.rotors) == 1 or not spins.shape[1] or not loads:
             return
-        given = spins.T @ total(loads, model, self.speed)[0].real
-        turned_by = [
-            place(model, one.at, self.speed).seen[0][5].real @ spins @ given for one in loads
-        ]
-        most = int(np.argmax(np.abs(turned_by)))
+        left = np.linalg.norm(spins.T @ total(loads, model, self.speed)[0].real)
+        inertia = max(rotor.invariants.Theta for rotor in model.rotors.values())
         size = sum(
             np.linalg.norm(one.moment) + model.radius * np.linalg.norm(one.force) for one in loads
         )
-        if given @ given > _BALANCED * size * abs(turned_by[most]):
+        if left * np.sqrt(inertia) > _BALANCED * size:
             raise ValueError(
-                f"loads: they leave a torque of {given @ given / turned_by[most]:.4g} N m over "
-                f"at {loads[most].at!r}, about the axis, on a spin that nothing holds; balance it, "
-                "name the rotor that a drive holds in RotorTrain(…, driven=[…]), or give a support "
-                "that holds the spin"
+                "loads: they leave a torque about the axis over, on a spin that nothing holds; "
+                "balance it, name the rotor that a drive holds in RotorTrain(…, driven=[…]), or "
+                "give a support that holds the spin"
             )
 
     @property
@@ -185,14 +177,10 @@ class Problem:
 
     @cached_property
     def _journals(self) -> Journals:
-        sensors = {one: i for i, one in enumerate(self.acting) if isinstance(one, int)}
         owners = [self._assembly.elements[i].ends[0][0] for i in self._bearings]
-        U, U_s = (
-            np.reshape([self._motions[i][:2] for i in numbers], (-1, 2, self.model.size))
-            for numbers in (self._bearings, [sensors.get(i, i) for i in self._bearings])
-        )
+        U = np.reshape([self._motions[i][:2] for i in self._bearings], (-1, 2, self.model.size))
         speeds = [self.model.ratios[owner] * self.speed for owner in owners]
-        return Journals([self.acting[i] for i in self._bearings], speeds, U, U_s)
+        return Journals([self.acting[i] for i in self._bearings], speeds, U)
 
     def solved(self, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the coordinates (k,) and the force on the rotor of each bearing (b, 2) [N]."""
@@ -221,11 +209,7 @@ class Problem:
         motion = np.array([self._still(one.seen) @ y for one in observed])
         motion[[one.is_node for one in observed], 3:] = np.nan
         own = dict(zip(self._bearings, forces, strict=True))
-        shown = [
-            i
-            for i, one in enumerate(self.acting)
-            if not isinstance(one, int) and i not in self.outer
-        ]
+        shown = [i for i in range(len(self.acting)) if i not in self.outer]
         reactions, moved = np.zeros((2, len(shown), 6))
         for row, i in enumerate(shown):
             u = self._motions[i] @ y

@@ -90,8 +90,9 @@ def static_response(
     -----
     A drive holds the free spin of a single rotor, and its torque is the reaction; torques on a
     train must balance where nothing holds its spin, or ``driven`` names the rotor with the drive.
-    The elements of a rolling bearing stand as at θ = 0. The ring of a bearing in series has no
-    weight here. An uneven rotor has at a speed the mean of its stiffness over a turn.
+    The elements of a rolling bearing stand as at θ = 0; magnets sense where they act. The ring of a
+    bearing in series has no weight here. An uneven rotor has at a speed the mean of its stiffness
+    over a turn.
 
     Examples
     --------

@@ -79,7 +79,6 @@ def map_of(stiffness=1e4, rotor=POINT, at="at"):
             lambda: er.harmonic_response(scene(), [9.0], er.BaseAcceleration([1, 0])),
             "put a force on",
         ),
-        (lambda: er.steady_state(on_supports(*held_ends(), drive="elastic")), "add a torsional"),
         (lambda: er.stability_map(lambda x, y: POINT, [1.0], [1.0], labels="a"), "two names"),
         (lambda: er.stability_map(lambda x, y: POINT, [1.0], [1.0]), "build: needs to return"),
         (lambda: er.stability_threshold(POINT, 0.0, 1.0, supports=str), "needs the spin speed"),

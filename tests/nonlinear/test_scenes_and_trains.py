@@ -81,7 +81,7 @@ def test_items_that_may_be_nonlinear_are_named():
         )  # fmt: skip
 
     for change, match in (
-        (spring, r"ConnectorCartesianSpringDamper 'spring'\) is no law of this package"),
+        (spring, "ConnectorCartesianSpringDamper 'spring' is no law of this package"),
         (hammered, r"ForceVector 'hammer'\) is no constant force"),
     ):
         mbs, body = scene()

@@ -108,12 +108,8 @@ class SteadyState:
             angles = np.array([checks.number(angle, "angle", "rad")])
         rows = scene.interface_motion(interface)
         seen = (np.exp(1j * np.outer(angles, self.orders)) @ self.harmonics).real @ rows.T
-        start = np.zeros((2, 3))
-        if scene.count:  # a frame that moves starts in its origin, which may be off the axis
-            start[0, :2] = (scene.axes.T @ body.axis.radial(body.frame.origin))[:2]
         turns = np.array([axial_rotation(theta) for theta in angles])
-        motion = np.einsum("tij,tkj->tki", turns, seen.reshape(-1, 2, 3) - start) + start
-        motion[:, 0] += scene.moved
+        motion = np.einsum("tij,tkj->tki", turns, seen.reshape(-1, 2, 3))
         return motion.mean(axis=0).ravel()
 
 
@@ -159,8 +155,7 @@ def steady_state(
     UnconvergedError
         Where there is no steady motion: a load that nothing holds, a resonance without damping,
         a load that does not repeat with every revolution, a stop or a bearing with clearance
-        that the rotor leaves and hits, a spring of Exudyn about the axis that winds up or that a
-        torque twists.
+        that the rotor leaves and hits, a spring of Exudyn on a free spin that turns.
 
     Notes
     -----
@@ -221,15 +216,14 @@ def _begin(scene: LinearScene, start: SteadyState | StartState) -> tuple[np.ndar
     how = "steady_state(body) makes one, and its state()"
     checks.instance(start, "start", (SteadyState, StartState), how)
     of_steady = isinstance(start, SteadyState)
-    given = (start.scene.size, start.scene.count) if of_steady else (len(start.q), scene.count)
-    wanted = (scene.size if of_steady else len(scene.rest)), scene.count
-    if given != wanted:
+    given, own = (start.scene.rest, start.scene.count) if of_steady else (start.q, scene.count)
+    if (len(given), own) != (len(scene.rest), scene.count):
         raise ValueError(
-            f"start: has {given[0]} coordinates with {given[1]} translations of the rotor, this "
-            f"scene {wanted[0]} with {wanted[1]}; it is of another scene"
+            f"start: has {len(given)} coordinates, this scene {len(scene.rest)}; it is of another "
+            "scene"
         )
     if of_steady:
         return start.orders, start.harmonics
     T = scene.turn(start.angle)[0]
-    y = np.linalg.lstsq(T, (start.q - scene.rest)[scene.free])[0]
+    y = np.linalg.lstsq(T, (start.q - scene.rest)[scene.free])[0] - scene.undeformed
     return np.array([0]), y[None].astype(complex)

@@ -1,8 +1,8 @@
 """Where the search for the steady motion of a scene begins: journals in their equilibria.
 
 The film of a bearing without load is that of a centred journal, and from there Newton's method
-oversteps the clearance. Begun is therefore with the journals where their static loads hold them,
-and the rotor deformed as little as that allows.
+oversteps the clearance. The search therefore begins with the journals where their static loads hold
+them. How the rotor is deformed there does not matter: its equations are linear.
 """
 
 from __future__ import annotations
@@ -10,50 +10,36 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_rotor.bearings.bearing import Bearing
-from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
-from exudyn_rotor.linear.model.turning import interface_motion
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.theory.rotating_axes import into_rotor_frame, parts_across
 
-_SOFT = 1e-8  # of the stiffest mode: resistance of free motions, which are preferred
 
+def journal_start(scene: LinearScene, speed: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the motion with all journals at rest in their equilibria, at a spin speed [rad/s].
 
-def journal_start(scene: LinearScene, speed: float, orders: np.ndarray) -> np.ndarray:
-    """Return harmonics (h, k) of the motion with all journals at rest in their equilibria.
-
-    At a spin speed [rad/s]; the orders (h,) have −1, 0 and 1 among them.
+    Orders (3,) and harmonics (3, k).
 
     Raises
     ------
     UnconvergedError
         Where a bearing has no equilibrium under its load.
     """
-    harmonics = np.zeros((len(orders), scene.size), dtype=complex)
-    at = {n: orders.tolist().index(n) for n in (-1, 0, 1)}
+    orders = np.array([-1, 0, 1])
+    harmonics = np.zeros((3, scene.size), dtype=complex)
     loads = _static_loads(scene.body)
-    harmonics[at[0]] = scene.N.T @ _tilts(scene, speed, loads)
-    # where the origin is the centre of mass, its displacement is from its place at rest
-    back = into_rotor_frame(-scene.apart - scene.moved)  # from where the given state has it
-    for n, shift in ((0, scene.apart), *back.items()):
-        harmonics[at[n]] += scene.translation(shift)
-    cage = scene.body.placement.angle
-    places = {one.interface: _place(one, load, speed, cage) for one, load in loads.items()}
+    harmonics[1] = scene.N.T @ _tilts(scene, speed, loads)
+    places = {one.interface: _place(one, load, speed) for one, load in loads.items()}
     places = {name: place for name, place in places.items() if np.any(place)}
     if not places:
-        return harmonics
-    source, columns = scene.body.selection.source, scene.columns
-    U = np.vstack([interface_motion(source, name)[:2] @ columns for name in places])
-    resistance = np.einsum("ir,ij,jr->r", columns, source.invariants.K, columns)
-    W = 1.0 / (np.abs(resistance) + _SOFT * max(resistance.max(), 1.0))
-    motion = W[:, None] * U.T @ np.linalg.pinv((U * W) @ U.T)
+        return orders, harmonics
+    motion = np.linalg.pinv(np.vstack([scene.interface_motion(name)[:2] for name in places]))
     turned = [into_rotor_frame(np.array([*place, 0.0])) for place in places.values()]
     for n in (-1, 1):
-        target = np.concatenate([harmonic[n][:2] for harmonic in turned])
-        harmonics[at[n], scene.touching] += motion @ target
-    return harmonics
+        harmonics[1 + n] += motion @ np.concatenate([harmonic[n][:2] for harmonic in turned])
+    return orders, harmonics
 
 
 def _tilts(scene: LinearScene, speed: float, loads: dict[Bearing, np.ndarray]) -> np.ndarray:
@@ -66,13 +52,13 @@ def _tilts(scene: LinearScene, speed: float, loads: dict[Bearing, np.ndarray]) -
     return found[scene.free]
 
 
-def _place(bearing: Bearing, load: np.ndarray, speed: float, cage: float) -> np.ndarray:
+def _place(bearing: Bearing, load: np.ndarray, speed: float) -> np.ndarray:
     """Return the equilibrium of a journal (2,) [m]; a film at rest does not carry."""
-    if isinstance(bearing, RollingBearing):
-        return bearing.equilibrium(speed, load, cage)
     try:
-        return bearing.equilibrium(speed, load) if speed else np.zeros(2)
+        return bearing.equilibrium(speed, load)
     except (ValueError, ArithmeticError) as error:
+        if not speed:
+            return np.zeros(2)
         where = f"linear scene at {speed:g} rad/s, bearing at {bearing.interface!r}"
         raise UnconvergedError(f"{where}: {error}") from error
 

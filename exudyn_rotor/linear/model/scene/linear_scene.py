@@ -20,20 +20,15 @@ from exudyn_rotor import checks
 from exudyn_rotor.calls import kept
 from exudyn_rotor.linear.equations import others
 from exudyn_rotor.linear.model.body import RotorAlone
-from exudyn_rotor.linear.model.spin import ARM
-from exudyn_rotor.linear.model.turning import interface_motion
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
 from exudyn_rotor.multibody.full.full_body import reduced_body
-from exudyn_rotor.multibody.rotor.plan import turned_origin
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState
 from exudyn_rotor.multibody.rotor.rotor_items import known_rotors
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 from exudyn_rotor.multibody.supports.ends import BaseEnd
 from exudyn_rotor.theory.axis import SpinAxis, skew
-from exudyn_rotor.theory.rotating_axes import axes_of, axial_skew
+from exudyn_rotor.theory.rotating_axes import axes_of
 
-# objects without forces: grounds and constraints
-_FORCELESS = ("Ground", "ConnectorCoordinate", "ConnectorCoordinateVector", "ConnectorDistance")
 _HELD = 1e-8  # share of a motion of the rotor that is none of the scene
 _TOUCHED = 1e-14  # entry of a constraint below which it is none of a coordinate
 _TURNED = 1e-3  # share of a constraint by which it is one of the spin
@@ -43,6 +38,8 @@ _TURNED = 1e-3  # share of a constraint by which it is one of the spin
 class LinearScene:
     """The unknowns y of a scene: the rotor's turn with it, those of everything else do not.
 
+    They are zero where the rotor turns about its axis undeformed, and all else is as it was given.
+
     Attributes
     ----------
     body : RotorBody
@@ -51,7 +48,7 @@ class LinearScene:
     N : ndarray, shape (len(free), k)
         Motions that the scene's constraints allow.
     rest : ndarray
-        All coordinates of the given state.
+        All coordinates of the given state, the rotor's where its origin is on the axis.
     is_spin_free : bool
         Whether the spin is a coordinate of linear equations.
     """
@@ -71,10 +68,7 @@ class LinearScene:
         own = np.delete(body.layout.unknowns, [count] if body.formulation.has_spin else [])
         free = np.asarray(body.mbs.systemData.GetObjectLTGODE2(body.objects["physics"]))[own]
         made = cls(body, free, np.eye(len(free)), rest, body.formulation.has_spin)
-        rest[free[count:]] = 0.0
-        # where the rotor is when it has turned back
-        turned = turned_origin(body.selection, body.placement.rotation, rest[made.spin_coordinate])
-        rest[free[:count]] -= body.motion.free_directions.T @ turned
+        rest[free] = -made.turn(0.0)[0] @ made.undeformed
         return made
 
     @classmethod
@@ -87,8 +81,7 @@ class LinearScene:
         ------
         TypeError, ValueError
             For a system that is not assembled, a body of another system, a second rotor,
-            coordinates of first order, and constraints that turn with the rotor or tie its free
-            spin to something.
+            coordinates of first order, and constraints that turn with the rotor.
         """
         check_scene(mbs, body)
         alone = cls.of_rotor(body)
@@ -96,24 +89,20 @@ class LinearScene:
         free = np.r_[alone.free, np.setdiff1d(np.arange(len(alone.rest)), rotor)]
         scene = cls(body, free, np.eye(len(free)), alone.rest, alone.is_spin_free)
         with evaluating(mbs) as solver:
-            found = [scene._constraints(solver, angle) for angle in (0.0, 1.0, 2.5)]
-        sizes, turned = np.abs(found[0][:, :-1]).max(axis=1, initial=0.0), np.abs(found[0][:, -1])
-        holds_spin = turned > _TURNED * sizes
-        C = [X[np.abs(X).max(axis=1, initial=0.0) > _TOUCHED] for X in (X[:, :-1] for X in found)]
-        if any(X.shape != C[0].shape or np.abs(X - C[0]).max(initial=0.0) > 1e-6 for X in C):
+            C, *later = [scene._constraints(solver, angle) for angle in (0.0, 1.0, 2.5)]
+        rows, on_spin = C[:, :-1], C[:, -1]
+        if any(np.abs(X[:, :-1] - rows).max(initial=0.0) > 1e-6 for X in later):
             raise ValueError(
                 "linear scene: a constraint turns with the rotor; hold the rotor by springs "
                 "(bearings) instead of joints, and give a part that turns with it to the rotor, "
                 "add_disc(…) or add_point_mass(…) of SolidRotor"
             )
-        if scene.is_spin_free and np.any(holds_spin & (sizes > _TURNED * turned)):
-            raise ValueError(
-                "linear scene: a constraint ties the free spin to another coordinate; use springs, "
-                "or connect_rotors(…) to a second rotor"
-            )
+        sizes = np.abs(rows).max(axis=1, initial=0.0)
+        holds_spin = np.any(np.abs(on_spin) > _TURNED * sizes)
+        rows = rows[sizes > _TOUCHED]
         # coordinates that no constraint touches stay as they are
-        N = others(C[0].T) if len(C[0]) else scene.N
-        return cls(body, free, N, scene.rest, scene.is_spin_free and not np.any(holds_spin))
+        N = others(rows.T) if len(rows) else scene.N
+        return cls(body, free, N, scene.rest, scene.is_spin_free and not holds_spin)
 
     def _constraints(self, solver: exudyn.MainSolverStatic, theta: float) -> np.ndarray:
         """Return the constraints' Jacobian by the free coordinates as unknowns, and the spin."""
@@ -159,22 +148,10 @@ class LinearScene:
         return axes_of(SpinAxis(self.body.motion.invariants.direction))
 
     @cached_property
-    def apart(self) -> np.ndarray:
-        """Place of the rotor's origin off the axis, along (n1, n2, e) that turn, (3,)."""
-        return self.axes.T @ self.body.axis.radial(self.body.frame.origin)
-
-    @cached_property
-    def moved(self) -> np.ndarray:
-        """Displacement of the rotor, turned back, in the given state [m].
-
-        Along (n1, n2, e) that stand still, (3,).
-        """
-        given = self.body.motion.free_directions @ self.rest[self.free[: self.count]]
-        return self.body.standing_axes.T @ given
-
-    def translation(self, x: np.ndarray) -> np.ndarray:
-        """Return the unknowns (k,) of a displacement of the rotor's origin (3,)."""
-        return self.N[: self.count].T @ x[: self.count]
+    def undeformed(self) -> np.ndarray:
+        """The rotor's origin off the axis as unknowns (k,), which ``T(θ)`` turns about the axis."""
+        apart = self.axes.T @ self.body.axis.radial(self.body.frame.origin)
+        return self.N[: self.count].T @ apart[: self.count]
 
     @cached_property
     def touching(self) -> np.ndarray:
@@ -198,43 +175,18 @@ class LinearScene:
         about_axis = source.invariants.moved(source.axis.project(center) - center).g
         return np.column_stack([self.columns, about_axis])
 
+    @cached_property
+    def _by_columns(self) -> np.ndarray:
+        return np.linalg.pinv(self._with_spin)
+
     def of_coordinates(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return unknowns (…, r) that move the rotor, and the turn of a free spin (…).
 
         By the coordinates (…, n) of the reduced rotor.
         """
-        found = x @ np.linalg.pinv(self._with_spin).T
+        found = x @ self._by_columns.T
         count = self.columns.shape[1]
         return found[..., :count], found[..., count:].sum(axis=-1)
-
-    @cached_property
-    def by_columns(self) -> np.ndarray:
-        """Unknowns that move the rotor by the coordinates of the reduced rotor, (r, n)."""
-        return np.linalg.pinv(self._with_spin)[: self.columns.shape[1]]
-
-    @cached_property
-    def spin_by_columns(self) -> np.ndarray:
-        """Turn of a free spin by the coordinates of the reduced rotor, (1, n); else (0, n)."""
-        return np.linalg.pinv(self._with_spin)[self.columns.shape[1] :]
-
-    @cached_property
-    def centring(self) -> np.ndarray:
-        """Unknowns (k,) that keep interfaces on the axis as the rotor turns by one rad.
-
-        The origin moves about the axis, and what is off the axis by the mesh alone is kept there,
-        as by :meth:`Spin.centred`.
-        """
-        source, about = self.body.selection.source, axial_skew(3)
-        found = self.translation(about @ self.apart)
-        if not self.is_spin_free or not source.interfaces:
-            return found
-        U = np.array([interface_motion(source, name)[:2] for name in source.interfaces])
-        about_axis = self._with_spin[:, -1]
-        arms = U @ about_axis
-        near = self.mass * np.sum(arms**2, axis=1) <= ARM * (about_axis @ about_axis)
-        across = (U[near] @ self.columns).reshape(-1, self.columns.shape[1])
-        found[self.touching] -= np.linalg.pinv(across) @ arms[near].ravel()
-        return found
 
     @kept
     def held(self, alone: RotorAlone) -> np.ndarray:
@@ -254,13 +206,7 @@ class LinearScene:
         return alone.within(others(held if whole else la.orth(alone.turning.still @ held)))
 
     def interface_motion(self, name: str) -> np.ndarray:
-        """Return an interface's displacement and rotation along (n1, n2, e), (6, k), rotor frame.
-
-        Raises
-        ------
-        TypeError, ValueError
-            For an interface that is not there.
-        """
+        """Return displacement and rotation of an interface along (n1, n2, e) that turn, (6, k)."""
         columns = self.body.interface_carrier(name).motion  # of modes, in axes of the marker body
         motion = np.zeros((6, len(self.free)))
         motion[: self.count, : self.count] = np.eye(self.count)
@@ -268,7 +214,7 @@ class LinearScene:
         return motion @ self.N
 
     def turn(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return T, T', T'' of the free scene coordinates ``T(θ) y``; ' is the derivative by θ."""
+        """Return T, T', T'' by θ: the free coordinates are ``rest + T(θ) (y + undeformed)``."""
         motion, c = self.body.motion, self.count
         A = motion.orientation @ SpinAxis(motion.invariants.direction).rotation(theta)
         e = skew(motion.invariants.direction)
@@ -290,6 +236,7 @@ class LinearScene:
             Of the spin [rad], [rad/s].
         """
         T, T1, _ = self.turn(angle)
+        y = y + self.undeformed
         q, q_t = self.rest.copy(), np.zeros(len(self.rest))
         q[self.free] += T @ y
         q_t[self.free] = T @ y_t + speed * T1 @ y
@@ -303,11 +250,9 @@ class LinearScene:
     def foreign_items(self) -> list[dict]:
         """Objects and loads that are neither the rotor's own nor its supports, as dictionaries."""
         mbs, body = self.body.mbs, self.body
-        objects = set(range(mbs.systemData.NumberOfObjects())) - known_objects(body)
         weight = set() if body.gravity_load is None else {int(body.gravity_load)}
         loads = set(range(mbs.systemData.NumberOfLoads())) - weight
-        items = filter(_has_force, map(mbs.GetObject, sorted(objects)))
-        return [*items, *map(mbs.GetLoad, sorted(loads))]
+        return [*objects_beside(mbs, known_objects(body)), *map(mbs.GetLoad, sorted(loads))]
 
     @cached_property
     def others(self) -> np.ndarray:
@@ -337,22 +282,14 @@ def known_objects(body: RotorBody) -> set[int]:
     return found | {int(number) for one in body.supports for number in one.objects}
 
 
-def _has_force(item: dict) -> bool:
-    """Return whether an object may have a force: no ground, no constraint, no mere mass."""
-    kind = item["objectType"]
-    if kind == "GenericODE2":
-        names = "stiffnessMatrix", "dampingMatrix", "forceVector", "forceUserFunction"
-        return any(np.any(item[name]) for name in names)
-    return kind not in _FORCELESS and not kind.startswith("Joint")
+def objects_beside(mbs: exudyn.MainSystem, known: set[int]) -> list[dict]:
+    """Return all objects but known ones and grounds, as dictionaries."""
+    numbers = sorted(set(range(mbs.systemData.NumberOfObjects())) - known)
+    return [item for item in map(mbs.GetObject, numbers) if item["objectType"] != "Ground"]
 
 
 def check_body(mbs: exudyn.MainSystem, body: RotorBody) -> None:
-    """Refuse a system that is not assembled, another one's rotor, and coordinates of first order.
-
-    Raises
-    ------
-    TypeError, ValueError
-    """
+    """Refuse a system not assembled, another one's rotor, and coordinates of first order."""
     checks.instance(mbs, "mbs", exudyn.MainSystem)
     reduced_body(body, how="exudyn_rotor.add_rotor returned it for the rotor in this system")
     if body.mbs is not mbs:
@@ -367,19 +304,13 @@ def check_body(mbs: exudyn.MainSystem, body: RotorBody) -> None:
 
 
 def check_scene(mbs: exudyn.MainSystem, body: RotorBody) -> None:
-    """Refuse what :func:`check_body` does, and a second rotor.
-
-    Raises
-    ------
-    TypeError, ValueError
-    """
+    """Refuse what :func:`check_body` does, and a second rotor."""
     check_body(mbs, body)
     second = [one.name for one in known_rotors(mbs) if one.script is not body.script]
     if second:
         raise ValueError(
             f"linear scene: a second rotor in this system, {second[0]!r}; one revolution is a "
             "period for one spin speed only, which steady_state needs. Linear analyses take "
-            "body=[…] with all rotors, on supports of add_supports and linked by these and "
-            "connect_rotors, or a RotorTrain of the reduced rotors and their supports, with gears "
-            "and couplings as Link(…)"
+            "body=[…] with all rotors, on supports of add_supports and linked by connect_rotors, "
+            "or a RotorTrain of the reduced rotors"
         )

@@ -6,16 +6,17 @@ it turns with what carries the bearing, and that friction on this changes, by ab
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property, lru_cache
-from typing import NamedTuple
 
 import exudyn
 import numpy as np
 
+from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
+from exudyn_rotor.linear.model.spin import ARM
 from exudyn_rotor.multibody.evaluation import evaluating, without_forces
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
@@ -23,25 +24,7 @@ from exudyn_rotor.theory.stiffening import stiffening
 
 _KEPT = 48  # angles whose terms of the rotor, and whose turned axes, are kept
 _LOADS = 2  # Exudyn's word for loads that depend on places and rates
-# share of a lateral stiffness per mass, or 1/s², below which one on the spin is rounding
-_SLOW = 1e-6
-
-
-class Forces(NamedTuple):
-    """Forces on the free coordinates, and less their derivatives by these and by their rates."""
-
-    values: np.ndarray
-    K: np.ndarray
-    D: np.ndarray
-
-
-class LinearPoint(NamedTuple):
-    """M, D, K (k, k) at one angle, and the residual of y (k,)."""
-
-    M: np.ndarray
-    D: np.ndarray
-    K: np.ndarray
-    residual: np.ndarray
+_WINDING = 1e-3  # share of a stiffness on the spin that a point off the axis has in the mean
 
 
 class Probe:
@@ -104,19 +87,16 @@ class Probe:
     def metres(self) -> np.ndarray:
         """How many metres each of the unknowns counts as, (k,).
 
-        What moves as much kinetic energy as the rotor by a metre; of a light pad or controller
-        at least one.
+        What moves as much kinetic energy as the rotor by a metre; beside the rotor at least one.
         """
         T, scene = self.turn(0.0)[0], self.scene
         masses = np.diag(T.T @ self.rotor_terms(0.0)[0] @ T + self.mass_beside)
         metres = np.sqrt(np.maximum(masses, 1e-300) / scene.mass)
-        for one in scene.body.supports:
-            own = scene.own_unknowns(one)
-            metres[own] = np.maximum(metres[own], 1.0)
+        metres[~scene.touching] = np.maximum(metres[~scene.touching], 1.0)  # of light pads
         return metres
 
     def _rotor_terms(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Return the rotor's M, D, K and constant force at Ω, in the free coordinates."""
+        """Return M, D, K of the rotor and the force on it undeformed at Ω, free coordinates."""
         body, size = self.scene.body, len(self.scene.free)
         form = replace(
             body.motion.formulation, spin=ConstantSpeed(self.speed, theta), spin_coupling="full"
@@ -135,16 +115,19 @@ class Probe:
         by_q, by_v = motion.jacobian(0.0, zero, zero)
         full = np.zeros((3, size, size))
         full[:, : motion.size, : motion.size] = motion.mass_matrix(0.0, zero), -by_v, -by_q
-        return *full, np.r_[motion.forces(0.0, zero, zero), np.zeros(size - motion.size)]
+        constant = np.r_[motion.forces(0.0, zero, zero), np.zeros(size - motion.size)]
+        moved = (X @ self.scene.undeformed for X in self.turn(theta)[::-1])
+        return *full, constant - sum(X @ x for X, x in zip(full, moved, strict=True))
 
     # ------------------------------------------------------------------ forces
 
     def forces(
         self, theta: float, x: np.ndarray, v: np.ndarray, *, slopes: bool = True, laws: bool = True
-    ) -> Forces:
-        """Return the forces of all but the rotor's own equations, with their derivatives.
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the forces of all but the rotor's own equations on the free coordinates.
 
-        These are zero without `slopes`; without `laws` the forces are what Exudyn has beside them.
+        Then less their derivatives by these and by their rates, zero without `slopes`. Without
+        `laws` the forces are what Exudyn has beside them.
         """
         q, q_t = self._set(theta, x, v)
         size = len(q)
@@ -158,29 +141,39 @@ class Probe:
                 by_place, by_rate = law.slopes(self._time(theta))
                 K[places[:, None], places] += by_place
                 D[places[:, None], places] += by_rate
-        return Forces(force[self.scene.free], self._of_free(K), self._of_free(D))
+        return force[self.scene.free], self._of_free(K), self._of_free(D)
 
-    def on_spin(self, theta: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return stiffness and damping by Exudyn's forces on and by a free spin, (f + 1, f + 1).
+    def check_free_spin(self, angles: Iterable[float]) -> None:
+        """Refuse what Exudyn has as a spring about the axis of a free spin, in the mean of angles.
 
-        Of the free coordinates, then the spin; zero between the former. They are those of the
-        undeformed state without loads: moments of static forces by small motions are left out.
+        By the undeformed state without loads: what remains is no moment of a static force.
+
+        Raises
+        ------
+        UnconvergedError
         """
-        scene, T, found = self.scene, self.turn(theta)[0], []
-        lateral = T[:, scene.touching] / self.metres[scene.touching]
+        scene, stiffness = self.scene, []
+        if not scene.is_spin_free:
+            return
         places = np.r_[scene.free, self.spin]
-        centred = np.eye(len(places))
-        centred[:-1, -1] = T @ scene.centring
-        apart, moved = (scene.translation(x) for x in (scene.apart, scene.moved))
-        x = T @ apart - self.turn(0.0)[0] @ (apart + moved)
-        self._set(theta, x, self.turn(theta)[1] @ apart)
-        for X in self._exudyn_slopes(loads=0):
-            X = centred.T @ X[np.ix_(places, places)] @ centred
-            most = np.abs(np.einsum("ij,ik,kj->j", lateral, X[:-1, :-1], lateral)).max(initial=0.0)
-            least = _SLOW * max(most / scene.mass, 1.0) * scene.body.motion.invariants.Theta
-            X[:-1, :-1] = 0.0
-            found.append(X if abs(X[-1, -1]) > least else 0.0 * X)
-        return tuple(found)
+        still = np.zeros((2, len(scene.free)))
+        for theta in angles:
+            T, T1, _ = scene.turn(theta)
+            self._set(theta, *still)
+            K = self._exudyn_slopes(loads=0)[0][np.ix_(places, places)]
+            lateral = T[:, scene.touching] / self.metres[scene.touching]
+            most = np.abs(np.einsum("ij,ik,kj->j", lateral, K[:-1, :-1], lateral)).max(initial=0.0)
+            about_axis = np.r_[T1 @ scene.undeformed, 1.0]
+            stiffness.append(about_axis @ K @ about_axis)
+        held = abs(np.mean(stiffness))
+        least = ARM * max(most / scene.mass, 1.0) * scene.body.motion.invariants.Theta
+        if held > max(least, _WINDING * np.abs(stiffness).max()):
+            raise UnconvergedError(
+                f"linear scene at {self.speed:g} rad/s: a spring of Exudyn holds the free spin, "
+                f"{held:.3g} N m/rad; give a flywheel as a second rotor, "
+                "connect_rotors(FlexibleCoupling(…), …), a spring to the ground as "
+                "Support(…, tilt_stiffness=…), or analyse the reduced rotor with these in a list"
+            )
 
     def _exudyn_slopes(self, loads: int = _LOADS) -> tuple[np.ndarray, np.ndarray]:
         """Return less the derivatives of Exudyn's forces at the present state.
@@ -210,10 +203,11 @@ class Probe:
         return theta / self.speed if self.speed else 0.0
 
     def _set(self, theta: float, x: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Put a deviation x of the free coordinates and their rates v into the scene."""
+        """Put the undeformed rotor, deviations x of free coordinates and their rates v there."""
         data, q, q_t = self.mbs.systemData, self.scene.rest.copy(), 0.0 * self.scene.rest
-        q[self.scene.free] += x
-        q_t[self.scene.free] = v
+        T, T1, _ = self.turn(theta)
+        q[self.scene.free] += x + T @ self.scene.undeformed
+        q_t[self.scene.free] = v + T1 @ self.scene.undeformed
         q[self.spin], q_t[self.spin] = theta, self.speed
         data.SetODE2Coordinates(q)
         data.SetODE2Coordinates_t(q_t)
@@ -228,16 +222,15 @@ class Probe:
         """Return the residual of y, with its rate and acceleration, at one angle (k,)."""
         return self._balance(theta, *state, slopes=False)[-1]
 
-    def linearised(self, theta: float, *state: np.ndarray) -> LinearPoint:
-        """Return the scene linearised about y, with its rate and acceleration, at one angle."""
+    def linearised(self, theta: float, *state: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Return M, D, K (k, k) about y, its rate and acceleration at one angle, and residual (k,).
+
+        The residual is what the motion leaves unbalanced.
+        """
         M, D, K, residual = self._balance(theta, *state, slopes=True)
         T, T1, T2 = self.turn(theta)
-        return LinearPoint(
-            T.T @ M @ T,
-            T.T @ (2.0 * M @ T1 + D @ T),
-            T.T @ (M @ T2 + D @ T1 + K @ T),
-            residual,
-        )
+        by_rate, by_place = 2.0 * M @ T1 + D @ T, M @ T2 + D @ T1 + K @ T
+        return T.T @ M @ T, T.T @ by_rate, T.T @ by_place, residual
 
     def _balance(
         self, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray, slopes: bool

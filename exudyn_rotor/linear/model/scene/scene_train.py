@@ -14,7 +14,11 @@ import numpy as np
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.linear.model.rotor_train import Link, RotorTrain
-from exudyn_rotor.linear.model.scene.linear_scene import check_body, known_objects
+from exudyn_rotor.linear.model.scene.linear_scene import (
+    check_body,
+    known_objects,
+    objects_beside,
+)
 from exudyn_rotor.multibody.drives import SceneConnection
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.rotor_items import known_rotors
@@ -43,7 +47,13 @@ def scene_train(mbs: exudyn.MainSystem, bodies: Sequence[RotorBody]) -> tuple[Ro
         _check_alike(bodies[0], body)
     named = {body.name: body for body in bodies}
     links = _links(named)
-    _check_nothing_else(mbs, bodies)
+    known = set().union(*map(known_objects, bodies))
+    known |= {int(number) for body in bodies for one in body.drives for number in one.objects}
+    for item in objects_beside(mbs, known):
+        raise ValueError(
+            f"linear scene: {item['objectType']} {item['name']!r} is neither of the rotors nor "
+            f"added by add_supports or connect_rotors, so that a train does not have it; {_BY_HAND}"
+        )
     speed = bodies[0].placement.speed
     on_ground = {
         name: [one.support for one in body.supports if one.base is None]
@@ -103,7 +113,11 @@ def _links(named: dict[str, RotorBody]) -> list[Link]:
             if one.base is not None:
                 other = _other_end(body, one, markers)
                 links.append(Link(f"{name}:{one.support.interface}", other, one.support))
-        links += [_link_of(one) for one in body.drives if one.body is body]
+        for one in body.drives:
+            if one.body is body:
+                law = one.connection
+                given = law if isinstance(law, GearMesh) else law.support(one.at)
+                links.append(Link(f"{name}:{one.at}", f"{one.other.name}:{one.other_at}", given))
     return links
 
 
@@ -117,23 +131,3 @@ def _other_end(body: RotorBody, one: SceneSupport, markers: dict[int, str]) -> s
             f"and Support(…) between rotors; {_BY_HAND}"
         )
     return markers[int(one.base)]
-
-
-def _link_of(one: SceneConnection) -> Link:
-    law = one.connection
-    given = law if isinstance(law, GearMesh) else law.support(one.at)
-    return Link(f"{one.body.name}:{one.at}", f"{one.other.name}:{one.other_at}", given)
-
-
-def _check_nothing_else(mbs: exudyn.MainSystem, bodies: Sequence[RotorBody]) -> None:
-    """Refuse objects that are not of the rotors, their supports and connections."""
-    known = set().union(*map(known_objects, bodies))
-    known |= {int(number) for body in bodies for one in body.drives for number in one.objects}
-    for number in set(range(mbs.systemData.NumberOfObjects())) - known:
-        item = mbs.GetObject(number)
-        if item["objectType"] != "Ground":
-            raise ValueError(
-                f"linear scene: object {number} ({item['objectType']} {item['name']!r}) is neither "
-                "of the rotors nor added by add_supports or connect_rotors, so that a train does "
-                f"not have it; {_BY_HAND}"
-            )

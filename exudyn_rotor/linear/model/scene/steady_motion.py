@@ -1,14 +1,15 @@
 """Steady motion of a scene over one revolution, and its equilibria at rest.
 
-Newton's method on the motion's harmonics y_n of ``y(θ) = Re Σ y_n exp(inθ)``: the scene is
-linearised at several angles of a revolution, and Hill's matrix of these equations turns what the
-forces leave unbalanced into a change of all harmonics, as much of it as leaves less unbalanced. At
-rest nothing couples the angles, of which three tell how an equilibrium turns in the rotor.
+Newton's method on the harmonics of the motion: the scene is linearised at several angles of a
+revolution, and these equations, times the waves of the harmonics, in the mean over the angles, are
+the linear system of the harmonics (Galerkin's method). Of its solution as large a share is taken as
+leaves less unbalanced. At rest nothing couples the angles, of which three tell how an equilibrium
+turns in the rotor.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -19,30 +20,17 @@ from exudyn_rotor import checks
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.journal_start import journal_start
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
-from exudyn_rotor.linear.model.scene.probe import LinearPoint, Probe, probing
-from exudyn_rotor.linear.model.spin import ARM
+from exudyn_rotor.linear.model.scene.probe import Probe, probing
 from exudyn_rotor.linear.model.turning import radius_of_gyration
-from exudyn_rotor.reduction.reduced_rotor import RIGID_KINDS, ModeKind
 
 Motion = tuple[np.ndarray, np.ndarray]  # orders (h,) and harmonics (h, k)
 _PERIODIC = 1e-6  # share of the forces that may change from one revolution to the next: round-off
-_TURN_ROUNDING = 1e-13  # rad, of an angle after some revolutions
 _FIRST_SAMPLES, _MOST_SAMPLES = 12, 192
 _AT_REST = 3  # angles
 _LEFT_OUT = 3  # harmonics fewer than samples
 _ROUGH_SAMPLES = 48  # from which on the harmonics of a contact count as enough:
 _ROUGH = 1e-3  # share of the motion that the highest may have,
 _SLOWLY = 0.01  # where twice the samples leave more of them than this share
-_SOLVED = 0.01  # of what the harmonics leave out, beyond which more iterations are of no use
-
-WINDS_UP = (
-    "linear scene at {:g} rad/s: a spring of Exudyn about the axis winds up as the rotor turns, "
-    "for what it is on stands still here; give a flywheel as a second rotor, "
-    "connect_rotors(FlexibleCoupling(…), …), and for a spring to the ground analyse the reduced "
-    "rotor with supports=[…, Support(…, tilt_stiffness=…)]; a run shows what they do"
-)
-_TWISTED = 1e-6  # rad
-_WINDING = 1e-3  # mean over a turn as a share of stiffness about the axis, but for the mesh
 _UNHELD = 1e-6  # m/s² by which loads may accelerate what nothing holds: round-off
 _BALANCED = 1e-8  # m/s² that may be left where a contact resists with the square of its depth,
 _FEW_ITERATIONS, _MOST_ITERATIONS = 4, 60  # after these
@@ -57,84 +45,45 @@ _NOISE = 1e-10  # share of the largest row below which a row of a stiffness is r
 _SINGULAR = 1e-12  # reciprocal condition of a stiffness that leaves a motion free
 
 
-class _UnheldError(UnconvergedError):
-    """Where the search begins, nothing holds a load."""
-
-
 def steady_motion(
     scene: LinearScene, speed: float, tolerance: float, start: Motion | None = None
 ) -> Motion:
     """Return the steady motion at a spin speed [rad/s] by its harmonics of the revolution.
 
-    Orders (h,) and harmonics (h, k) of ``y(θ) = Re Σ y_n exp(inθ)``, as deviations from
-    :attr:`LinearScene.rest`. Newton's last change, and the highest harmonics, are below `tolerance`
-    of the motion; the search begins with the motion `start` where one is given.
+    Orders (h,) and harmonics (h, k) of ``y(θ) = Re Σ y_n exp(inθ)``, the unknowns of the scene.
+    Newton's last change, and the highest harmonics, are below `tolerance` of the motion; the search
+    begins with the motion `start` where one is given.
 
     Raises
     ------
     UnconvergedError
         Where no steady motion is found, or 192 angles do not resolve it, where loads do not
-        repeat with every revolution, where nothing holds the own spin of a rotor with an elastic
-        drive against a torque, and where springs on the spin wind up.
+        repeat with every revolution, and where a spring holds a free spin at a speed.
     """
     with probing(scene, checks.number(speed, "speed", "rad/s")) as probe:
+        if speed:
+            probe.check_free_spin(2.0 * np.pi * np.arange(3) / 3.0)
         _check_period(probe)
         if not speed:
-            search = _Search(probe, _AT_REST, tolerance)
-            motion = search.orders, search.found(None if start is None else start[1])[0]
-            _check_untwisted(probe, *motion)
-            return motion
-        _check_unwound(probe)
+            return _Search(probe, _AT_REST, tolerance).found(start)[0]
         return _turning(probe, tolerance, start)
-
-
-def _check_unwound(probe: Probe) -> None:
-    """Refuse springs of Exudyn about the axis."""
-    angles = 2.0 * np.pi * np.arange(3) / 3.0
-    if winds_up([probe.on_spin(angle)[0][-1, -1] for angle in angles]):
-        raise UnconvergedError(WINDS_UP.format(probe.speed))
-
-
-def winds_up(stiffness: Sequence[float]) -> bool:
-    """Return whether stiffnesses on the spin, at angles, are those of a spring about the axis.
-
-    One at a point off the axis has none in the mean.
-    """
-    return abs(sum(stiffness)) > _WINDING * sum(map(abs, stiffness))
-
-
-def _check_untwisted(probe: Probe, orders: np.ndarray, harmonics: np.ndarray) -> None:
-    """Refuse a moment on a free spin at rest that springs of Exudyn hold."""
-    angle = probe.scene.body.placement.angle
-    stiffness = probe.on_spin(angle)[0][-1, -1] if probe.scene.is_spin_free else 0.0
-    x = probe.turn(angle)[0] @ (np.exp(1j * orders * angle) @ harmonics).real
-    probe.forces(angle, x, 0.0 * x, slopes=False)
-    moment = np.array(probe.solver.GetSystemResidual())[probe.spin]
-    if stiffness and abs(moment) > _TWISTED * abs(stiffness):
-        raise UnconvergedError(
-            f"linear scene at rest: {moment:g} N m twist the spring on the free spin; "
-            "mbs.SolveStatic finds this equilibrium"
-        )
 
 
 def _turning(probe: Probe, tolerance: float, start: Motion | None) -> Motion:
     """Return the motion at a speed, of as many angles as needed."""
-    samples, harmonics, before = _FIRST_SAMPLES, None, np.inf
+    samples, motion, before = _FIRST_SAMPLES, start, np.inf
     if start is not None:
-        harmonics = start[1]
-        samples = max(samples, len(harmonics) + _LEFT_OUT)
+        samples = max(samples, len(start[0]) + _LEFT_OUT)
     while samples <= _MOST_SAMPLES:
-        search = _Search(probe, samples, tolerance)
         try:
-            harmonics, tail = search.found(harmonics)
-        except UnconvergedError as error:  # a film that is all but closed is unlike itself at few
-            is_told = isinstance(error, _UnheldError) or samples >= _ROUGH_SAMPLES
-            if is_told or start is not None:
+            motion, tail = _Search(probe, samples, tolerance).found(motion)
+        except UnconvergedError:  # a film that is all but closed is unlike itself at few
+            if samples >= _ROUGH_SAMPLES or start is not None:
                 raise
-            harmonics, tail = None, np.inf
+            motion, tail = None, np.inf
         is_rough = samples >= _ROUGH_SAMPLES and _SLOWLY * before < tail <= _ROUGH
         if tail <= tolerance or is_rough:
-            return search.orders, harmonics
+            return motion
         samples, before = 2 * samples, tail
     raise UnconvergedError(
         f"linear scene at {probe.speed:g} rad/s: {_MOST_SAMPLES} angles of a revolution do not "
@@ -146,31 +95,25 @@ def _turning(probe: Probe, tolerance: float, start: Motion | None) -> Motion:
 def _check_period(probe: Probe) -> None:
     """Refuse loads that are others after a revolution, as those that vary in time by themselves."""
     still = np.zeros((2, len(probe.scene.free)))
-
-    def force(theta: float) -> np.ndarray:
-        return probe.forces(theta, *still, slopes=False).values
-
     for theta in (0.5, 2.5, 4.5):
-        first = force(theta)
+        first, again = (
+            probe.forces(angle, *still, slopes=False)[0] for angle in (theta, theta + 2.0 * np.pi)
+        )
         loads = max(np.abs(first).max(), np.abs(probe.rotor_terms(theta)[3]).max())
-        # where a journal that is off its axis is all but at the wall, rounding is a force
-        rounding = np.abs(force(theta + _TURN_ROUNDING) - first).max()
-        least = _PERIODIC * loads + _UNHELD * probe.scene.mass + rounding
-        for turns in (1.0, 2.0):
-            if np.abs(force(theta + 2.0 * np.pi * turns) - first).max() > least:
-                raise UnconvergedError(
-                    f"linear scene at {probe.speed:g} rad/s: a load does not repeat with every "
-                    "revolution of the rotor, so there is no steady motion; leave out loads and "
-                    "motions that vary in time"
-                )
+        if np.abs(again - first).max() > _PERIODIC * loads + _UNHELD * probe.scene.mass:
+            raise UnconvergedError(
+                f"linear scene at {probe.speed:g} rad/s: a load does not repeat with every "
+                "revolution of the rotor, so there is no steady motion; leave out loads and "
+                "motions that vary in time"
+            )
 
 
 @dataclass(frozen=True, eq=False)
 class _Search:
     """The motion by its values at `samples` angles, to a relative `tolerance`.
 
-    Unknown are the real parts of its harmonics n ≥ 0, then the imaginary ones of n > 0. Angles
-    begin with that of the start at rest.
+    ``y = a_0 + √2 Σ a_n cos nθ + b_n sin nθ``; unknown are the parts a_0, a_1, …, then b_1, ….
+    Angles begin with that of the start at rest.
     """
 
     probe: Probe
@@ -184,139 +127,76 @@ class _Search:
 
     @cached_property
     def orders(self) -> np.ndarray:
-        most = (self.samples - (_LEFT_OUT if self.probe.speed else 0)) // 2
-        return np.arange(-most, most + 1)
+        """Orders 1, … of the harmonics beside the mean."""
+        return np.arange(1, (self.samples - (_LEFT_OUT if self.probe.speed else 0)) // 2 + 1)
 
     @cached_property
-    def waves(self) -> np.ndarray:
-        return np.exp(1j * np.outer(self.angles, self.orders))
+    def waves(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The motion at the angles by its parts, (s, h), its rate and acceleration."""
+        rates = 1j * self.orders * self.probe.speed
+        turned = np.sqrt(2.0) * np.exp(1j * np.outer(self.angles, self.orders))
+        found = []
+        for power in range(3):
+            mean, wave = np.full((self.samples, 1), float(power == 0)), rates**power * turned
+            found.append(np.hstack([mean, wave.real, wave.imag]))
+        return tuple(found)
 
-    def found(self, start: np.ndarray | None) -> tuple[np.ndarray, float]:
-        """Return the harmonics (h, k) of the motion, and the share of it that the highest have.
+    def found(self, start: Motion | None) -> tuple[Motion, float]:
+        """Return the motion, and the share of it that the highest harmonics have.
 
-        The search begins with the harmonics `start`, of any number.
+        The search begins with the motion `start`, of any orders.
         """
         probe, count = self.probe, len(self.orders)
-        if start is None:
-            start = journal_start(probe.scene, probe.speed, self.orders)
-        more = (count - len(start)) // 2
-        Y = start[-more:more] if more < 0 else np.pad(start, ((more, more), (0, 0)))
-        self._check_own_spin(Y)
+        orders, Y = journal_start(probe.scene, probe.speed) if start is None else start
+        values = (np.exp(1j * np.outer(self.angles, orders)) @ Y).real
         parts = newton(
             probe.scene,
             self._linearised,
             self._unbalanced,
-            np.concatenate([Y[count // 2 :].real, Y[count // 2 + 1 :].imag], axis=None),
-            np.tile(probe.metres, count),
-            self._goal,
-            self._lost,
+            self._parts(values),
+            np.tile(probe.metres, 2 * count + 1),
+            self.tolerance,
+            f"linear scene at {probe.speed:g} rad/s: no steady motion found; is there a load that "
+            "nothing holds, a resonance without damping, a stop or a bearing with clearance that "
+            "the rotor leaves and hits, or an oil film that unbalance all but closes, or that "
+            "whirls at half the speed? A run shows what the rotor does there: a damped one from "
+            "rest, or one from the steady_state with less unbalance; periodic_response shows its "
+            "motion on rolling bearings",
             yields=not probe.speed,
         )
-        size, tail = self._sizes(parts)
-        return self._harmonics(parts), tail / size
+        parts = parts.reshape(2 * count + 1, -1)
+        upper = (parts[1 : count + 1] - 1j * parts[count + 1 :]) / np.sqrt(2.0)
+        motion = np.concatenate([upper[::-1].conj(), parts[:1], upper])
+        sizes = np.abs(motion * probe.metres).max(axis=1)
+        return (np.arange(-count, count + 1), motion), sizes[:2].max() / max(sizes.max(), _SMALLEST)
 
     # ------------------------------------------------------------------ equations of the parts
 
     def _linearised(self, parts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the stiffness between the parts, and what is unbalanced of each."""
-        points = [self.probe.linearised(*at) for at in self._motion(self._harmonics(parts))]
-        K = self._stiffness(points)
-        h, k = K.shape[:2]
-        zero = h // 2
-        rows, mirrored = K[zero:, :, zero:], K[zero:, :, zero::-1]
-        even, odd = (rows + mirrored).reshape(-1, (zero + 1) * k), (rows - mirrored)[:, :, 1:]
-        even[:, :k] *= 0.5  # the mean has no mirror image
-        odd = odd.reshape(-1, zero * k)
-        K = np.block([[even.real, -odd.imag], [even.imag[k:], odd.real[k:]]])
-        return K, self._residual([point.residual for point in points])
+        points = [self.probe.linearised(*at) for at in self._motion(parts)]
+        M, D, K, left = (np.array(each) for each in zip(*points, strict=True))
+        h, k = self.waves[0].shape[1], left.shape[1]
+        total = np.zeros((h * h, k * k))
+        for X, wave in zip((K, D, M), self.waves, strict=True):
+            pairs = self.waves[0][:, :, None] * wave[:, None, :]
+            total += pairs.reshape(-1, h * h).T @ X.reshape(-1, k * k) / self.samples
+        return total.reshape(h, h, k, k).swapaxes(1, 2).reshape(h * k, h * k), self._parts(left)
 
     def _unbalanced(self, parts: np.ndarray) -> np.ndarray:
         """Return what is unbalanced of each part."""
-        motion = self._motion(self._harmonics(parts))
-        return self._residual([self.probe.unbalanced(*at) for at in motion])
+        return self._parts(np.array([self.probe.unbalanced(*at) for at in self._motion(parts)]))
 
-    def _stiffness(self, points: Sequence[LinearPoint]) -> np.ndarray:
-        """Return ``K + iΩmD − Ω²m²M`` between harmonics m, (h, k, h, k), as the angles see it.
+    def _parts(self, values: np.ndarray) -> np.ndarray:
+        """Return the parts of values (s, k) at the angles."""
+        return (self.waves[0].T @ values).ravel() / self.samples
 
-        The Fourier terms n and n + samples are the same there.
-        """
-        h, k = len(self.orders), len(points[0].M)
-        apart = np.subtract.outer(self.orders, self.orders) % self.samples
-        rates, turn = 1j * self.probe.speed * self.orders, self.waves[0]
-        total = np.zeros((h, k, h, k), dtype=complex)
-        for power, X in zip((2, 1, 0), zip(*points, strict=True), strict=False):
-            spectrum = np.fft.fft(np.array(X), axis=0) / self.samples
-            total += np.einsum("abij,b->aibj", spectrum[apart], turn * rates**power)
-        return turn.conj()[:, None, None, None] * total
-
-    def _residual(self, left: list[np.ndarray]) -> np.ndarray:
-        """Return the parts of what the forces leave unbalanced at the angles."""
-        zero = len(self.orders) // 2
-        harmonics = self.waves[:, zero:].conj().T @ np.array(left) / self.samples
-        return np.concatenate([harmonics.real, harmonics[1:].imag], axis=None)
-
-    def _harmonics(self, parts: np.ndarray) -> np.ndarray:
-        """Return harmonics (h, k) of their parts."""
-        zero = len(self.orders) // 2
-        parts = parts.reshape(len(self.orders), -1)
-        upper = parts[: zero + 1].astype(complex)
-        upper[1:] += 1j * parts[zero + 1 :]
-        return np.concatenate([upper[:0:-1].conj(), upper])
-
-    def _motion(self, Y: np.ndarray) -> Iterator[tuple[float, np.ndarray, np.ndarray, np.ndarray]]:
+    def _motion(
+        self, parts: np.ndarray
+    ) -> Iterator[tuple[float, np.ndarray, np.ndarray, np.ndarray]]:
         """Return every angle with the motion there, its rate and acceleration."""
-        rates = 1j * self.orders[:, None] * self.probe.speed
-        motion = ((self.waves @ (Y * rates**n)).real for n in range(3))
-        return zip(self.angles, *motion, strict=True)
-
-    # ------------------------------------------------------------------ how far the search is
-
-    def _sizes(self, parts: np.ndarray) -> tuple[float, float]:
-        """Return the size of a motion [m], and what its harmonics leave out at a speed."""
-        sizes = np.abs(self._harmonics(parts) * self.probe.metres).max(axis=1)
-        tail = sizes[[0, 1, -2, -1]].max() if self.probe.speed else 0.0
-        return float(max(sizes.max(), _SMALLEST)), float(tail)
-
-    def _goal(self, parts: np.ndarray) -> float:
-        """Return the change of a motion that is the last [m]."""
-        size, tail = self._sizes(parts)
-        limit = self.tolerance * size
-        return max(limit, _SOLVED * (tail - limit))
-
-    def _lost(self, change: np.ndarray | None) -> str:
-        """Return what to say, with the support whose journal an iteration last changed most."""
-        scene, where = self.probe.scene, ""
-        names = sorted({one.support.interface for one in scene.body.supports})
-        if change is not None and names:
-            change = change.reshape(-1, scene.size)
-            rows = (scene.interface_motion(name)[:2] for name in names)
-            moved = [np.abs(U @ change.T).max() for U in rows]
-            where = f", the motion at {names[int(np.argmax(moved))]!r} does not settle"
-        return (
-            f"linear scene at {self.probe.speed:g} rad/s: no steady motion found{where}; is there "
-            "a load that nothing holds, a resonance without damping, a stop or a bearing with "
-            "clearance that the rotor leaves and hits, or an oil film that unbalance all but "
-            "closes, or that whirls at half the speed? A run shows what the rotor does there: a "
-            "damped one from rest, or one from the steady_state with less unbalance; "
-            "periodic_response shows its motion on rolling bearings"
-        )
-
-    def _check_own_spin(self, Y: np.ndarray) -> None:
-        """Refuse an own spin, of an elastic drive, that bearings alone hold by their small arms."""
-        scene = self.probe.scene
-        kinds = scene.body.selection.kinds
-        if ModeKind.SPIN not in kinds:
-            return
-        K = np.mean([self.probe.linearised(*at).K for at in self._motion(Y)], axis=0)
-        rigid = [scene.count + i for i, kind in enumerate(kinds) if kind in RIGID_KINDS]
-        spin = scene.N[scene.count + kinds.index(ModeKind.SPIN)]
-        held = np.abs(np.einsum("ri,ij,rj->r", scene.N[rigid], K, scene.N[rigid])).max()
-        if abs(spin @ K @ spin) <= ARM * held:
-            raise _UnheldError(
-                f"linear scene at {self.probe.speed:g} rad/s: drive='elastic' leaves the rotor's "
-                "own spin to the scene, where nothing holds it; add a torsional spring, or take "
-                "drive='rigid'"
-            )
+        parts = parts.reshape(2 * len(self.orders) + 1, -1)
+        return zip(self.angles, *(wave @ parts for wave in self.waves), strict=True)
 
 
 def newton(
@@ -325,8 +205,8 @@ def newton(
     unbalanced: Callable[[np.ndarray], np.ndarray],
     start: np.ndarray,
     metres: np.ndarray,
-    goal: Callable[[np.ndarray], float],
-    lost: Callable[[np.ndarray | None], str],
+    tolerance: float,
+    lost: str,
     *,
     yields: bool,
 ) -> np.ndarray:
@@ -341,10 +221,10 @@ def newton(
         Stiffness (k, k) and what is unbalanced (k,), and the latter alone.
     metres : ndarray, shape (k,)
         Per unit of each coordinate.
-    goal : callable
-        A change up to which is the last [m].
-    lost : callable
-        What to say of a last change.
+    tolerance : float
+        Size of the last change relative to the coordinates.
+    lost : str
+        What to say where there are none.
     """
     y, reach, least, stalled = start, _FIRST_REACH, np.inf, 0
     enough, far = _BALANCED * scene.mass, _FAR * radius_of_gyration(scene.body.motion.invariants)
@@ -354,7 +234,7 @@ def newton(
         pull = np.abs(left / metres).max(initial=0.0)
         held = pull <= _UNHELD * scene.mass
         if not held and not yields:
-            raise (UnconvergedError if iteration else _UnheldError)(lost(None))
+            raise UnconvergedError(lost)
         if not held:
             softness = pull / reach * np.diag(metres**2)
             step, reach = _solved(K + softness, -residual)[0], _FURTHER * reach
@@ -369,11 +249,12 @@ def newton(
         y = y + share * step
         if np.abs(y * metres).max(initial=0.0) > far or stalled == _STALLED:
             break
-        is_last = held and np.abs(step * metres).max(initial=0.0) < goal(y)
+        goal = tolerance * np.abs(y * metres).max(initial=_SMALLEST)
+        is_last = held and np.abs(step * metres).max(initial=0.0) < goal
         balanced = np.abs(residual / metres).max(initial=0.0) <= enough
         if is_last or (balanced and iteration > _FEW_ITERATIONS):
             return y
-    raise UnconvergedError(lost(step))
+    raise UnconvergedError(lost)
 
 
 def _solved(K: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
