@@ -431,23 +431,14 @@ def rounded(values: np.ndarray, nan: float = 2.0) -> np.ndarray:
 def track(named: Named, M: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return which column continues each mode of the first speed, and whether it is the same mode.
 
-    Both (s, k), by the mass matrix (k, k). Speeds without values are passed over. A mode that is
-    NaN at a speed is looked for from the last speed before it at which it was known.
+    Both (s, k), by the mass matrix (k, k). Speeds without values are passed over; a mode that is
+    NaN is taken for the same one.
     """
     known, (s, k) = named.motions.known, named.inertial.shape
     columns, continued = np.tile(np.arange(k), (s, 1)), np.ones((s, k), dtype=bool)
-    if np.any(np.isnan(named.motions.values[known])):
-        last = named.rows(known[:1])
-        for before, after in itertools.pairwise(known):
-            later = named.rows([after])
-            chosen, same = matched(last, later, M)
-            columns[before + 1 : after], columns[after] = columns[before], chosen
-            later = later.columns(chosen)
-            lost = np.isnan(later.motions.values)
-            continued[after] = same | lost | np.isnan(last.motions.values)
-            last = _joined(later, last, lost)
-        return columns, continued
     following, same = matched(named.rows(known[:-1]), named.rows(known[1:]), M)
+    lost = np.isnan(named.motions.values[known])
+    same |= lost[:-1] | np.take_along_axis(lost[1:], following, 1)
     for step, (before, after) in enumerate(itertools.pairwise(known)):
         last = columns[before]
         columns[after], continued[after] = following[step][last], same[step][last]
@@ -457,23 +448,10 @@ def track(named: Named, M: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def first_known(named: Named) -> Named:
     """Return each motion (k) at the first speed at which it is known, in one row."""
-    known = named.motions.known
-    first = named.rows(known[:1])
-    for row in known[1:]:
-        lost = np.isnan(first.motions.values)
-        if not np.any(lost):
-            break
-        first = _joined(first, named.rows([row]), lost)
-    return first
-
-
-def _joined(one: Named, other: Named, lost: np.ndarray) -> Named:
-    """Return motions at one speed, those that are `lost` (1, k) of another row."""
-    values = np.where(lost, other.motions.values, one.motions.values)
-    vectors = np.where(lost[:, None, None], other.motions.vectors, one.motions.vectors)
-    motions = replace(one.motions, values=values, vectors=vectors)
-    pairs = zip(one[1:], other[1:], strict=True)
-    return Named(motions, *(np.where(lost, theirs, own) for own, theirs in pairs))
+    motions = named.motions
+    row, column = np.argmax(~np.isnan(motions.values), axis=0), np.arange(motions.values.shape[1])
+    first = replace(motions[motions.known[:1]], values=motions.values[row, column][None])
+    return Named(first, *(each[row, column][None] for each in named[1:]))
 
 
 def matched(
