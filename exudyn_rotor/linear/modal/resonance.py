@@ -343,16 +343,13 @@ class Search:
                 f"none are looked for at {count} of {len(self.grid.speed) + count - 1} speeds "
                 f"from {first:.4g} to {last:.4g} rad/s: {self.refused[first]}"
             )
-        if self.lost:
-            told.append(
-                f"near {_shown(self.lost)} rad/s they still change with harmonics up to the "
-                f"{_MOST}th, and are left out"
-            )
-        if self.jumps:
-            told.append(
-                f"near {_shown(self.jumps)} rad/s the stiffness of a film jumps where one would "
-                "be, and it is left out; a film with more nodes jumps by less"
-            )
+        for speeds, why in (
+            (self.lost, f"they still change with harmonics up to the {_MOST}th"),
+            (self.jumps, "the stiffness of a film jumps, by less with more nodes"),
+        ):
+            if speeds:
+                near = ", ".join(f"{speed:.5g}" for speed in np.unique(np.round(speeds, 6))[:5])
+                told.append(f"near {near} rad/s {why}, and they are left out")
         if told:
             what = "; ".join(told)
             warnings.warn(f"critical speeds: {what}", UserWarning, stacklevel=user_level())
@@ -362,11 +359,6 @@ def _motion(speed: float, motion: np.ndarray, center: float, orders: np.ndarray)
     """Return the motion (h, c) at a critical speed, its harmonics beside a frequency over Ω."""
     values = np.array([[1j * center * speed]])
     return Motions(np.array([speed]), values, motion[None, :, :, None], orders, np.zeros(1))
-
-
-def _shown(speeds: Sequence[float]) -> str:
-    known = np.unique(np.round(speeds, 6))
-    return ", ".join(f"{speed:.5g}" for speed in known[:5]) + " …" * (len(known) > 5)
 
 
 def _is_order(frequencies: np.ndarray, order: float) -> np.ndarray:
