@@ -29,7 +29,6 @@ def standard_unbalances(
     speed: float,
     *,
     multiple: float = 2.0,
-    angle: float = 0.0,
 ) -> tuple[Unbalance, ...]:
     """Return the unbalances that API RP 684 places to excite a mode.
 
@@ -57,8 +56,6 @@ def standard_unbalances(
         Maximum continuous speed [rad/s].
     multiple : float, optional
         Of the permissible residual unbalance ``6350 W/N`` g mm.
-    angle : float, optional
-        Of the first one in the rotor frame [rad].
 
     Raises
     ------
@@ -87,11 +84,10 @@ def standard_unbalances(
         raise ValueError(f"masses: needs {wanted} positive masses [kg], got {checks.shown(masses)}")
     speed = checks.number(speed, "speed", "rad/s", above=0.0)
     multiple = checks.number(multiple, "multiple", above=0.0)
-    angle = checks.number(angle, "angle", "rad")
     if count == 1:
         weights = weights.sum(keepdims=True)
     amounts = multiple * _RESIDUAL * weights / min(speed, _FASTEST)
     return tuple(
-        Unbalance(place, float(amount), angle + np.pi * number)
+        Unbalance(place, float(amount), np.pi * number)
         for number, (place, amount) in enumerate(zip(places, amounts, strict=True))
     )

@@ -138,7 +138,7 @@ def test_amount_is_twice_four_times_weight_over_speed():
 
 def test_placement_by_mode():
     [one] = standard_unbalances("first bending", "mid", [60.0, 40.0], 1000.0)
-    pair = standard_unbalances("conical", ["left", "right"], [60.0, 40.0], 1000.0, angle=0.5)
+    pair = standard_unbalances("conical", ["left", "right"], [60.0, 40.0], 1000.0)
     assert [two.at for two in pair] == ["left", "right"]
     assert pair[0].amount + pair[1].amount == pytest.approx(one.amount)
     assert pair[0].amount / pair[1].amount == pytest.approx(1.5)
