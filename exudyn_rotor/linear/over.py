@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from tqdm import tqdm
 
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.checks import one_of
@@ -34,15 +35,18 @@ def motions_over(
     tolerance: float = 1e-6,
     least_stable: bool = False,
     warns: bool = True,
+    progress: bool = False,
+    label: str = "",
 ) -> Motions:
     """Return the motions of a model at speeds [rad/s]; NaN where it has no equations.
 
     Where a spin that nothing holds is `held`, it follows θ = Ωt and is no motion. The `method`,
-    `tolerance` and `least_stable` are those of :func:`motions_of`. Where not all motions are shown,
-    it `warns` of none, and :func:`warn_of` does.
+    `tolerance` and `least_stable` are those of :func:`motions_of`; the bar of progress has the
+    `label`. Where not all motions are shown, it `warns` of none, and :func:`warn_of` does.
     """
-    given = {"held": held, "least_stable": least_stable, "warns": False}
-    found = motions_in(model, model.at_all(speeds), method, tolerance, **given)
+    with tqdm(total=len(speeds), desc=label or None, disable=not progress) as bar:
+        given = {"held": held, "least_stable": least_stable, "told": bar.update}
+        found = motions_in(model, model.at_all(speeds), method, tolerance, warns=False, **given)
     if warns:
         warn_of(model, found, found)
     return found

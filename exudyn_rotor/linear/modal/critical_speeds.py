@@ -108,6 +108,10 @@ class CriticalSpeeds(_Undamped):
     vectors: np.ndarray = numbers("coordinates", "speeds", dtype=complex)
     basis_errors: np.ndarray | None = numbers("speeds", finite=False, optional=True)
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        checks.labels(self.whirl, "whirl", WHIRLS)
+
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns; `units` are those of :meth:`table`."""
         shown = Units.of(units)

@@ -249,6 +249,7 @@ def stability(
     method: str = "auto",
     tolerance: float = 1e-6,
     accuracy: float | None = 1e-2,
+    progress: bool = False,
 ) -> Stability:
     """Compute the exponents of a rotor over the spin speed.
 
@@ -277,6 +278,8 @@ def stability(
         Relative error of the least stable motion's growth by the basis of a reduced rotor,
         estimated, above which a warning is given: see :attr:`Stability.basis_errors`. None for no
         estimate.
+    progress : bool
+        Show a progress bar.
 
     Raises
     ------
@@ -300,9 +303,13 @@ def stability(
     """
     values = checks.ascending_from_zero(speeds, "speeds")
     check_options(tolerance, accuracy, method)
+    checks.flag(progress, "progress")
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening, axes=axes)
     warn_of_omissions(model, values[-1], WHAT)
-    motions = motions_over(model, values, held=True, method=method, tolerance=tolerance)
+    motions = motions_over(
+        model, values, held=True, method=method, tolerance=tolerance, progress=progress,
+        label="stability",
+    )  # fmt: skip
     result = of_motions(model, Content.of(model), motions, accuracy)
 
     def told(row: int) -> str:
