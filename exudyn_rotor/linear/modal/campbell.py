@@ -347,6 +347,7 @@ def campbell(
     axes: str = "auto",
     allow_negative: bool = False,
     accuracy: float | None = 1e-2,
+    progress: bool = False,
 ) -> Campbell:
     """Compute the eigenfrequencies of a rotor on supports, or of a scene, over spin speed.
 
@@ -385,6 +386,8 @@ def campbell(
         which a warning is given: see :attr:`Campbell.basis_errors`. It looks at the modes asked
         for by `modes`; without, at those up to twice the highest speed and at the lowest six. None
         for no estimate.
+    progress : bool, optional
+        Show a progress bar.
 
     Raises
     ------
@@ -418,6 +421,7 @@ def campbell(
     if modes is not None:
         modes = checks.count(modes, "modes", least=1)
     checks.accuracy(accuracy)
+    checks.flag(progress, "progress")
     checks.choice(frame, "frame", FRAMES)
     model = linear_model(
         target, supports=supports, foundation=foundation, body=body, stiffening=stiffening,
@@ -426,7 +430,7 @@ def campbell(
     if modes is not None and modes > model.size:
         raise ValueError(f"modes: {modes} is not between 1 and the {model.size} there are")
     warn_of_omissions(model, np.abs(values).max(), "campbell finds modes")
-    motions = motions_over(model, values, warns=False)
+    motions = motions_over(model, values, warns=False, progress=progress, label="Campbell")
     named = Content.of(model).named(motions)
     if model.free_motions:
         named = _resting(named)

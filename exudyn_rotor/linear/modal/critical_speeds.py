@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
+from tqdm import tqdm
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.bearing import Bearing
@@ -387,6 +388,7 @@ def critical_speed_map(
     stiffening: str = "auto",
     axes: str = "auto",
     accuracy: float | None = 1e-2,
+    progress: bool = False,
 ) -> CriticalSpeedMap:
     """Compute the undamped critical speeds over the stiffness of isotropic supports.
 
@@ -407,6 +409,8 @@ def critical_speed_map(
     bearing : Support or bearing, optional
         One whose own stiffness over the speed is drawn beside the critical speeds: these meet it
         where they are those of the rotor on such bearings.
+    progress : bool, optional
+        Show a progress bar.
 
     Raises
     ------
@@ -437,6 +441,7 @@ def critical_speed_map(
     checks.choice(stiffening, "stiffening", CHOICES)
     checks.choice(axes, "axes", AXES)
     checks.accuracy(accuracy)
+    checks.flag(progress, "progress")
     if bearing is not None:
         checks.instance(bearing, "bearing", (Support, Bearing, MagneticBearing))
     kept = given_supports(supports)
@@ -447,7 +452,7 @@ def critical_speed_map(
     judged = basis_error.points(len(values)) if basis_error.is_known(first, accuracy) else []
     solved: list[CriticalSpeeds | None] = []
     failed: list[tuple[str, Exception]] = []
-    for row, stiffness in enumerate(values):
+    for row, stiffness in enumerate(tqdm(values, "critical speed map", disable=not progress)):
         model = replace(first, supports={"": _with(kept, names, stiffness)})
         search = Search(model, order, nodal_diameters, max_speed)
         try:
