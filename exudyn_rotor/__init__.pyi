@@ -33,7 +33,6 @@ from exudyn_rotor.evaluation.level_one import (
     anticipated_cross_coupling as anticipated_cross_coupling,
 )
 from exudyn_rotor.evaluation.level_one import stability_level_one as stability_level_one
-from exudyn_rotor.evaluation.placement import bearing_masses as bearing_masses
 from exudyn_rotor.evaluation.placement import standard_unbalances as standard_unbalances
 from exudyn_rotor.evaluation.sensitivity import Sensitivity as Sensitivity
 from exudyn_rotor.evaluation.sensitivity import sensitivity as sensitivity

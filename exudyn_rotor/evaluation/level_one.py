@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.evaluation.coupled_modes import MULTIPLES, CoupledModes
+from exudyn_rotor.evaluation.coupled_modes import MULTIPLES, first_forward
 from exudyn_rotor.linear.modal.whirl import damping_of
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
@@ -316,7 +316,7 @@ def stability_level_one(
         ]
         return linear_model(target, supports=(*supports, *added), stiffening=stiffening)
 
-    found, limit = CoupledModes(coupled, speed, coupling).first_forward()
+    found, limit = first_forward(coupled, speed)
     decrement = damping_of(found.real, found.imag)[1]
     still = np.isnan(decrement) & np.isfinite(found)
     decrement = np.where(still, np.copysign(np.inf, -found.real), decrement)

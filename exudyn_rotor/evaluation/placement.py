@@ -14,9 +14,6 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear.response.loads import Unbalance
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.solid_rotor import SolidRotor
-from exudyn_rotor.static.static_response import bearing_loads
 
 _RESIDUAL = 6350e-6 * np.pi / 30.0  # U Ω / W [m/s]
 _FASTEST = 25_000.0 * np.pi / 30.0  # [rad/s]
@@ -32,7 +29,6 @@ def standard_unbalances(
     speed: float,
     *,
     multiple: float = 2.0,
-    angle: float = 0.0,
 ) -> tuple[Unbalance, ...]:
     """Return the unbalances that API RP 684 places to excite a mode.
 
@@ -54,14 +50,12 @@ def standard_unbalances(
         One place or two: interface, node, or position; see :class:`Unbalance`.
     masses : float or array_like
         Masses [kg] that the amounts follow: static loads of the bearings over g, from
-        :func:`bearing_masses`, or the mass of the overhang. Two for two places; of one place
+        :func:`bearing_loads`, or the mass of the overhang. Two for two places; of one place
         their sum counts.
     speed : float
         Maximum continuous speed [rad/s].
     multiple : float, optional
         Of the permissible residual unbalance ``6350 W/N`` g mm.
-    angle : float, optional
-        Of the first one in the rotor frame [rad].
 
     Raises
     ------
@@ -90,47 +84,10 @@ def standard_unbalances(
         raise ValueError(f"masses: needs {wanted} positive masses [kg], got {checks.shown(masses)}")
     speed = checks.number(speed, "speed", "rad/s", above=0.0)
     multiple = checks.number(multiple, "multiple", above=0.0)
-    angle = checks.number(angle, "angle", "rad")
     if count == 1:
         weights = weights.sum(keepdims=True)
     amounts = multiple * _RESIDUAL * weights / min(speed, _FASTEST)
     return tuple(
-        Unbalance(place, float(amount), angle + np.pi * number)
+        Unbalance(place, float(amount), np.pi * number)
         for number, (place, amount) in enumerate(zip(places, amounts, strict=True))
     )
-
-
-def bearing_masses(rotor: ReducedRotor | SolidRotor, bearings: Sequence[str]) -> np.ndarray:
-    """Return the masses that two bearings carry at rest, by the lever rule along the axis.
-
-    See :func:`bearing_loads` for more bearings, and their loads.
-
-    Parameters
-    ----------
-    rotor : ReducedRotor or SolidRotor
-    bearings : two names
-        Interfaces at the bearings.
-
-    Returns
-    -------
-    ndarray, shape (2,)
-        Static loads of an axis across gravity, over g [kg]. Their sum is the rotor's mass; one is
-        negative where the centre of mass overhangs.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If the rotor is of another kind, an interface unknown, or both are at one place.
-
-    Examples
-    --------
-    >>> from exudyn_rotor import bearing_masses, rotor_example
-    >>> rotor = rotor_example((1.0, 3.0))  # masses of 1 kg and 3 kg on a rod
-    >>> bearing_masses(rotor, ["left", "right"])
-    array([1., 3.])
-    """
-    checks.instance(rotor, "rotor", (ReducedRotor, SolidRotor))
-    names = checks.labels(bearings, "bearings", rotor.interfaces)
-    if len(names) != 2:
-        raise ValueError(f"bearings: needs two interfaces, got {checks.shown(bearings)}")
-    return bearing_loads(rotor, names, rotor.axis.plane[:, 0])[:, 0]

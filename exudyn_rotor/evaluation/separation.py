@@ -17,7 +17,6 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.calls import user_level
-from exudyn_rotor.linear.modal.campbell import checked_range, shade_range
 from exudyn_rotor.linear.response.response import (
     HALF_POWER,
     STILL,
@@ -144,9 +143,13 @@ class SeparationMargins(Result):
         for size, sides in zip(self.sizes, self.half_power, strict=True):
             ax.plot(shown.speeds(sides), [1e6 * HALF_POWER * size] * 2, "k|-", lw=0.8, ms=6)
         low, high = self.operating_range
-        sides = [self.required[self.peaks < low], self.required[self.peaks > high]]
-        largest = np.array([side.max(initial=0.0) for side in sides])
-        shade_range(ax, self.operating_range, largest, shown)
+        below = self.required[self.peaks < low].max(initial=0.0)
+        above = self.required[self.peaks > high].max(initial=0.0)
+        low, high = shown.speeds(self.operating_range)
+        grey = {"color": "0.75", "alpha": 0.5, "lw": 0.0}
+        ax.axvspan(low, high, color=plotting.COLORS[2], alpha=0.15, lw=0.0, label="operating range")
+        ax.axvspan((1.0 - below) * low, low, **grey, label="separation margin")
+        ax.axvspan(high, (1.0 + above) * high, **grey)
         ax.set_xlabel(f"spin speed [{shown.speed}]")
         ax.set_ylabel("major semi-axis [µm]")
         ax.grid(alpha=0.3, which="both")
@@ -222,9 +225,12 @@ def separation_margins(
 
     how = "unbalance_response makes one"
     checks.instance(response, "response", UnbalanceResponse, how)
-    limits = checked_range(operating_range)
-    if limits is None:
-        raise TypeError("operating_range: needs the lowest and the highest speed, got None")
+    limits = checks.vector(operating_range, "operating_range", "rad/s", size=2)
+    if not 0.0 <= limits[0] < limits[1]:
+        raise ValueError(
+            "operating_range: needs the lowest and the highest speed [rad/s], got "
+            + checks.shown(operating_range)
+        )
     names = response.places
     if places is not None:
         names = checks.different(checks.labels(places, "places", response.places), "places")

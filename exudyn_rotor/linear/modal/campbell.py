@@ -26,7 +26,6 @@ from exudyn_rotor.units import Units
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
 
 # growth below this share of frequency and speed is not marked: what is left of a free spin of a
 # rotor with an uneven mesh looks like that
@@ -188,8 +187,6 @@ class Campbell(OfMotions, ModelResult):
         *,
         units: str = "rpm",
         orders: Sequence[float] | float | None = None,
-        operating_range: ArrayLike | None = None,
-        margins: ArrayLike | None = None,
     ) -> Axes:
         """Draw the tracked modes over the spin speed; see :mod:`exudyn_rotor.plotting`.
 
@@ -207,11 +204,6 @@ class Campbell(OfMotions, ModelResult):
             Lines of excitation pΩ with p in `orders`, with the modes' crossings marked; by default
             the spin speed alone without marks, and none in the rotor frame. There p is an engine
             order: of a load that stands in space with p periods around the circle.
-        operating_range : two floats, optional
-            Lowest and highest operating speed [rad/s], shaded.
-        margins : two floats, optional
-            Separation margins, shaded: shares of the lowest speed below it and of the highest
-            above it, as (0.16, 0.26), the largest that API 617 asks for.
 
         Raises
         ------
@@ -219,18 +211,13 @@ class Campbell(OfMotions, ModelResult):
             For an unknown frame or unit, or numbers out of range.
         """
         frame = self.frame if frame is None else checks.choice(frame, "frame", FRAMES)
-        shown, limits = Units.of(units), checked_range(operating_range)
-        shares = _checked_margins(margins)
-        if margins is not None and limits is None:
-            raise ValueError("margins: are beside operating_range=(low, high), got none")
+        shown = Units.of(units)
         if orders is not None:
             orders = checks.vector(np.atleast_1d(orders), "orders", size=None)
             if orders.size == 0 or np.any(orders <= 0.0):
                 raise ValueError(f"orders: needs positive numbers, got {checks.shown(orders)}")
         ax = plotting.axes_or_new(ax)
         handles = self.tracked()._draw_modes(ax, frame, shown)
-        if limits is not None:
-            handles += shade_range(ax, limits, shares, shown)
         if orders is not None:
             handles += self._draw_orders(ax, frame, shown, orders)
         elif frame == "inertial":
@@ -516,40 +503,3 @@ def _complete(first: Named, model: LinearModel) -> int:
     """Return how many of the motions at one speed a basis is asked for that cuts pairs."""
     below = np.count_nonzero(np.abs(first.motions.values) < model.complete_up_to)
     return max(min(_FEWEST, first.inertial.shape[1]), below)
-
-
-def checked_range(values: ArrayLike | None) -> np.ndarray | None:
-    """Return the lowest and the highest operating speed [rad/s], or None."""
-    if values is None:
-        return None
-    low, high = checks.vector(values, "operating_range", "rad/s", size=2)
-    if not 0.0 <= low < high:
-        raise ValueError(
-            "operating_range: needs the lowest and the highest speed [rad/s], got "
-            f"{checks.shown(values)}"
-        )
-    return np.array([low, high])
-
-
-def _checked_margins(margins: ArrayLike | None) -> np.ndarray:
-    """Return the shares of separation below and above the range; zeros for None."""
-    values = checks.vector((0.0, 0.0) if margins is None else margins, "margins", size=2)
-    if np.any(values < 0.0) or values[0] >= 1.0:
-        raise ValueError(
-            "margins: needs shares of the lowest and of the highest speed, as (0.16, 0.26), got "
-            + checks.shown(margins)
-        )
-    return values
-
-
-def shade_range(ax: Axes, limits: np.ndarray, margins: np.ndarray, units: Units) -> list[Patch]:
-    """Shade operating speeds [rad/s] and the margins beside them; return what the legend needs."""
-    low, high = units.speeds(limits)
-    handles = [ax.axvspan(low, high, color=plotting.COLORS[2], alpha=0.15, lw=0.0)]
-    handles[0].set_label("operating range")
-    if np.any(margins > 0.0):
-        beside = [((1.0 - margins[0]) * low, low), (high, (1.0 + margins[1]) * high)]
-        drawn = [ax.axvspan(*span, color="0.75", alpha=0.5, lw=0.0) for span in beside]
-        drawn[0].set_label("separation margin")
-        handles.append(drawn[0])
-    return handles

@@ -23,7 +23,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-import scipy.linalg as la
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks
@@ -47,8 +46,9 @@ _UNHELD = 1e-12  # rad²/s²: stiffness over inertia where nothing is held
 _NO_INERTIA = 1e-6  # share of the largest inertia
 _BRACKETS = 200  # speeds at which signs of eigenvalues are looked at; half of them for blocks
 _SLOW, _RATIO = 12, 2.0**0.25  # speeds on each side of the first of these, and their ratio
-_FEW, _MORE = 4, (8, 12, 16)  # harmonics on each side of the middle one
-_EDGE, _CLOSE = 1e-10, 1e-4  # energy of the last ones that is none, and a last change of a speed
+_FEW, _MOST = 4, 16  # harmonics on each side of the middle one, before and after refinement
+_EDGE = 1e-8  # energy of the last harmonics that is none
+_CLOSE = 1e-6  # last relative change of a speed that is refined
 _ITERATIONS = 12
 _BESIDE = 0.97  # of a critical speed: from where its slope is told at first
 _STEP = 1e-6  # relative distance of speeds between which H has a slope
@@ -85,11 +85,6 @@ class Stiffness:
         """Return H at a speed for frequencies `multiples` (h,) of it, (h·k, h·k)."""
         return dynamic_stiffness(self.system(speed), multiples)
 
-    def reach(self, multiples: np.ndarray) -> int:
-        """Return how far from its diagonal H has entries."""
-        system = next(iter(self.known.values()))
-        return system.size * np.count_nonzero(multiples - multiples[0] < system.highest + 0.5) - 1
-
     def motions(self, vectors: np.ndarray, multiples: np.ndarray) -> np.ndarray:
         """Return vectors (h·k, n) of H as harmonics (h, c, n) in all coordinates of the model."""
         return self.basis @ vectors.reshape(len(multiples), -1, vectors.shape[1])
@@ -99,14 +94,12 @@ class Stiffness:
         speed: float,
         motion: np.ndarray,
         multiples: np.ndarray,
-        tolerance: float,
         before: float | None = None,
     ) -> tuple[float, np.ndarray]:
         """Return the zero next to a speed and a motion (h, c), and its motion.
 
         By inverse iteration, with the slope of H between the last two speeds, of which `before` is
-        the first, a slower one by default. The last relative change is below the `tolerance`, and
-        the error its square; NaN where it does not converge.
+        the first, a slower one by default; NaN where it does not converge.
         """
         x, begin = (motion @ self.basis).ravel(), speed
         last = _BESIDE * speed if before is None else before
@@ -117,14 +110,14 @@ class Stiffness:
                 slope = (H - earlier) / (speed - last)
                 last, earlier = speed, H
             try:
-                moved = _solved(H, slope @ x, self.reach(multiples))
+                moved = np.linalg.solve(H, slope @ x)
             except np.linalg.LinAlgError:  # there already
                 return speed, motion
             change = (np.vdot(x, x) / np.vdot(x, moved)).real
             x, speed = moved / np.linalg.norm(moved), float(speed - change)
             if not abs(speed - begin) < _FAR * begin:
                 break
-            if abs(change) <= tolerance * speed:
+            if abs(change) <= _CLOSE * speed:
                 return speed, self.motions(x[:, None], multiples)[..., 0]
         return np.nan, motion
 
@@ -156,8 +149,7 @@ class Search:
     """The search for critical speeds of an undamped model.
 
     Of order p ≥ 0 and nodal `diameters`, up to the speed `limit` [rad/s], which has to be given
-    where the stiffness varies with it. The `error` is the relative change of a critical speed in
-    the last step, which errs by its square. What is left out stands in `lost`, speeds that did not
+    where the stiffness varies with it. What is left out stands in `lost`, speeds that did not
     settle, in `jumps`, where a film jumps, and in `refused`, speeds without equations.
     """
 
@@ -165,7 +157,6 @@ class Search:
     order: float
     diameters: Sequence[int]
     limit: float | None
-    error: float = 1e-7
     lost: list[float] = field(default_factory=list)
     jumps: list[float] = field(default_factory=list)
     refused: dict[float, Exception] = field(default_factory=dict)
@@ -244,26 +235,21 @@ class Search:
     def _settled(
         self, speed: float, motion: np.ndarray, center: float, step: int
     ) -> Motions | None:
-        """Return a motion with as many harmonics as it needs; None where there are too few."""
-        last = speed
+        """Return a motion with more harmonics; None where these are too few."""
         slower = self.grid.speed[self.grid.speed < _BESIDE * speed] if self.varies else np.zeros(0)
         before = float(slower[-1]) if slower.size else None  # where a film is solved already
-        for most in _MORE:
-            orders = step * np.arange(-(most // step), most // step + 1)
-            room = (len(orders) - len(motion)) // 2
-            motion = np.pad(motion, ((room, room), (0, 0)))
-            try:
-                given = last, motion, center + orders, _CLOSE, before
-                last, motion = self.stiffness.refined(*given)
-            except NO_EQUATIONS:  # beside the end of a table
-                break
-            energy = np.sum(np.abs(motion) ** 2, axis=1)
-            if np.isnan(last):
-                break
-            if energy[0] + energy[-1] <= _EDGE * energy.sum():
-                return _motion(last, motion, center, orders)
-        self.lost.append(speed)
-        return None
+        orders = step * np.arange(-(_MOST // step), _MOST // step + 1)
+        room = (len(orders) - len(motion)) // 2
+        motion = np.pad(motion, ((room, room), (0, 0)))
+        try:
+            last, motion = self.stiffness.refined(speed, motion, center + orders, before)
+        except NO_EQUATIONS:  # beside the end of a table
+            last = np.nan
+        energy = np.sum(np.abs(motion) ** 2, axis=1)
+        if np.isnan(last) or energy[0] + energy[-1] > _EDGE * energy.sum():
+            self.lost.append(speed)
+            return None
+        return _motion(last, motion, center, orders)
 
     # ------------------------------------------------------------------ stiffness over the speed
 
@@ -306,7 +292,7 @@ class Search:
             exact = guess, self.stiffness.motions(vectors[:, [j]], multiples)[..., 0]
             try:
                 before = float(speeds[row + (at < 0.5)])
-                exact = self.stiffness.refined(*exact, multiples, self.error, before)
+                exact = self.stiffness.refined(*exact, multiples, before)
             except NO_EQUATIONS:  # beyond the end of a table, by rounding
                 pass
             if abs(exact[0] - speeds[row] - 0.5 * width) < (0.5 + _BEYOND) * width:
@@ -357,16 +343,13 @@ class Search:
                 f"none are looked for at {count} of {len(self.grid.speed) + count - 1} speeds "
                 f"from {first:.4g} to {last:.4g} rad/s: {self.refused[first]}"
             )
-        if self.lost:
-            told.append(
-                f"near {_shown(self.lost)} rad/s they still change with harmonics up to the "
-                f"{_MORE[-1]}th, and are left out"
-            )
-        if self.jumps:
-            told.append(
-                f"near {_shown(self.jumps)} rad/s the stiffness of a film jumps where one would "
-                "be, and it is left out; a film with more nodes jumps by less"
-            )
+        for speeds, why in (
+            (self.lost, f"they still change with harmonics up to the {_MOST}th"),
+            (self.jumps, "the stiffness of a film jumps, by less with more nodes"),
+        ):
+            if speeds:
+                near = ", ".join(f"{speed:.5g}" for speed in np.unique(np.round(speeds, 6))[:5])
+                told.append(f"near {near} rad/s {why}, and they are left out")
         if told:
             what = "; ".join(told)
             warnings.warn(f"critical speeds: {what}", UserWarning, stacklevel=user_level())
@@ -376,11 +359,6 @@ def _motion(speed: float, motion: np.ndarray, center: float, orders: np.ndarray)
     """Return the motion (h, c) at a critical speed, its harmonics beside a frequency over Ω."""
     values = np.array([[1j * center * speed]])
     return Motions(np.array([speed]), values, motion[None, :, :, None], orders, np.zeros(1))
-
-
-def _shown(speeds: Sequence[float]) -> str:
-    known = np.unique(np.round(speeds, 6))
-    return ", ".join(f"{speed:.5g}" for speed in known[:5]) + " …" * (len(known) > 5)
 
 
 def _is_order(frequencies: np.ndarray, order: float) -> np.ndarray:
@@ -404,17 +382,6 @@ def _between(
 ) -> float:
     """Return an eigenvalue of what lies between two matrices, at a share from 0 to 1."""
     return known[at] if at in known else _eigenvalues(A + at * change)[j]
-
-
-def _solved(H: np.ndarray, load: np.ndarray, reach: int) -> np.ndarray:
-    """Return the solution of equations whose matrix has entries so near to its diagonal alone."""
-    size = len(H)
-    if 4 * reach > size:
-        return np.linalg.solve(H, load)
-    bands = np.zeros((2 * reach + 1, size), dtype=H.dtype)
-    for n in range(-reach, reach + 1):  # column j of row reach − n is H[j − n, j]
-        bands[reach - n, max(n, 0) : size + min(n, 0)] = np.diagonal(H, n)
-    return la.solve_banded((reach, reach), bands, load, check_finite=False)
 
 
 def _direct(stiffness: Stiffness, multiples: np.ndarray) -> list[Zero]:

@@ -212,6 +212,10 @@ class Content:
         mirrored = values.imag < 0.0
         if np.any(mirrored):
             vectors = np.where(mirrored[:, None, None], vectors[:, ::-1].conj(), vectors)
+        if np.any(self.integrating):  # the integral of a slow oscillation is large anyway
+            rate = np.multiply.outer(np.abs(values), self.integrating).swapaxes(1, 2)
+            swings = (rate > 0.0) & (nu > _SWINGS * np.abs(values.real))[:, None]
+            vectors = np.where(swings, rate, 1.0)[:, None] * vectors
         energy, directions, beside = self.parts(self.energies(vectors))
         *directions, whole = directions.sum(axis=2)  # (s, k) each
         # equal but for rounding is equal
@@ -220,7 +224,7 @@ class Content:
         above = (orders[:, None] + self.shifts).ravel()  # of all waves in all harmonics
         by_wave = energy.sum(axis=1)
         energy = energy.reshape(len(values), len(above), values.shape[1])
-        best = _strongest(energy, above)
+        best = np.argmax(energy, axis=1)
         still = _STATIC * np.abs(speeds) + motions.bounds[:, None]
         seen = nu[:, None, :] + above[:, None] * speeds[:, :, None]
         wave = np.tile(self.waves, len(orders))[:, None]
@@ -242,10 +246,6 @@ class Content:
         unseen = whole <= 1e-12 * np.max(whole, axis=1, keepdims=True, initial=0.0)
         unseen |= (fitted < _NOT_FITTED) & (np.max(directions, axis=0) < 0.5 * whole)
         other = nu[:, None] + np.add.outer(self.beside, orders)[:, None, :, None] * speeds[:, None]
-        if np.any(self.integrating):
-            swings = np.abs(heard) > _SWINGS * np.abs(values.real)
-            by_rate = self._beside_by_rate(vectors, np.hypot(values.real[:, None], other))
-            beside = np.where(swings[:, None], by_rate, beside)
         stands = beside.sum(axis=(0, 2)) > whole
         other = _of_most(np.abs(other), beside)
         codes = np.where(stands, FOUNDATION, np.where(unseen, UNKNOWN, codes))
@@ -258,17 +258,6 @@ class Content:
         inertial, rotor = (np.where(lost, np.nan, each) for each in (inertial, rotor))
         codes, diameters = np.where(lost, UNKNOWN, codes), np.where(lost, -1, diameters)
         return _still(Named(motions, inertial, rotor, codes.astype(np.int64), diameters))
-
-    def _beside_by_rate(self, vectors: np.ndarray, rates: np.ndarray) -> np.ndarray:
-        """Return the energy (p, s, h, k) of what is beside the rotors, of integrals by `rates`.
-
-        The integral of a slow oscillation is large, whatever it does.
-        """
-        found, integral = [], self.integrating[:, None] > 0.0
-        for rows, rate in zip(self.rows[-len(rates) :], np.nan_to_num(rates), strict=True):
-            scale = np.where(integral, rate[:, :, None] * self.integrating[:, None], 1.0)
-            found.append(np.sum(np.abs(rows @ (scale * vectors)) ** 2, axis=2))
-        return np.array(found)
 
     def _diameters(self, energy: np.ndarray) -> np.ndarray:
         """Return n where ±n hold most of the energy (s, w, k), of which 1 is all; −1 elsewhere."""
@@ -363,17 +352,6 @@ def _seen(alone: RotorAlone, mean: bool) -> tuple[list, list[np.ndarray], float]
     return waves, directions, len(points) / alone.invariants.mass
 
 
-def _strongest(energy: np.ndarray, multiples: np.ndarray) -> np.ndarray:
-    """Return which wave (n,) is the strongest one of the strongest frequency, (s, k).
-
-    Waves (s, n, k) of one of the `multiples` (n,) of Ω have one frequency seen from outside.
-    """
-    known, place = np.unique(np.round(multiples, 6), return_inverse=True)
-    alike = (place == np.arange(known.size)[:, None]).astype(float)
-    first = np.argmax(np.round(alike @ energy, _DIGITS), axis=1)
-    return np.argmax(np.where(place[:, None] == first[:, None], energy, -1.0), axis=1)
-
-
 def _of_most(values: np.ndarray, energy: np.ndarray) -> np.ndarray:
     """Return of values (p, s, h, k) the one with the most energy in each motion, (s, k)."""
     p, s, h, k = energy.shape
@@ -435,23 +413,14 @@ def rounded(values: np.ndarray, nan: float = 2.0) -> np.ndarray:
 def track(named: Named, M: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return which column continues each mode of the first speed, and whether it is the same mode.
 
-    Both (s, k), by the mass matrix (k, k). Speeds without values are passed over. A mode that is
-    NaN at a speed is looked for from the last speed before it at which it was known.
+    Both (s, k), by the mass matrix (k, k). Speeds without values are passed over; a mode that is
+    NaN is taken for the same one.
     """
     known, (s, k) = named.motions.known, named.inertial.shape
     columns, continued = np.tile(np.arange(k), (s, 1)), np.ones((s, k), dtype=bool)
-    if np.any(np.isnan(named.motions.values[known])):
-        last = named.rows(known[:1])
-        for before, after in itertools.pairwise(known):
-            later = named.rows([after])
-            chosen, same = matched(last, later, M)
-            columns[before + 1 : after], columns[after] = columns[before], chosen
-            later = later.columns(chosen)
-            lost = np.isnan(later.motions.values)
-            continued[after] = same | lost | np.isnan(last.motions.values)
-            last = _joined(later, last, lost)
-        return columns, continued
     following, same = matched(named.rows(known[:-1]), named.rows(known[1:]), M)
+    lost = np.isnan(named.motions.values[known])
+    same |= lost[:-1] | np.take_along_axis(lost[1:], following, 1)
     for step, (before, after) in enumerate(itertools.pairwise(known)):
         last = columns[before]
         columns[after], continued[after] = following[step][last], same[step][last]
@@ -461,23 +430,10 @@ def track(named: Named, M: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def first_known(named: Named) -> Named:
     """Return each motion (k) at the first speed at which it is known, in one row."""
-    known = named.motions.known
-    first = named.rows(known[:1])
-    for row in known[1:]:
-        lost = np.isnan(first.motions.values)
-        if not np.any(lost):
-            break
-        first = _joined(first, named.rows([row]), lost)
-    return first
-
-
-def _joined(one: Named, other: Named, lost: np.ndarray) -> Named:
-    """Return motions at one speed, those that are `lost` (1, k) of another row."""
-    values = np.where(lost, other.motions.values, one.motions.values)
-    vectors = np.where(lost[:, None, None], other.motions.vectors, one.motions.vectors)
-    motions = replace(one.motions, values=values, vectors=vectors)
-    pairs = zip(one[1:], other[1:], strict=True)
-    return Named(motions, *(np.where(lost, theirs, own) for own, theirs in pairs))
+    motions = named.motions
+    row, column = np.argmax(~np.isnan(motions.values), axis=0), np.arange(motions.values.shape[1])
+    first = replace(motions[motions.known[:1]], values=motions.values[row, column][None])
+    return Named(first, *(each[row, column][None] for each in named[1:]))
 
 
 def matched(
