@@ -52,8 +52,6 @@ class RotorAlone:
     Q : ndarray, shape (n, k)
         Columns of the reduced rotor by these coordinates.
     turning : Turning
-    whole : Turning
-        Of all columns of the reduced rotor, halves of pairs among them.
     spin : Spin or None
         The spin as a coordinate.
     """
@@ -64,32 +62,29 @@ class RotorAlone:
     level: str
     Q: np.ndarray
     turning: Turning
-    whole: Turning
     spin: Spin | None
 
     @property
     def has_halves(self) -> bool:
         """Whether the number of modes has cut pairs in halves."""
-        return bool(self.whole.halves.shape[1])
+        return bool(np.any(self.turning.halves))
 
     @cached_property
-    def complete_up_to(self) -> float:
-        """Frequency of the lowest half of a pair [rad/s]; infinity where there is none."""
-        halves = self.whole.halves
-        squares = np.linalg.eigvalsh(halves.T @ self.rotor.invariants.K @ halves)
-        return float(np.sqrt(max(squares.min(), 0.0))) if squares.size else np.inf
+    def without_halves(self) -> RotorAlone:
+        """The rotor without halves of pairs, which no mean over a turn can have."""
+        if not self.has_halves:
+            return self
+        Q = others(self.turning.T[:, self.turning.halves].real)
+        return self.within(Q[:, np.argsort(np.abs(Q).argmax(axis=0), kind="stable")])
 
     @kept
     def unevenness(self, places: tuple[str, ...]) -> float:
-        """Return the unevenness of the rotor and of the places that something acts on.
+        """Return the largest share of the rotor, and of the motion of interfaces, not round.
 
-        Of slow motions: the largest share of stiffness, centrifugal matrix and flexibility.
+        Of the interfaces that something acts on, or of all.
         """
-        shares = [self.turning.matrix_share(X) for X in (self.invariants.K, self.terms.C_hat)]
-        for name in places:
-            shares.append(self.turning.place_share(self.motion(name)))
-            shares.append(self.whole.halves_share_at(interface_motion(self.rotor, name)))
-        return max(shares) if places else max(*shares, self.whole.halves_share)
+        moved = [self.motion(name) for name in places or self.rotor.interfaces]
+        return self.turning.unevenness((self.invariants.K, self.terms.C_hat), moved)
 
     @kept
     def motion(self, name: str) -> np.ndarray:
@@ -102,14 +97,14 @@ class RotorAlone:
         The basis holds every wave or nothing of it.
         """
         turning, invariants = self.turning.within(V), self.invariants.in_basis(V)
-        return _alone(self.rotor, invariants, self.level, self.Q @ V, turning, self.whole)
+        return _alone(self.rotor, invariants, self.level, self.Q @ V, turning)
 
 
 @kept
 def rotor_alone(
-    rotor: ReducedRotor, stiffening: str, whole: bool, inner: ReducedRotor | None = None
+    rotor: ReducedRotor, stiffening: str, inner: ReducedRotor | None = None
 ) -> RotorAlone:
-    """Return a rotor at a level of stiffening; without halves of pairs unless it is `whole`.
+    """Return a rotor at a level of stiffening.
 
     Its waves are those of an `inner` rotor, all of whose motions it has, and others.
     """
@@ -118,28 +113,18 @@ def rotor_alone(
     level = chosen_level(stiffening, invariants.K2 is not None)
     if level != "none":
         invariants = invariants.loaded
-    turning = turning_of(rotor, inner)
-    alone = _alone(rotor, invariants, level, np.eye(rotor.size), turning, turning)
-    if whole or not alone.has_halves:
-        return alone
-    Q = others(turning.halves)
-    return alone.within(Q[:, np.argsort(np.abs(Q).argmax(axis=0), kind="stable")])
+    return _alone(rotor, invariants, level, np.eye(rotor.size), turning_of(rotor, inner))
 
 
 def _alone(
-    rotor: ReducedRotor,
-    invariants: Invariants,
-    level: str,
-    Q: np.ndarray,
-    turning: Turning,
-    whole: Turning,
+    rotor: ReducedRotor, invariants: Invariants, level: str, Q: np.ndarray, turning: Turning
 ) -> RotorAlone:
     """Return a rotor with the invariants in the basis Q."""
     terms = SpinTerms.of(invariants, second_order(invariants, level))
     spin = spin_of(rotor, invariants, Q)
     K4 = None if terms.K4 is None else _unresisted(terms.K4, rotor, spin, Q)
     terms = replace(terms, C_hat=_unresisted(terms.C_hat, rotor, spin, Q), K4=K4)
-    return RotorAlone(rotor, invariants, terms, level, Q, turning, whole, spin)
+    return RotorAlone(rotor, invariants, terms, level, Q, turning, spin)
 
 
 def _unresisted(X: np.ndarray, rotor: ReducedRotor, spin: Spin | None, Q: np.ndarray) -> np.ndarray:

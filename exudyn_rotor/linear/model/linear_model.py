@@ -171,36 +171,27 @@ class LinearModel:
         return tuple(dict.fromkeys(interface for owner, interface in ends if owner == name))
 
     def _alone(self, name: str, whole: bool) -> RotorAlone:
+        """Return a rotor in its own frame; without halves of pairs unless it is `whole`."""
+        alone = self._whole(name)
+        return alone if whole else alone.without_halves
+
+    def _whole(self, name: str) -> RotorAlone:
         inner = self.rotors[name] if self.is_richer else None
-        return rotor_alone(self._used[name], self.stiffening_asked, whole, inner)
+        return rotor_alone(self._used[name], self.stiffening_asked, inner)
 
     @cached_property
     def _own_unevenness(self) -> dict[str, float]:
         """Unevenness of each rotor and of the places that something acts on."""
-        return {name: self._alone(name, False).unevenness(self.places(name)) for name in self._used}
+        return {name: self._whole(name).unevenness(self.places(name)) for name in self._used}
 
     @cached_property
     def turns(self) -> int:
         """Whether the axes of the rotors turn with Ω (1) or stand still (0)."""
         if self.wanted_axes != "auto":
             return int(self.wanted_axes == "rotor")
-        elements = self._elements[0]
-        turning = [element for element in elements if element.turns]
-        if any(u > self.largest_unevenness for u in self._own_unevenness.values()):
-            return 1
-        if not all(each.is_isotropic(0.0) for each in turning):
-            return 1
-        # a basis with halves of pairs is taken whole where that is constant, too
-        halves = any(self._alone(name, False).has_halves for name in self._used)
-        return int(self._is_alike and halves)
-
-    @property
-    def _is_alike(self) -> bool:
-        """Whether what acts on the only rotor is constant and the same in all directions."""
-        elements, own = self._elements
-        if own or self._standing_bodies or len(self._used) > 1:
-            return False
-        return not any(one.varies or one.stands or not one.is_isotropic(0.0) for one in elements)
+        is_uneven = any(u > self.largest_unevenness for u in self._own_unevenness.values())
+        elements = (element for element in self._elements[0] if element.turns)
+        return int(is_uneven or not all(each.is_isotropic(0.0) for each in elements))
 
     @property
     def axes(self) -> str:
@@ -471,18 +462,9 @@ class LinearModel:
     @property
     def may_be_round(self) -> bool:
         """Whether the axes turn with a rotor that a finer mesh may show to be round."""
-        cut = any(self._alone(name, False).has_halves for name in self._used)  # told by `reduce`
+        cut = any(self._whole(name).has_halves for name in self._used)  # told by `reduce`
         limit, turns = self.largest_unevenness, self.wanted_axes == "auto" and self.turns
         return bool(turns) and limit < self.unevenness <= _MESH and not cut
-
-    @cached_property
-    def complete_up_to(self) -> float:
-        """Frequency of the lowest pair of which the basis holds one half alone [rad/s].
-
-        Such a half is left out of a round rotor; infinity where there is none.
-        """
-        averaged = [b.alone for b in rotors_of(self.bodies) if b.mean]
-        return min((alone.complete_up_to for alone in averaged), default=np.inf)
 
     @property
     def stiffening(self) -> str:
