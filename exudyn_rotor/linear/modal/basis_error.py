@@ -54,8 +54,6 @@ def motion_errors(model: LinearModel, named: Named, *, held: bool = False) -> np
     if richer is None:
         return None
     lifted = lifting(model, richer)
-    if lifted.shape[0] == lifted.shape[1]:
-        return errors
     rows = named.motions.known[points(len(named.motions.known))]
     given = named.rows(rows)
     speeds = given.motions.speeds

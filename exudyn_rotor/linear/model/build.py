@@ -119,14 +119,10 @@ def linear_model(
             f"exudyn.MainSystem with body=…, got {checks.shown(target)}"
         )
     check_interfaces(given, target.interfaces)
-    rotor, is_full = target, False
-    if isinstance(target, SolidRotor):
-        rotor, is_full = _reduced(target, stiffening)
+    rotor = _reduced(target, stiffening) if isinstance(target, SolidRotor) else target
     if foundation is not None:
         _check_foundation(foundation, rotor, [one.interface for one in given])
-    return LinearModel(
-        {"": rotor}, {"": 1.0}, {"": given}, (), foundation, stiffening, axes, is_full=is_full
-    )
+    return LinearModel({"": rotor}, {"": 1.0}, {"": given}, (), foundation, stiffening, axes)
 
 
 def _check_takes_supports(target: Target) -> None:
@@ -155,15 +151,12 @@ def _check_foundation(
             )
 
 
-def _reduced(rotor: SolidRotor, stiffening: str) -> tuple[ReducedRotor, bool]:
-    """Return a solid rotor in modes, and whether these are all that it has."""
+def _reduced(rotor: SolidRotor, stiffening: str) -> ReducedRotor:
+    """Return a solid rotor in all of its modes if these are few."""
     if stiffening == "auto":
         rotor = with_chosen_prestress(rotor, None)
     free = 3 * rotor.node_count
-    if free > _ALL_MODES:
-        return rotor.reduce(_MODES), False
-    identity = np.eye(free)
-    return rotor.reduce(identity), True
+    return rotor.reduce(_MODES if free > _ALL_MODES else np.eye(free))
 
 
 def _of_train(train: RotorTrain, stiffening: str, axes: str) -> LinearModel:
@@ -173,7 +166,7 @@ def _of_train(train: RotorTrain, stiffening: str, axes: str) -> LinearModel:
     }
     return LinearModel(
         rotors, train.ratios, train.supports, train.links, None, stiffening, axes,
-        max(train.largest_unevenness, EVEN), train.driven,
+        max(train.largest_unevenness, EVEN),
     )  # fmt: skip
 
 

@@ -477,14 +477,10 @@ def _turned_along(
 
 def _by_rotor(scene: LinearScene, body: RotorBody, rows: np.ndarray) -> Terms:
     """Return rows (r, n) by columns of the reduced rotor by its coordinates, (r, l)."""
-    source, alone = scene.body.selection.source, body.alone
-    Q = alone.Q if len(alone.Q) == source.size else source.in_attached.T @ alone.Q
-    L = rows @ Q
-    if body.is_apart:
-        L = body.spin.about_axis(L)
-    if not body.mean:
-        return {0: L}
-    return {-n: L @ part for n, part in alone.turning.parts(np.eye(L.shape[1])).items()}
+    source = scene.body.selection.source
+    if len(body.Q) != source.size:  # in a richer basis
+        rows = rows @ source.in_attached.T
+    return {-n: part for n, part in body.by_wave(rows).items()}
 
 
 def _follows_load(one: Given) -> bool:
