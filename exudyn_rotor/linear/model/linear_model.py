@@ -272,24 +272,32 @@ class LinearModel:
             Where there are equations at none of the speeds.
         """
         speeds = np.asarray(speeds, dtype=float)
-        rates = np.abs(speeds) if frequencies is None else np.asarray(frequencies, dtype=float)
+        stack, refused = self.systems(
+            speeds, np.abs(speeds) if frequencies is None else frequencies
+        )
+        lost = [(f"{speeds[i]:.5g}", refused[i]) for i in sorted(refused)]
+        warn_of_refused(lost, len(speeds), " rad/s")
+        return stack
+
+    def systems(
+        self, speeds: np.ndarray, frequencies: np.ndarray
+    ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
+        """Return the stack at speeds (s,), None where all are refused, and why some are."""
         parts, refused = [], {}
         for at in (np.flatnonzero(speeds), np.flatnonzero(speeds == 0.0)):
             if at.size and self._is_list:
-                given, added = (speeds[at], rates[at]), self._added(speeds[at[0]])
+                assembly, added = self.assembly(speeds[at[0]]), self._added(speeds[at[0]])
                 try:
-                    parts.append((at, self.assembly(speeds[at[0]]).system(*given, added)))
+                    parts.append((at, assembly.system(speeds[at], frequencies[at], added)))
                     continue
                 except NO_EQUATIONS:
                     pass  # one by one, then
             for i in sorted(at.tolist(), key=lambda i: -abs(speeds[i])):  # films carry more there
                 try:
-                    parts.append((i, self.at(speeds[i], rates[i])))
+                    parts.append((i, self.at(speeds[i], frequencies[i])))
                 except NO_EQUATIONS as error:
                     refused[i] = error
-        lost = [(f"{speeds[i]:.5g}", refused[i]) for i in sorted(refused)]
-        warn_of_refused(lost, len(speeds), " rad/s")
-        return spread(speeds, parts)
+        return spread(speeds, parts) if parts else None, refused
 
     @property
     def pattern(self) -> tuple:
