@@ -171,8 +171,7 @@ class LinearModel:
         return alone if whole else alone.without_halves
 
     def _whole(self, name: str) -> RotorAlone:
-        inner = self.rotors[name] if self.is_richer else None
-        return rotor_alone(self._used[name], self.stiffening_asked, inner)
+        return rotor_alone(self._used[name], self.stiffening_asked)
 
     @cached_property
     def _own_unevenness(self) -> dict[str, float]:

@@ -270,101 +270,48 @@ class Turning:
 
 
 @kept
-def turning_of(rotor: ReducedRotor, inner: ReducedRotor | None = None) -> Turning:
+def turning_of(rotor: ReducedRotor) -> Turning:
     """Find the waves of a reduced rotor: those of its rigid motions, and of its modes at rest.
 
     Of each group of nearly equal frequencies the combinations with the most of one lateral wave,
-    and the least of the opposite one, are a pair. A rotor with all motions of an `inner` one has
-    the waves of that, and waves of the rest.
+    and the least of the opposite one, are a pair.
     """
-    known = _rigid_waves(rotor) if inner is None else _inner_waves(inner)
-    T, inv = known.T, rotor.invariants
-    if inner is None:
-        rest, omega = np.eye(rotor.size)[:, T.shape[1] :], rotor.frequencies[T.shape[1] :]
-        rows = {n: R @ rest for n, R in _waves_at_points(rotor).items()}
-    else:
-        rest = la.null_space(np.vstack([T.real.T, T.imag.T]))
-        squares, modes = np.linalg.eigh(rest.T @ inv.K @ rest)
-        rest, omega = rest @ modes, np.sqrt(np.maximum(squares, 0.0))
-        rows = _waves_at_interfaces(rotor)
-        for n, R in rows.items():  # and what the waves n are coupled with
-            coupled = [R @ rest]
-            for X in (inv.K, inv.G, inv.C):
-                size = np.linalg.norm(T.conj().T @ X @ T) * np.linalg.norm(rest.T @ X @ rest)
-                of_wave = T[:, known.waves == n].conj().T @ X @ rest
-                coupled.append(of_wave / (np.sqrt(size) or 1.0))
-            rows[n] = np.vstack(coupled)
-    found = _in_groups(omega, {n: R.conj().T @ R for n, R in rows.items()})
-    return Turning(
-        np.hstack([T, rest @ found.T]),
-        np.r_[known.waves, found.waves],
-        np.r_[known.frequencies, omega],
-        np.r_[known.halves, found.halves],
-    )
-
-
-def _rigid_waves(rotor: ReducedRotor) -> Turning:
-    """Return the waves of the rigid motions that have names; others count as modes."""
+    # free motions of a grounded rotor have no names: they count as modes
     kinds = [kind for kind in rotor.rigid_kinds if kind is not ModeKind.FREE]
-    T, waves = np.eye(rotor.size, len(kinds), dtype=complex), np.zeros(len(kinds), dtype=int)
+    size, rigid, omega = rotor.size, len(kinds), rotor.frequencies.copy()
+    omega[:rigid] = 0.0
+    T, waves = np.eye(size, dtype=complex), np.zeros(size, dtype=int)
+    halves = np.zeros(size, dtype=bool)
     for pair in _RIGID_PAIRS:
         if set(pair) <= set(kinds):
             columns = [kinds.index(kind) for kind in pair]
             T[np.ix_(columns, columns)], waves[columns] = _PAIR, (1, -1)
-    return Turning(T, waves, np.zeros(len(kinds)), np.zeros(len(kinds), dtype=bool))
+    forms = _energies(rotor)
+    order = rigid + np.argsort(omega[rigid:], kind="stable")
+    apart = np.diff(omega[order]) > _GROUP * omega[order[1:]]
+    for group in np.split(order, np.flatnonzero(apart) + 1) if order.size else ():
+        at = np.ix_(group, group)
+        T[at], waves[group], halves[group] = _pairs(*(form[at] for form in forms))
+    return Turning(T, waves, omega, halves)
 
 
-def _inner_waves(inner: ReducedRotor) -> Turning:
-    """Return the waves of a rotor in the basis with attachments, without halves of pairs."""
-    found = turning_of(inner)
-    whole = ~found.halves
-    T, rest = inner.in_attached @ found.T[:, whole], (found.waves, found.frequencies, found.halves)
-    return Turning(T, *(each[whole] for each in rest))
+def _energies(rotor: ReducedRotor) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the energies of the waves 1 and −1, and of all, as quadratic forms (k, k).
 
-
-def _waves_at_interfaces(rotor: ReducedRotor) -> dict[int, np.ndarray]:
-    """Return the amplitudes (p, k) of the waves n = −1, 0, 1 at the interfaces."""
-    moved = [np.zeros((0, rotor.size))]
-    for name, place in rotor.interfaces.items():
-        moved.append(np.repeat([1.0, place.radius], 3)[:, None] * interface_motion(rotor, name))
-    U = np.vstack(moved)
-    # R_n projects on what turns with n
-    return {n: R @ U for n, R in turning_harmonics(len(U)).items()}
-
-
-def _waves_at_points(rotor: ReducedRotor) -> dict[int, np.ndarray]:
-    """Return the amplitudes (p, k) of waves at points of the mesh and, as strong, at interfaces.
-
-    Interfaces see motions with many waves along the axis, which the points do not resolve.
+    At points of the mesh and, as much again, at the interfaces: interfaces see motions with many
+    waves along the axis, which the points do not resolve.
     """
     points, motion = rotor_points(rotor, _POINTS)
     orders, amplitudes, _ = wave_amplitudes(points, motion)
-    found = dict(zip(orders.tolist(), amplitudes, strict=True))
-    weight = np.sqrt(len(points) / max(len(rotor.interfaces), 1))
-    for n, rows in _waves_at_interfaces(rotor).items():
-        found[n] = np.vstack([found[n], weight * rows])
-    return found
-
-
-def _in_groups(omega: np.ndarray, forms: dict[int, np.ndarray]) -> Turning:
-    """Return the waves of modes by groups of nearly equal frequencies.
-
-    By their frequencies (k,) and the energy of each wave, a form (k, k).
-    """
-    size = len(omega)
+    forms = {n: W.conj().T @ W for n, W in zip(orders.tolist(), amplitudes, strict=True)}
+    weight = len(points) / max(len(rotor.interfaces), 1)
+    for name, place in rotor.interfaces.items():
+        U = np.repeat([1.0, place.radius], 3)[:, None] * interface_motion(rotor, name)
+        for n, turn in turning_harmonics(6).items():  # R_n projects on what turns with n
+            forms[n] = forms[n] + weight * (turn @ U).conj().T @ (turn @ U)
     whole = sum(form.real for form in forms.values())
-    whole = whole + (_SEEN * np.trace(whole) + 1e-300) * np.eye(size)
-    found = Turning(
-        np.eye(size, dtype=complex), np.zeros(size, dtype=int), omega, np.zeros(size, dtype=bool)
-    )
-    order = np.argsort(omega, kind="stable")
-    apart = np.diff(omega[order]) > _GROUP * omega[order[1:]]
-    for group in np.split(order, np.flatnonzero(apart) + 1) if size else ():
-        at = np.ix_(group, group)
-        found.T[at], found.waves[group], found.halves[group] = _pairs(
-            forms[1][at], forms[-1][at], whole[at]
-        )
-    return found
+    floor = _SEEN * whole.diagonal().max(initial=0.0) or 1.0
+    return forms[1], forms[-1], whole + floor * np.eye(rotor.size)
 
 
 def _pairs(
