@@ -97,14 +97,16 @@ class RotorAlone:
 
 
 @kept
-def rotor_alone(rotor: ReducedRotor, stiffening: str) -> RotorAlone:
-    """Return a rotor at a level of stiffening."""
+def rotor_alone(
+    rotor: ReducedRotor, stiffening: str, inner: ReducedRotor | None = None
+) -> RotorAlone:
+    """Return a rotor, or that with the attachments of an `inner` one, at a level of stiffening."""
     origin = rotor.axis.project(rotor.center_of_mass)
     invariants = rotor.invariants.moved(origin - rotor.center_of_mass)
     level = chosen_level(stiffening, invariants.K2 is not None)
     if level != "none":
         invariants = invariants.loaded
-    return _alone(rotor, invariants, level, np.eye(rotor.size), turning_of(rotor))
+    return _alone(rotor, invariants, level, np.eye(rotor.size), turning_of(rotor, inner))
 
 
 def _alone(

@@ -53,7 +53,6 @@ from exudyn_rotor.theory.stiffening import LEVELS
 
 AXES = ("auto", "inertial", "rotor")
 ON_FOUNDATION = "{} (foundation)"
-_MESH = 0.05  # unevenness up to which a coarse mesh may be its cause
 _HELD = 1e-10  # share of the largest stiffness per unit mass that counts as none
 _ALONE = 1.0 - 1e-6  # share of a free motion's energy in one rigid motion, but for rounding
 
@@ -160,23 +159,21 @@ class LinearModel:
         carried = self.foundation is not None and name in self.foundation.points
         return ("foundation", name) if carried else None
 
-    def places(self, name: str) -> tuple[str, ...]:
-        """Return the interfaces of a rotor that elements act on."""
-        ends = (end for element in self._elements[0] for end in element.ends)
-        return tuple(dict.fromkeys(interface for owner, interface in ends if owner == name))
-
     def _alone(self, name: str, whole: bool) -> RotorAlone:
         """Return a rotor in its own frame; without halves of pairs unless it is `whole`."""
         alone = self._whole(name)
         return alone if whole else alone.without_halves
 
     def _whole(self, name: str) -> RotorAlone:
-        return rotor_alone(self._used[name], self.stiffening_asked)
+        inner = self.rotors[name] if self.is_richer else None
+        return rotor_alone(self._used[name], self.stiffening_asked, inner)
 
     @cached_property
     def _own_unevenness(self) -> dict[str, float]:
         """Unevenness of each rotor and of the places that something acts on."""
-        return {name: self._whole(name).unevenness(self.places(name)) for name in self._used}
+        ends = dict.fromkeys(end for element in self._elements[0] for end in element.ends)
+        places = {name: tuple(at for owner, at in ends if owner == name) for name in self._used}
+        return {name: self._whole(name).unevenness(at) for name, at in places.items()}
 
     @cached_property
     def turns(self) -> int:
@@ -205,9 +202,15 @@ class LinearModel:
         bodies = []
         for name, ratio in self.ratios.items():
             whole = self.turns == 1 and ratio == 1.0
-            if not (whole or at_rest):
-                self._check_round(name)
-            alone = self._alone(name, whole)
+            alone, uneven = self._alone(name, whole), self._own_unevenness[name]
+            is_refused = len(self._used) > 1 and uneven > self.largest_unevenness
+            if is_refused and not (whole or at_rest):
+                raise ValueError(
+                    f"rotors[{name!r}]: its unevenness is {uneven:.2g}, and it turns with {ratio:g}"
+                    " times the speed of the analysis; give a finer mesh, a number of modes that "
+                    "leaves no pair of bending modes in halves, a larger largest_unevenness=…, or "
+                    f"train.relative_to({name!r})"
+                )
             bodies.append(rotor_body(alone, name, 0.0 if at_rest else ratio, turns))
         return bodies + self._standing_bodies
 
@@ -216,16 +219,6 @@ class LinearModel:
         if self.foundation is None:
             return []
         return [foundation_body(self.foundation, next(iter(self._used.values())))]
-
-    def _check_round(self, name: str) -> None:
-        uneven = self._own_unevenness[name]
-        if uneven > self.largest_unevenness and len(self._used) > 1:
-            raise ValueError(
-                f"rotors[{name!r}]: its unevenness is {uneven:.2g}, and it turns with "
-                f"{self.ratios[name]:g} times the speed of the analysis; give a finer mesh, a "
-                "number of modes that leaves no pair of bending modes in halves, a larger "
-                f"largest_unevenness=…, or train.relative_to({name!r})"
-            )
 
     @cached_property
     def _running(self) -> Assembly:
@@ -435,13 +428,6 @@ class LinearModel:
         return max(self._own_unevenness.values())
 
     @property
-    def may_be_round(self) -> bool:
-        """Whether the axes turn with a rotor that a finer mesh may show to be round."""
-        cut = any(self._whole(name).has_halves for name in self._used)  # told by `reduce`
-        limit, turns = self.largest_unevenness, self.wanted_axes == "auto" and self.turns
-        return bool(turns) and limit < self.unevenness <= _MESH and not cut
-
-    @property
     def stiffening(self) -> str:
         """Level of centrifugal stiffening, the lowest of all rotors."""
         return min((b.alone.level for b in rotors_of(self.bodies)), key=LEVELS.index)
@@ -616,13 +602,13 @@ class LinearModel:
         for body, place in zip(self.bodies, assembly.slices, strict=False):
             if not isinstance(body, RotorBody):
                 continue
-            wide = np.zeros((2, self.size))
             if ModeKind.AXIAL in body.alone.rotor.rigid_kinds:
-                wide[:, place] = body.alone.Q[body.alone.rotor.rigid_kinds.index(ModeKind.AXIAL)]
-                shifts.append(wide.copy())
-            if body.spin is not None and (body.is_apart or len(self._used) > 1):
-                wide[:, place] = body.spin.turn, body.spin.momentum
-                spins.append(wide)
+                shifts.append(np.zeros((2, self.size)))
+                along = body.alone.Q[body.alone.rotor.rigid_kinds.index(ModeKind.AXIAL)]
+                shifts[-1][:, place] = along
+            if body.spin is not None:
+                spins.append(np.zeros((2, self.size)))
+                spins[-1][:, place] = body.spin.turn, body.spin.momentum
         pairs = [np.reshape(X, (-1, 2, self.size)).transpose(1, 2, 0) for X in (shifts, spins)]
         return tuple(each @ _unheld(each[0, : len(K)], K) for each in pairs)
 
@@ -639,12 +625,13 @@ class LinearModel:
     @cached_property
     def held_basis(self) -> np.ndarray | None:
         """Motions without a free spin as orthonormal columns; None where no spin is free."""
-        return beside(self.free_spins)
+        return others(self.free_spins) if self.free_spins.shape[1] else None
 
     @cached_property
     def moving_basis(self) -> np.ndarray | None:
         """Motions without :attr:`neutral_motions` as orthonormal columns; None for all."""
-        return beside(np.hstack([momenta for _, momenta in self._neutral]))
+        momenta = np.hstack([momenta for _, momenta in self._neutral])
+        return others(momenta) if momenta.shape[1] else None
 
     @cached_property
     def for_responses(self) -> LinearModel:
@@ -691,8 +678,3 @@ def _unheld(columns: np.ndarray, K: np.ndarray) -> np.ndarray:
     _, values, combined = np.linalg.svd(columns.T @ K @ columns)
     most = max(np.abs(np.diag(K)).max(initial=0.0), 1e-300)
     return combined[values <= _HELD * most].T
-
-
-def beside(momenta: np.ndarray) -> np.ndarray | None:
-    """Return motions orthogonal to others, coordinates kept where they can be; None for all."""
-    return others(momenta) if momenta.shape[1] else None

@@ -270,29 +270,45 @@ class Turning:
 
 
 @kept
-def turning_of(rotor: ReducedRotor) -> Turning:
+def turning_of(rotor: ReducedRotor, inner: ReducedRotor | None = None) -> Turning:
     """Find the waves of a reduced rotor: those of its rigid motions, and of its modes at rest.
 
     Of each group of nearly equal frequencies the combinations with the most of one lateral wave,
-    and the least of the opposite one, are a pair.
+    and the least of the opposite one, are a pair. The attachments of an `inner` rotor have no mode
+    shapes: with them a rotor has the waves of that one, and those that interfaces tell of the rest.
     """
-    # free motions of a grounded rotor have no names: they count as modes
+    known = _rigid_waves(rotor) if inner is None else turning_of(inner)
+    T, whole = known.T, ~known.halves
+    rest, omega = np.eye(rotor.size)[:, T.shape[1] :], rotor.frequencies[T.shape[1] :]
+    if inner is not None:
+        T = inner.in_attached @ T[:, whole]
+        rest = la.null_space(np.vstack([T.real.T, T.imag.T]))
+        squares, modes = np.linalg.eigh(rest.T @ rotor.invariants.K @ rest)
+        rest, omega = rest @ modes, np.sqrt(np.maximum(squares, 0.0))
+    size, forms = len(omega), [rest.T @ form @ rest for form in _energies(rotor)]
+    waves, halves = np.zeros(size, dtype=int), np.zeros(size, dtype=bool)
+    found, order = np.eye(size, dtype=complex), np.argsort(omega, kind="stable")
+    apart = np.diff(omega[order]) > _GROUP * omega[order[1:]]
+    for group in np.split(order, np.flatnonzero(apart) + 1) if size else ():
+        at = np.ix_(group, group)
+        found[at], waves[group], halves[group] = _pairs(*(form[at] for form in forms))
+    return Turning(
+        np.hstack([T, rest @ found]),
+        np.r_[known.waves[whole], waves],
+        np.r_[known.frequencies[whole], omega],
+        np.r_[known.halves[whole], halves],
+    )
+
+
+def _rigid_waves(rotor: ReducedRotor) -> Turning:
+    """Return the waves of the rigid motions that have names; others count as modes."""
     kinds = [kind for kind in rotor.rigid_kinds if kind is not ModeKind.FREE]
-    size, rigid, omega = rotor.size, len(kinds), rotor.frequencies.copy()
-    omega[:rigid] = 0.0
-    T, waves = np.eye(size, dtype=complex), np.zeros(size, dtype=int)
-    halves = np.zeros(size, dtype=bool)
+    T, waves = np.eye(rotor.size, len(kinds), dtype=complex), np.zeros(len(kinds), dtype=int)
     for pair in _RIGID_PAIRS:
         if set(pair) <= set(kinds):
             columns = [kinds.index(kind) for kind in pair]
             T[np.ix_(columns, columns)], waves[columns] = _PAIR, (1, -1)
-    forms = _energies(rotor)
-    order = rigid + np.argsort(omega[rigid:], kind="stable")
-    apart = np.diff(omega[order]) > _GROUP * omega[order[1:]]
-    for group in np.split(order, np.flatnonzero(apart) + 1) if order.size else ():
-        at = np.ix_(group, group)
-        T[at], waves[group], halves[group] = _pairs(*(form[at] for form in forms))
-    return Turning(T, waves, omega, halves)
+    return Turning(T, waves, np.zeros(len(kinds)), np.zeros(len(kinds), dtype=bool))
 
 
 def _energies(rotor: ReducedRotor) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
