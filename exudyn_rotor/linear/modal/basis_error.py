@@ -1,8 +1,8 @@
 """What the basis of a reduced rotor leaves out: the analysis again with a richer one.
 
-Beside its modes a reduced rotor carries static responses to loads at its interfaces and to the
-inertia forces of its modes in a turning frame (:mod:`exudyn_rotor.reduction`). The model with these
-shapes, too, is solved at a few points of an analysis, and compared.
+Beside its modes a reduced rotor carries static responses to loads at its interfaces
+(:mod:`exudyn_rotor.reduction`). The model with these shapes, too, is solved at a few points of an
+analysis, and compared.
 """
 
 from __future__ import annotations

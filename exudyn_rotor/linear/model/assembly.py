@@ -440,37 +440,30 @@ class Assembly:
 
         With `more` forces that hold at this speed.
         """
-        given = [one.matrices(speed, frequency) for one in self.elements if one.varies]
-        return self._system(speed, given, more)
+        found = {"M": {}, "D": {}, "K": {}}
+        parts, factor = [self._steady, more or {}], speed
+        if np.ndim(speed):
+            factor = speed[:, None, None]
+        for one, U in zip(self.elements, self.motions, strict=True):
+            if one.varies:
+                parts.append(one.powers(one.matrices(speed, frequency), U, self.turns))
+        for (name, n, power), X in (item for part in parts for item in part.items()):
+            add(found[name], {n: X}, factor**power if power else None)
+        if np.ndim(speed):
+            for name in "DK":
+                shape = len(speed), self.size, self.size
+                found[name] = {n: np.broadcast_to(X, shape) for n, X in found[name].items()}
+        D, K = without_rounding(found["D"]), without_rounding(found["K"])
+        return PeriodicSystem(speed, found["M"][0], D, K, self._H)
 
     def at_points(self, speeds: np.ndarray, coefficients: Sequence) -> PeriodicSystem:
         """Return the equations at points, stacked, each with coefficients of its elements.
 
         `coefficients` are :attr:`Element.matrices` of each, as stacks over the points.
         """
-        varying = tuple(replace(element, varies=True) for element in self.elements)
-        return replace(self, elements=varying)._system(speeds, coefficients)
-
-    def _system(
-        self, speed: float | np.ndarray, coefficients: Sequence, more: Powers | None = None
-    ) -> PeriodicSystem:
-        """Return the equations at a speed, or a stack, by the `coefficients` of what varies."""
-        rest, factor, k = iter(coefficients), speed, self._steady["M", 0, 0].shape[0]
-        if np.ndim(speed):
-            factor = speed[:, None, None]
-        found = {"M": {}, "D": {}, "K": {}}
-        parts = [self._steady, more or {}]
-        for element, U in zip(self.elements, self.motions, strict=True):
-            if element.varies:
-                parts.append(element.powers(next(rest), U, self.turns))
-        for (name, n, power), X in (item for part in parts for item in part.items()):
-            add(found[name], {n: X}, factor**power if power else None)
-        if np.ndim(speed):
-            for name in "DK":
-                shape = len(speed), k, k
-                found[name] = {n: np.broadcast_to(X, shape) for n, X in found[name].items()}
-        D, K = without_rounding(found["D"]), without_rounding(found["K"])
-        return PeriodicSystem(speed, found["M"][0], D, K, self._H)
+        given = zip(self.elements, coefficients, strict=True)
+        varying = (replace(one, varies=True, matrices=lambda *_, X=X: X) for one, X in given)
+        return replace(self, elements=tuple(varying)).system(speeds)
 
     @cached_property
     def _H(self) -> list[tuple[float, np.ndarray]]:

@@ -183,8 +183,15 @@ def warn_of_omissions(model: LinearModel, speed: float = 0.0, what: str = "") ->
     """
     if what and model.has_structural_damping:
         warnings.warn(LOSS_LEFT_OUT.format(what), UserWarning, stacklevel=user_level())
-    # a finer mesh may show a rotor of little unevenness to be round; `reduce` tells of halves
-    halves = any(body.alone.has_halves for body in rotors_of(model.bodies))
+    _warn_of_mesh(model)
+    if model.stiffening_asked == "auto":
+        for rotor in model.rotors.values():
+            warn_of_left_out(rotor.invariants, speed, user_level() + 1)
+
+
+def _warn_of_mesh(model: LinearModel) -> None:
+    """Warn of axes that turn with a rotor that a finer mesh may show to be round."""
+    halves = any(body.alone.has_halves for body in rotors_of(model.bodies))  # `reduce` tells
     is_taken = model.wanted_axes == "auto" and model.turns and not halves
     if is_taken and model.largest_unevenness < model.unevenness <= _MESH:
         warnings.warn(
@@ -194,6 +201,3 @@ def warn_of_omissions(model: LinearModel, speed: float = 0.0, what: str = "") ->
             UserWarning,
             stacklevel=user_level(),
         )
-    if model.stiffening_asked == "auto":
-        for rotor in model.rotors.values():
-            warn_of_left_out(rotor.invariants, speed, user_level() + 1)

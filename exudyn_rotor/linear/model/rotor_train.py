@@ -136,8 +136,7 @@ class RotorTrain:
     Raises
     ------
     TypeError, ValueError
-        For unknown names and bad numbers, and for gears of other ratios. Analyses refuse rotors
-        with structural damping or with supports off the axis that hold the spin, and rotors,
+        For unknown names and bad numbers, and for gears of other ratios. Analyses refuse rotors,
         supports and links that are uneven where the equations do not repeat with the angle of Ω.
 
     Notes
