@@ -35,7 +35,7 @@ ACROSS = np.eye(3)[:, :2]  # a pair along (n1, n2) as a vector
 HIGHEST = 4  # largest |n| that is looked at
 # how many T_q(z) with each of 1, r², r⁴: shafts bend in many waves, discs have nodal circles
 _AXIAL_TERMS = (10, 6, 2)
-# share of a field that others must leave over to count as new: what less is left tells noise
+# share of a field that others of its wave must leave over to count as new: what is less tells noise
 _NEW_SHARE = 3e-2
 # share of a field, squared, that those of lower waves must leave over in the points: of less the
 # fit makes large fields of two waves that cancel each other
@@ -136,9 +136,9 @@ def wave_amplitudes(
 def _wave_fields(points: np.ndarray, highest: int) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Return cosines, then sines of the fields of the waves ``exp(ilα)`` at points, (s, p) per l.
 
-    Those of ``r^|l| (1, r², r⁴) T_q(z) exp(ilα)`` that the waves of lower |l| do not hold yet, and
-    their combinations (p, q) that the points tell from these: where the points are too few to tell
-    waves apart, as on the edges of a bar, they are of low |l|.
+    Those of ``r^|l| (1, r², r⁴) T_q(z) exp(ilα)``, and their combinations (p, q) that the points
+    tell from the waves of lower |l|: where the points are too few to tell waves apart, as on the
+    edges of a bar, they are of low |l|.
     """
     x, y, z = points.T
     radius = np.hypot(x, y)
@@ -156,11 +156,7 @@ def _wave_fields(points: np.ndarray, highest: int) -> tuple[list[np.ndarray], li
     turning = np.vander(scaled * np.exp(1j * np.arctan2(y, x)), highest + 1, increasing=True)
     spaces, told, known = [], [], np.zeros((len(points), 0))
     for count in range(highest + 1):
-        fields = turning[:, count, None] * steady
-        rest = fields - known @ (known.T @ fields)
-        lengths, directions = np.linalg.eigh(rest.conj().T @ rest)
-        least = max((_NEW_SHARE * np.linalg.norm(fields, 2)) ** 2, 1e-300)
-        fields = np.linalg.qr(fields @ directions[:, lengths > least])[0]
+        fields = la.orth(turning[:, count, None] * steady, rcond=_NEW_SHARE)
         # both senses at once, so that neither is preferred: one has the conjugate fields
         both = np.sqrt(2.0) * np.hstack([fields.real, fields.imag]) if count else fields.real
         spaces.append(both)
