@@ -22,11 +22,7 @@ from exudyn_rotor.calls import kept
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import Terms, others, turned
 from exudyn_rotor.linear.model.spin import Spin, spin_of
-from exudyn_rotor.linear.model.turning import (
-    Turning,
-    interface_motion,
-    turning_of,
-)
+from exudyn_rotor.linear.model.turning import Turning, interface_motion, turning_of
 from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.rotating_axes import axes_of
