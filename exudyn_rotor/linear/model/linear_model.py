@@ -181,8 +181,19 @@ class LinearModel:
         if self.wanted_axes != "auto":
             return int(self.wanted_axes == "rotor")
         is_uneven = any(u > self.largest_unevenness for u in self._own_unevenness.values())
-        elements = (element for element in self._elements[0] if element.turns)
-        return int(is_uneven or not all(each.is_isotropic(0.0) for each in elements))
+        turning = (element for element in self._elements[0] if element.turns)
+        if is_uneven or not all(each.is_isotropic(0.0) for each in turning):
+            return 1
+        # a basis with halves of pairs is taken whole where that is constant, too
+        return int(self._is_alike and any(self._whole(name).has_halves for name in self._used))
+
+    @property
+    def _is_alike(self) -> bool:
+        """Whether what acts on the only rotor is constant and the same in all directions."""
+        elements, own = self._elements
+        if own or self._standing_bodies or len(self._used) > 1:
+            return False
+        return not any(one.varies or one.stands or not one.is_isotropic(0.0) for one in elements)
 
     @property
     def axes(self) -> str:

@@ -137,6 +137,10 @@ class SceneModel(LinearModel):
         still = np.linalg.norm(alone.turning.still @ held, axis=0)
         return {"": np.inf} if np.any(still <= _WAVE_FREE) else super()._own_unevenness
 
+    @property
+    def _is_alike(self) -> bool:
+        return not self._has_foreign and super()._is_alike
+
     @cached_property
     def stiffness_varies(self) -> bool:
         """Whether a stiffness depends on the speed; a foreign one may, with the equilibrium.
