@@ -120,11 +120,8 @@ def _in_rotor_axes(model: LinearModel, coordinates: Waves, revolutions: int) -> 
     own = not model.turns and any(hasattr(body, "rows") for body in others)
     if own or len(rotors_of(model.bodies)) > 1:
         return None
-    columns, found = rotor.alone.Q, {}
-    if rotor.is_apart:
-        columns = rotor.spin.about_axis(columns)
     # from axes that stand still, x = exp(−Nθ) η
-    waves = {0: columns} if model.turns else rotor.alone.turning.parts(columns)
+    found, waves = {}, rotor.by_wave(np.eye(len(rotor.Q)))
     for (k, n), x in coordinates.items():
         for wave, U in waves.items():
             order = k, n - revolutions * wave

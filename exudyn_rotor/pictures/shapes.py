@@ -191,11 +191,7 @@ def _of_nodes(
     Along mesh axes, from those (k, i) of the coordinates of a model.
     """
     body = model.assembly(speed).bodies[0]
-    alone, found = body.alone, {}
-    columns = alone.rotor.shapes.matrix @ alone.Q
-    if body.is_apart:
-        columns = body.spin.about_axis(columns)
-    parts = alone.turning.parts(columns) if body.mean else {0: columns}  # U exp(−Nθ)
+    found, parts = {}, body.by_wave(body.alone.rotor.shapes.matrix)  # U exp(−Nθ)
     for m, x in motion.items():
         for wave, U in parts.items():
             if wave == 0 or np.any(U):

@@ -12,12 +12,7 @@ import scipy.sparse as sp
 
 from exudyn_rotor import checks
 from exudyn_rotor.reduction.attachment import is_clamped
-from exudyn_rotor.reduction.component import (
-    ModeBasis,
-    check_rotor,
-    lowest_with_pairs,
-    numbered,
-)
+from exudyn_rotor.reduction.component import ModeBasis, check_rotor, lowest_with_pairs, numbered
 from exudyn_rotor.solid.model import rigid_basis
 from exudyn_rotor.solid.rotor import FiniteElementRotor, Interface
 from exudyn_rotor.solvers.constrained import ConstrainedInverse

@@ -13,7 +13,7 @@ from exudyn.FEM import FEMinterface
 from exudyn_rotor import checks
 from exudyn_rotor.prestress.carrying import estimated_stiffness, with_chosen_prestress
 from exudyn_rotor.prestress.static_solution import relief_rotation
-from exudyn_rotor.reduction.attachment import attachment_modes, inertial_modes
+from exudyn_rotor.reduction.attachment import attachment_modes
 from exudyn_rotor.reduction.component import (
     ModeBasis,
     OrthonormalBasis,
@@ -162,16 +162,16 @@ def _with_attachments(
 ) -> tuple[ReducedRotor, np.ndarray] | None:
     """Return the rotor with static responses beside its modes, and where its own columns are there.
 
-    None if its static response is unknown.
+    None if its static response is unknown, or if nothing is known of what the modes leave out.
     """
-    stiffness = np.maximum(basis.stiffness, 0.0)
     with one_thread():
         try:
             static = attachment_modes(rotor, component.matrix)
-            inertial = inertial_modes(rotor, component.matrix, basis.matrix, stiffness)
         except ValueError:  # loose parts; the given modes may do without them
             return None
-        matrix = np.hstack([component.matrix, static, inertial])
+        if not static.shape[1] and basis.matrix.shape[1] < rotor.nodes.size:
+            return None
+        matrix = np.hstack([component.matrix, static])
         every = ModeBasis(matrix, numbered("column", matrix.shape[1]), rotor.nodes)
         finer = OrthonormalBasis.of(rotor, every)
         reduced = _reduced(rotor, every, finer)

@@ -259,8 +259,8 @@ class ReducedRotor:
     def with_attachments(self) -> ReducedRotor | None:
         """The same rotor with more columns, without shapes: how much the modes leave out.
 
-        Beside the modes it has static responses to loads at the interfaces and to the inertia
-        forces of the modes in a turning frame. None where that is not known.
+        Beside the modes it has static responses to loads at the interfaces. None where they are
+        not known.
         """
         return self._finer[0]
 

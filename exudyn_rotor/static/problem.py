@@ -259,8 +259,7 @@ class Problem:
             raise ValueError("stress: is found for one rotor alone, not for a train")
         if several or (rotor.shapes is None and not stress):
             return {}
-        columns = body.spin.about_axis(body.alone.Q) if body.is_apart else body.alone.Q
-        x = columns @ y[: body.size]
+        x = body.Q @ y[: body.size]
         rest = self.speed**2 * rotor.unshown_stress if stress else 0.0
         return {
             "nodes": rotor.shapes.nodes,

@@ -33,5 +33,5 @@ def test_loops_of_a_train_have_their_sensitivity():
     )
     with pytest.raises(ValueError, match=r"a motion of .* grows by"):
         sensitivity(loose, frequencies)
-    with pytest.raises(ValueError, match="a RotorTrain has its own"):
+    with pytest.raises(ValueError, match="a RotorTrain and a linear model"):
         sensitivity(train, frequencies, supports=MAGNETIC[1])

@@ -78,7 +78,7 @@ def test_estimates_of_critical_speeds(order):
     exact = er.critical_speeds(dual_spool(1.5, 16), accuracy=None, **given)
     errors = 1.0 - exact.speeds[: len(found.speeds)] / found.speeds
     assert errors.max() > 0.02
-    np.testing.assert_allclose(found.basis_errors, errors, rtol=0.05)
+    np.testing.assert_allclose(found.basis_errors, errors, rtol=0.1)
 
 
 @pytest.mark.parametrize("name", ["1.5", "uneven"])

@@ -98,7 +98,7 @@ def test_what_does_not_repeat_is_refused():
     train = two_discs(1.7)
     with pytest.raises(ValueError, match="B:a is not the same in all directions"):
         linear_model(RotorTrain(train.rotors, train.ratios, {"B": [turning]})).at(100.0)
-    with pytest.raises(ValueError, match="has its own"):
+    with pytest.raises(ValueError, match="have their own"):
         linear_model(train, supports=[turning])
 
 

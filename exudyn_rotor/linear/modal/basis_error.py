@@ -1,8 +1,8 @@
 """What the basis of a reduced rotor leaves out: the analysis again with a richer one.
 
-Beside its modes a reduced rotor carries static responses to loads at its interfaces and to the
-inertia forces of its modes in a turning frame (:mod:`exudyn_rotor.reduction`). The model with these
-shapes, too, is solved at a few points of an analysis, and compared.
+Beside its modes a reduced rotor carries static responses to loads at its interfaces
+(:mod:`exudyn_rotor.reduction`). The model with these shapes, too, is solved at a few points of an
+analysis, and compared.
 """
 
 from __future__ import annotations
@@ -54,8 +54,6 @@ def motion_errors(model: LinearModel, named: Named, *, held: bool = False) -> np
     if richer is None:
         return None
     lifted = lifting(model, richer)
-    if lifted.shape[0] == lifted.shape[1]:
-        return errors
     rows = named.motions.known[points(len(named.motions.known))]
     given = named.rows(rows)
     speeds = given.motions.speeds

@@ -16,7 +16,6 @@ from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.modal import basis_error, whirl
 from exudyn_rotor.linear.modal.whirl import WHIRLS, Content, Named, OfMotions, rounded
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
-from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import ModelResult, basis_column, motions_over, table_lines, warn_of
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.results import numbers, storable
@@ -31,7 +30,6 @@ if TYPE_CHECKING:
 # rotor with an uneven mesh looks like that
 _UNSTABLE = 1e-4
 _SPLIT = 4e-8  # of the fastest motion: the split of a double zero by rounding
-_FEWEST = 6  # modes that are listed of a basis with halves of pairs
 _LATERAL = whirl.FORWARD, whirl.BACKWARD, whirl.MIXED, whirl.OVERDAMPED
 # of the excitation's frequency: a mode that keeps to its line, as one fixed in the rotor, does
 # not cross it by rounding
@@ -370,8 +368,7 @@ def campbell(
     modes : int, optional
         How many modes to keep: those with the lowest frequencies in the `frame` at the first
         speed, followed from there, overdamped ones last; of a mode that is NaN there, at the
-        first speed at which it is found. All by
-        default; of a basis that cuts pairs of bending modes in halves, those below the first half.
+        first speed at which it is found. All by default.
     frame : {'inertial', 'rotor'}
         In which modes are chosen, stand in order in the result, and are drawn.
     stiffening : {'auto', 'none', 'tilt', 'full'}
@@ -437,7 +434,7 @@ def campbell(
     order, continued = whirl.track(named, model.mass_matrix)
     every = named.columns(order)
     first = whirl.first_known(every)
-    kept = _ascending(first, frame)[:, : modes or _complete(first, model)]
+    kept = _ascending(first, frame)[:, :modes]
     named = every.columns(np.repeat(kept, len(values), axis=0))
     warn_of(model, every.motions, named.motions)
     upwards = _ascending(named, frame)
@@ -497,9 +494,3 @@ def _ascending(found: Named, frame: str) -> np.ndarray:
     overdamped = (found.inertial == 0.0) & (growth < -found.motions.bounds[:, None])
     keys = [-growth, whirl.signed_diameters(found.codes, found.diameters), other, main]
     return np.lexsort([*map(rounded, keys), np.isnan(growth) | overdamped], axis=-1)
-
-
-def _complete(first: Named, model: LinearModel) -> int:
-    """Return how many of the motions at one speed a basis is asked for that cuts pairs."""
-    below = np.count_nonzero(np.abs(first.motions.values) < model.complete_up_to)
-    return max(min(_FEWEST, first.inertial.shape[1]), below)

@@ -266,10 +266,10 @@ class Search:
         wanted = np.unique([*even, *slow, *kinks[(kinks > first) & (kinks < self.limit)]])
         wanted = wanted[np.diff(wanted, prepend=0.0) > SAME * first]
         stack, errors = self.model.systems(wanted, self.order * wanted)
-        if stack is None or len(stack.speed) < 2:
+        if stack is None or np.count_nonzero(stack.known) < 2:
             raise errors[min(errors)]
         self.refused = {float(wanted[i]): errors[i] for i in errors if wanted[i] >= first}
-        return stack.projected(self.stiffness.basis)
+        return stack[stack.known].projected(self.stiffness.basis)
 
     def _bracketed(self, multiples: np.ndarray) -> list[Zero]:
         """Return where H is singular, by its eigenvalues over the grid."""

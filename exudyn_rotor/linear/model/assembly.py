@@ -58,8 +58,8 @@ class Element:
         Bodies and their interfaces.
     matrices : callable
         Takes the speed Ω, and the frequency of the motion, that of Ω without it [rad/s]; gives
-        stiffness and damping, each (p, p), p a multiple of 3. Where the law is a Support it takes
-        speeds (s,), too, and gives stacks.
+        stiffness, damping and, where one goes with u in axes that stand, the mass, each (p, p), p a
+        multiple of 3. Of speeds (s,) it gives stacks.
     motion : callable
         Takes a function that gives the motion (6, k) of an end, gives u as Fourier terms (p, k).
     turns : float
@@ -87,39 +87,15 @@ class Element:
         return " – ".join(filter(None, (":".join(filter(None, end)) for end in self.ends)))
 
     @property
-    def has_tables(self) -> bool:
-        """Whether it is a support whose coefficients depend on the speed or the frequency."""
-        return self.varies and isinstance(self.law, Support)
-
-    @property
     def table_speeds(self) -> np.ndarray:
         """Ω at the points of its tables [rad/s], where coefficients have kinks."""
-        return self.law.table_speeds / self.rate if self.rate and self.has_tables else np.zeros(0)
+        has_tables = self.rate and isinstance(self.law, Support)
+        return self.law.table_speeds / self.rate if has_tables else np.zeros(0)
 
     @property
     def table_frequencies(self) -> np.ndarray:
         """Frequencies of its tables [rad/s]; none where it does not depend on the frequency."""
-        return self.law.table_frequencies if self.has_tables else np.zeros(0)
-
-    @property
-    def has_mass(self) -> bool:
-        """Whether a mass goes with u, in axes that stand."""
-        return isinstance(self.law, Support) and acts(self.law.mass)
-
-    def mass(self, speed: ArrayLike, frequency: ArrayLike | None = None) -> np.ndarray:
-        """Return the mass (p, p) that goes with u [kg]."""
-        rate = self.rate * speed
-        return self.law.mass_matrix(rate, abs(speed) if frequency is None else frequency)
-
-    def coefficients(
-        self, speed: ArrayLike, frequency: ArrayLike | None = None
-    ) -> tuple[np.ndarray, ...]:
-        """Return stiffness, damping and, where there is one, the mass; of speeds (s,) stacks."""
-        if np.ndim(speed) and not isinstance(self.law, Support):
-            [found] = stacked_coefficients([[self.matrices(one)] for one in speed.tolist()])
-            return found
-        found = self.matrices(speed, frequency)
-        return (*found, self.mass(speed, frequency)) if self.has_mass else found
+        return self.law.table_frequencies if isinstance(self.law, Support) else np.zeros(0)
 
     def at_rest(self) -> np.ndarray:
         """Return a stiffness that tells which motions it holds, (p, p).
@@ -129,14 +105,14 @@ class Element:
         return self.law.matrices(0.0)[0] if isinstance(self.law, Support) else self.matrices(0.0)[0]
 
     def is_isotropic(self, speed: float) -> bool:
-        """Return whether the coefficients at a speed are the same in all directions."""
-        return all(is_isotropic_matrix(X) for X in self.matrices(speed))
+        """Return whether stiffness and damping at a speed are the same in all directions."""
+        return all(is_isotropic_matrix(X) for X in self.matrices(speed)[:2])
 
     def powers(self, coefficients: Sequence[np.ndarray], U: Terms, turns: int) -> Powers:
         """Return what it adds to the equations in axes that turn with `turns` times Ω.
 
-        `coefficients` are those of :meth:`coefficients`, (p, p), or stacks of them, (s, p, p); `U`
-        is :attr:`motion` in these axes.
+        `coefficients` are those of :attr:`matrices`, (p, p), or stacks of them, (s, p, p); `U` is
+        :attr:`motion` in these axes.
         """
         K, D, *masses = coefficients
         found: Powers = {}
@@ -161,7 +137,8 @@ class Element:
         """Why it needs axes that stand still; empty where it takes any."""
         if self.table_frequencies.size:
             return "coefficients over the frequency"
-        if self.has_mass and not is_isotropic_matrix(self.mass(0.0)):
+        has_mass = isinstance(self.law, Support) and acts(self.law.mass)
+        if has_mass and not is_isotropic_matrix(self.law.mass_matrix(0.0)):
             return "a mass that is not the same in all directions"
         return ""
 
@@ -251,12 +228,12 @@ def support_element(
     Its tables are over `rate` times Ω; one in the rotor's frame turns with `ratio` times Ω.
     """
 
-    def matrices(
-        speed: ArrayLike, frequency: ArrayLike | None = None
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def matrices(speed: ArrayLike, frequency: ArrayLike | None = None) -> tuple[np.ndarray, ...]:
         for each in np.ravel(rate * speed).tolist():
             support.check_range(each)
-        return support.matrices(rate * speed, abs(speed) if frequency is None else frequency)
+        at = rate * speed, abs(speed) if frequency is None else frequency
+        mass = (support.mass_matrix(*at),) if acts(support.mass) else ()
+        return *support.matrices(*at), *mass
 
     return Element(
         (end,) if base is None else (end, base),
@@ -282,7 +259,10 @@ def own_elements(
         ports.append(_relative(ends[1], base(one.sensor), 3))
     lifted = la.block_diag(np.kron(np.eye(len(ports)), ACROSS), own.shown)
 
-    def matrices(speed: float, *_: float) -> tuple[np.ndarray, np.ndarray]:
+    def matrices(speed: ArrayLike, *_: ArrayLike) -> tuple[np.ndarray, ...]:
+        if np.ndim(speed):
+            [found] = stacked_coefficients([[matrices(each)] for each in speed.tolist()])
+            return found
         K, D = one.matrices(rate * speed)
         return lifted @ K @ lifted.T, lifted @ D @ lifted.T
 
@@ -440,7 +420,7 @@ class Assembly:
                         put(found, name, power, {0: self.square(X, place)})
         for element, U in zip(self.elements, self.motions, strict=True):
             if not element.varies:
-                given = element.powers(element.coefficients(0.0), U, self.turns)
+                given = element.powers(element.matrices(0.0), U, self.turns)
                 for (name, n, power), X in given.items():
                     put(found, name, power, {n: X})
         largest = {name: np.abs(found[name, 0, 0]).max(initial=0.0) for name in "MDK"}
@@ -460,37 +440,30 @@ class Assembly:
 
         With `more` forces that hold at this speed.
         """
-        given = [one.coefficients(speed, frequency) for one in self.elements if one.varies]
-        return self._system(speed, given, more)
-
-    def at_points(self, speeds: np.ndarray, coefficients: Sequence) -> PeriodicSystem:
-        """Return the equations at points, stacked, each with coefficients of its elements.
-
-        `coefficients` are :meth:`Element.coefficients` of each, as stacks over the points.
-        """
-        varying = tuple(replace(element, varies=True) for element in self.elements)
-        return replace(self, elements=varying)._system(speeds, coefficients)
-
-    def _system(
-        self, speed: float | np.ndarray, coefficients: Sequence, more: Powers | None = None
-    ) -> PeriodicSystem:
-        """Return the equations at a speed, or a stack, by the `coefficients` of what varies."""
-        rest, factor, k = iter(coefficients), speed, self._steady["M", 0, 0].shape[0]
+        found = {"M": {}, "D": {}, "K": {}}
+        parts, factor = [self._steady, more or {}], speed
         if np.ndim(speed):
             factor = speed[:, None, None]
-        found = {"M": {}, "D": {}, "K": {}}
-        parts = [self._steady, more or {}]
-        for element, U in zip(self.elements, self.motions, strict=True):
-            if element.varies:
-                parts.append(element.powers(next(rest), U, self.turns))
+        for one, U in zip(self.elements, self.motions, strict=True):
+            if one.varies:
+                parts.append(one.powers(one.matrices(speed, frequency), U, self.turns))
         for (name, n, power), X in (item for part in parts for item in part.items()):
             add(found[name], {n: X}, factor**power if power else None)
         if np.ndim(speed):
             for name in "DK":
-                shape = len(speed), k, k
+                shape = len(speed), self.size, self.size
                 found[name] = {n: np.broadcast_to(X, shape) for n, X in found[name].items()}
         D, K = without_rounding(found["D"]), without_rounding(found["K"])
         return PeriodicSystem(speed, found["M"][0], D, K, self._H)
+
+    def at_points(self, speeds: np.ndarray, coefficients: Sequence) -> PeriodicSystem:
+        """Return the equations at points, stacked, each with coefficients of its elements.
+
+        `coefficients` are :attr:`Element.matrices` of each, as stacks over the points.
+        """
+        given = zip(self.elements, coefficients, strict=True)
+        varying = (replace(one, varies=True, matrices=lambda *_, X=X: X) for one, X in given)
+        return replace(self, elements=tuple(varying)).system(speeds)
 
     @cached_property
     def _H(self) -> list[tuple[float, np.ndarray]]:

@@ -22,11 +22,7 @@ from exudyn_rotor.calls import kept
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import Terms, others, turned
 from exudyn_rotor.linear.model.spin import Spin, spin_of
-from exudyn_rotor.linear.model.turning import (
-    Turning,
-    interface_motion,
-    turning_of,
-)
+from exudyn_rotor.linear.model.turning import Turning, interface_motion, turning_of
 from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.rotating_axes import axes_of
@@ -52,8 +48,6 @@ class RotorAlone:
     Q : ndarray, shape (n, k)
         Columns of the reduced rotor by these coordinates.
     turning : Turning
-    whole : Turning
-        Of all columns of the reduced rotor, halves of pairs among them.
     spin : Spin or None
         The spin as a coordinate.
     """
@@ -64,37 +58,30 @@ class RotorAlone:
     level: str
     Q: np.ndarray
     turning: Turning
-    whole: Turning
     spin: Spin | None
 
     @property
     def has_halves(self) -> bool:
         """Whether the number of modes has cut pairs in halves."""
-        return bool(self.whole.halves.shape[1])
+        return bool(np.any(self.turning.halves))
 
     @cached_property
-    def complete_up_to(self) -> float:
-        """Frequency of the lowest half of a pair [rad/s]; infinity where there is none."""
-        halves = self.whole.halves
-        squares = np.linalg.eigvalsh(halves.T @ self.rotor.invariants.K @ halves)
-        return float(np.sqrt(max(squares.min(), 0.0))) if squares.size else np.inf
+    def without_halves(self) -> RotorAlone:
+        """The rotor without halves of pairs, which no mean over a turn can have."""
+        if not self.has_halves:
+            return self
+        Q = others(self.turning.T[:, self.turning.halves].real)
+        return self.within(Q[:, np.argsort(np.abs(Q).argmax(axis=0), kind="stable")])
 
     @kept
     def unevenness(self, places: tuple[str, ...]) -> float:
-        """Return the unevenness of the rotor and of the places that something acts on.
+        """Return the largest share of the rotor, and of the motion of interfaces, not round.
 
-        Of slow motions: the largest share of stiffness, centrifugal matrix and flexibility.
+        Of the interfaces that something acts on, or of all.
         """
-        shares = [self.turning.matrix_share(X) for X in (self.invariants.K, self.terms.C_hat)]
-        for name in places:
-            shares.append(self.turning.place_share(self.motion(name)))
-            shares.append(self.whole.halves_share_at(interface_motion(self.rotor, name)))
-        return max(shares) if places else max(*shares, self.whole.halves_share)
-
-    @kept
-    def motion(self, name: str) -> np.ndarray:
-        """Return the motion (6, k) of an interface along (n1, n2, e) in the rotor frame."""
-        return interface_motion(self.rotor, name) @ self.Q
+        places = places or self.rotor.interfaces
+        moved = [interface_motion(self.rotor, name) @ self.Q for name in places]
+        return self.turning.unevenness((self.invariants.K, self.terms.C_hat), moved)
 
     def within(self, V: np.ndarray) -> RotorAlone:
         """Return the rotor with the motions of an orthonormal basis V (k, r) alone.
@@ -102,44 +89,31 @@ class RotorAlone:
         The basis holds every wave or nothing of it.
         """
         turning, invariants = self.turning.within(V), self.invariants.in_basis(V)
-        return _alone(self.rotor, invariants, self.level, self.Q @ V, turning, self.whole)
+        return _alone(self.rotor, invariants, self.level, self.Q @ V, turning)
 
 
 @kept
 def rotor_alone(
-    rotor: ReducedRotor, stiffening: str, whole: bool, inner: ReducedRotor | None = None
+    rotor: ReducedRotor, stiffening: str, inner: ReducedRotor | None = None
 ) -> RotorAlone:
-    """Return a rotor at a level of stiffening; without halves of pairs unless it is `whole`.
-
-    Its waves are those of an `inner` rotor, all of whose motions it has, and others.
-    """
+    """Return a rotor, or that with the attachments of an `inner` one, at a level of stiffening."""
     origin = rotor.axis.project(rotor.center_of_mass)
     invariants = rotor.invariants.moved(origin - rotor.center_of_mass)
     level = chosen_level(stiffening, invariants.K2 is not None)
     if level != "none":
         invariants = invariants.loaded
-    turning = turning_of(rotor, inner)
-    alone = _alone(rotor, invariants, level, np.eye(rotor.size), turning, turning)
-    if whole or not alone.has_halves:
-        return alone
-    Q = others(turning.halves)
-    return alone.within(Q[:, np.argsort(np.abs(Q).argmax(axis=0), kind="stable")])
+    return _alone(rotor, invariants, level, np.eye(rotor.size), turning_of(rotor, inner))
 
 
 def _alone(
-    rotor: ReducedRotor,
-    invariants: Invariants,
-    level: str,
-    Q: np.ndarray,
-    turning: Turning,
-    whole: Turning,
+    rotor: ReducedRotor, invariants: Invariants, level: str, Q: np.ndarray, turning: Turning
 ) -> RotorAlone:
     """Return a rotor with the invariants in the basis Q."""
     terms = SpinTerms.of(invariants, second_order(invariants, level))
     spin = spin_of(rotor, invariants, Q)
     K4 = None if terms.K4 is None else _unresisted(terms.K4, rotor, spin, Q)
     terms = replace(terms, C_hat=_unresisted(terms.C_hat, rotor, spin, Q), K4=K4)
-    return RotorAlone(rotor, invariants, terms, level, Q, turning, whole, spin)
+    return RotorAlone(rotor, invariants, terms, level, Q, turning, spin)
 
 
 def _unresisted(X: np.ndarray, rotor: ReducedRotor, spin: Spin | None, Q: np.ndarray) -> np.ndarray:
@@ -204,14 +178,11 @@ class RotorBody(Body):
     ratio : float
         r, its speed over Ω.
     spin : Spin or None
-    is_apart : bool
-        Whether the spin is apart from other motions (:mod:`.spin`).
     """
 
     alone: RotorAlone = field(kw_only=True)
     ratio: float = field(kw_only=True)
     spin: Spin | None = field(kw_only=True)
-    is_apart: bool = field(kw_only=True)
 
     @property
     def drift(self) -> float:
@@ -223,10 +194,26 @@ class RotorBody(Body):
         """Whether its matrices are means over a turn."""
         return self.drift != 0.0
 
+    @property
+    def is_apart(self) -> bool:
+        """Whether the spin is apart from other motions (:mod:`.spin`): at any speed."""
+        return self.spin is not None and self.ratio != 0.0
+
+    @cached_property
+    def Q(self) -> np.ndarray:
+        """Columns of the reduced rotor by these coordinates, (n, k)."""
+        return self.spin.about_axis(self.alone.Q) if self.is_apart else self.alone.Q
+
+    def by_wave(self, rows: np.ndarray) -> dict[int, np.ndarray]:
+        """Return rows (…, n) of the reduced rotor by these coordinates, of each wave by its n.
+
+        In the rotor's frame what acts on the wave n turns with ``exp(−inwθ)``.
+        """
+        return self.alone.turning.parts(rows @ self.Q) if self.mean else {0: rows @ self.Q}
+
     def motion(self, name: str) -> np.ndarray:
         """Return the motion of an interface in the rotor's frame, (6, k)."""
-        U = self.alone.motion(name)
-        return self.spin.about_axis(U) if self.is_apart else U
+        return interface_motion(self.alone.rotor, name) @ self.Q
 
     def seen(self, name: str) -> dict[int, np.ndarray]:
         """Return the motion of an interface in axes that stand still, Fourier terms (6, k)."""
@@ -262,37 +249,31 @@ class RotorBody(Body):
 
 
 @kept  # maps and searches make many models of a rotor
-def rotor_body(alone: RotorAlone, name: str, ratio: float, turns: int, is_apart: bool) -> RotorBody:
-    """Return a rotor in axes that turn with `turns` times Ω."""
-    inv, terms, w = alone.invariants, alone.terms, ratio - turns
-    spin = alone.spin
-    if spin is not None and w != 0.0:
-        spin = spin.averaged(alone.turning.still)
-    is_apart = spin is not None and (is_apart or w != 0.0)
-    M, D, K, G, C = inv.M, inv.D, inv.K, terms.G, terms.C_hat
-    if is_apart:
+def rotor_body(alone: RotorAlone, name: str, ratio: float, turns: int) -> RotorBody:
+    """Return a rotor in axes that turn with `turns` times Ω; at rest its ratio is 0."""
+    inv, terms, turning, spin = alone.invariants, alone.terms, alone.turning, alone.spin
+    M, D, K, G, C, K4 = inv.M, inv.D, inv.K, terms.G, terms.C_hat, terms.K4
+    w = ratio - turns
+    wN = w * turning.generator
+    if spin is not None and w:
+        spin = spin.averaged(turning.still)
+    if spin is not None and ratio:
         G = spin.unturned(G)
-    if w == 0.0:
-        powers_D = D, 2.0 * ratio * G
-        powers_K = K, 0.0 * K, -(ratio**2) * C
-        K4, H = terms.K4, () if inv.H is None else ((0, inv.H),)
-    else:
-        turning, N = alone.turning, alone.turning.generator
+    if w:
         M, D, K, G, C = (turning.mean(X) for X in (M, D, K, G, C))
         C = C if spin is None else spin.apart(C)
-        powers_D = D, 2.0 * ratio * G - 2.0 * w * M @ N
-        powers_K = K, -w * D @ N, w**2 * M @ N @ N - 2.0 * ratio * w * G @ N - ratio**2 * C
-        K4 = None if terms.K4 is None else turning.mean(terms.K4)
-        H = _structural(turning, inv.H, w)
+        K4 = None if K4 is None else turning.mean(K4)
+    powers_D = D, 2.0 * ratio * G - 2.0 * M @ wN
+    powers_K = K, -D @ wN, M @ wN @ wN - 2.0 * ratio * G @ wN - ratio**2 * C
     if K4 is not None:
         powers_K = *powers_K, 0.0 * K, ratio**4 * K4
     labels = np.array(alone.rotor.labels)[np.abs(alone.Q).argmax(axis=0)]
     made = RotorBody(
-        name, turns, M, powers_D, powers_K, tuple(labels.tolist()), H,
-        alone=alone, ratio=ratio, spin=spin, is_apart=is_apart,
+        name, turns, M, powers_D, powers_K, tuple(labels.tolist()), _structural(turning, inv.H, w),
+        alone=alone, ratio=ratio, spin=spin,
     )  # fmt: skip
     loads = -axes_of(alone.rotor.axis).T @ inv.S
-    if is_apart:
+    if made.is_apart:
         loads = spin.about_axis(loads)
     return replace(made, base_loads=made.from_outside(loads))
 
@@ -301,7 +282,7 @@ def _structural(turning: Turning, H: np.ndarray | None, w: float) -> tuple:
     """Return structural damping by waves: the wave n has the frequency ν − nwΩ in the rotor."""
     if H is None:
         return ()
-    on_wave = turning.parts(np.eye(len(H)))
+    on_wave = turning.parts(np.eye(len(H))) if w else {0: np.eye(len(H))}
     parts = [(wave * w, P.conj().T @ H @ P) for wave, P in on_wave.items()]
     return tuple((n, part) for n, part in parts if np.any(part))
 
@@ -334,14 +315,3 @@ def foundation_body(foundation: Foundation, rotor: ReducedRotor) -> StandingBody
     return StandingBody(
         "foundation", 0, *matrices, labels, base_loads=loads, points=dict(given.points)
     )
-
-
-def rigid_columns_of(alone: RotorAlone) -> tuple[list[str], np.ndarray]:
-    """Return the names of the rigid motions of a rotor and its coordinates (k, r) in each."""
-    names = list(alone.rotor.rigid)
-    columns = alone.Q.T[:, : len(names)]
-    if alone.spin is not None and ModeKind.SPIN in alone.rotor.rigid_kinds:
-        columns = columns.copy()
-        columns[:, alone.rotor.rigid_kinds.index(ModeKind.SPIN)] = alone.spin.momentum
-    present = np.linalg.norm(columns, axis=0) > 0.5  # a scene may prescribe some
-    return [name for name, yes in zip(names, present, strict=True) if yes], columns[:, present]

@@ -12,6 +12,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
 from exudyn_rotor.calls import user_level
 from exudyn_rotor.foundations.foundation import Foundation
+from exudyn_rotor.linear.model.assembly import rotors_of
 from exudyn_rotor.linear.model.body import EVEN
 from exudyn_rotor.linear.model.linear_model import AXES, ON_FOUNDATION, LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
@@ -32,6 +33,7 @@ Target = LinearModel | ReducedRotor | SolidRotor | RotorTrain | exudyn.MainSyste
 # a SolidRotor up to this many degrees of freedom is taken with all of its modes, a larger one with
 # as many flexible modes as the second number says
 _ALL_MODES, _MODES = 90, 20
+_MESH = 0.05  # unevenness up to which a coarse mesh may be its cause
 
 
 def linear_model(
@@ -100,8 +102,12 @@ def linear_model(
     checks.choice(axes, "axes", AXES)
     if foundation is not None:
         checks.instance(foundation, "foundation", Foundation)
-    if given or foundation is not None:
-        _check_takes_supports(target)
+    is_alone = not isinstance(target, LinearModel | RotorTrain | exudyn.MainSystem)
+    if (given or foundation is not None) and not is_alone:
+        raise ValueError(
+            "supports, foundation: are for a rotor; a scene, a RotorTrain and a linear model have "
+            "their own; leave them out"
+        )
     if isinstance(target, exudyn.MainSystem):
         return _of_scene(target, body, axes)
     if body is not None:
@@ -119,25 +125,10 @@ def linear_model(
             f"exudyn.MainSystem with body=…, got {checks.shown(target)}"
         )
     check_interfaces(given, target.interfaces)
-    rotor, is_full = target, False
-    if isinstance(target, SolidRotor):
-        rotor, is_full = _reduced(target, stiffening)
+    rotor = _reduced(target, stiffening) if isinstance(target, SolidRotor) else target
     if foundation is not None:
         _check_foundation(foundation, rotor, [one.interface for one in given])
-    return LinearModel(
-        {"": rotor}, {"": 1.0}, {"": given}, (), foundation, stiffening, axes, is_full=is_full
-    )
-
-
-def _check_takes_supports(target: Target) -> None:
-    """Refuse supports and foundations beside a target that has its own."""
-    for kind, what in (
-        (exudyn.MainSystem, "a scene has its own connectors and add_foundation"),
-        (RotorTrain, "a RotorTrain has its own"),
-        (LinearModel, "a linear model has its own"),
-    ):
-        if isinstance(target, kind):
-            raise ValueError(f"supports, foundation: are for a rotor; {what}; leave them out")
+    return LinearModel({"": rotor}, {"": 1.0}, {"": given}, (), foundation, stiffening, axes)
 
 
 def _check_foundation(
@@ -155,15 +146,12 @@ def _check_foundation(
             )
 
 
-def _reduced(rotor: SolidRotor, stiffening: str) -> tuple[ReducedRotor, bool]:
-    """Return a solid rotor in modes, and whether these are all that it has."""
+def _reduced(rotor: SolidRotor, stiffening: str) -> ReducedRotor:
+    """Return a solid rotor in all of its modes if these are few."""
     if stiffening == "auto":
         rotor = with_chosen_prestress(rotor, None)
     free = 3 * rotor.node_count
-    if free > _ALL_MODES:
-        return rotor.reduce(_MODES), False
-    identity = np.eye(free)
-    return rotor.reduce(identity), True
+    return rotor.reduce(_MODES if free > _ALL_MODES else np.eye(free))
 
 
 def _of_train(train: RotorTrain, stiffening: str, axes: str) -> LinearModel:
@@ -173,7 +161,7 @@ def _of_train(train: RotorTrain, stiffening: str, axes: str) -> LinearModel:
     }
     return LinearModel(
         rotors, train.ratios, train.supports, train.links, None, stiffening, axes,
-        max(train.largest_unevenness, EVEN), train.driven,
+        max(train.largest_unevenness, EVEN),
     )  # fmt: skip
 
 
@@ -202,8 +190,10 @@ def warn_of_omissions(model: LinearModel, speed: float = 0.0, what: str = "") ->
 
 
 def _warn_of_mesh(model: LinearModel) -> None:
-    """Warn of a mesh that may be too coarse to be round."""
-    if model.may_be_round:
+    """Warn of axes that turn with a rotor that a finer mesh may show to be round."""
+    halves = any(body.alone.has_halves for body in rotors_of(model.bodies))  # `reduce` tells
+    is_taken = model.wanted_axes == "auto" and model.turns and not halves
+    if is_taken and model.largest_unevenness < model.unevenness <= _MESH:
         warnings.warn(
             f"the rotor counts as uneven: {model.unevenness:.1%} of it differs around its axis; "
             "where that is its mesh, make it finer, or average it by axes='inertial'; where it is "

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -42,19 +42,17 @@ from exudyn_rotor.linear.model.body import (
     RotorBody,
     StandingBody,
     foundation_body,
-    rigid_columns_of,
     rotor_alone,
     rotor_body,
 )
 from exudyn_rotor.linear.model.rotor_train import Link
-from exudyn_rotor.linear.model.spin import ARM
 from exudyn_rotor.linear.model.turning import radius_of_gyration
 from exudyn_rotor.reduction.reduced_rotor import ModeKind, ReducedRotor
+from exudyn_rotor.theory.rotating_axes import axes_of
 from exudyn_rotor.theory.stiffening import LEVELS
 
 AXES = ("auto", "inertial", "rotor")
 ON_FOUNDATION = "{} (foundation)"
-_MESH = 0.05  # unevenness up to which a coarse mesh may be its cause
 _HELD = 1e-10  # share of the largest stiffness per unit mass that counts as none
 _ALONE = 1.0 - 1e-6  # share of a free motion's energy in one rigid motion, but for rounding
 
@@ -99,8 +97,6 @@ class LinearModel:
     wanted_axes : {'auto', 'inertial', 'rotor'}
     largest_unevenness : float
         Up to which a rotor counts as round.
-    driven : sequence of str
-        Rotors whose spin follows the speed.
     is_undamped : bool
         Whether damping and the skew part of stiffness are left out, as for critical speeds.
     is_richer : bool
@@ -128,10 +124,8 @@ class LinearModel:
     stiffening_asked: str = "auto"
     wanted_axes: str = "auto"
     largest_unevenness: float = EVEN
-    driven: Sequence[str] = ()
     is_undamped: bool = False
     is_richer: bool = False
-    is_full: bool = field(default=False, kw_only=True)
 
     # ------------------------------------------------------------------ how it is put together
 
@@ -165,34 +159,33 @@ class LinearModel:
         carried = self.foundation is not None and name in self.foundation.points
         return ("foundation", name) if carried else None
 
-    def places(self, name: str) -> tuple[str, ...]:
-        """Return the interfaces of a rotor that elements act on."""
-        ends = (end for element in self._elements[0] for end in element.ends)
-        return tuple(dict.fromkeys(interface for owner, interface in ends if owner == name))
-
     def _alone(self, name: str, whole: bool) -> RotorAlone:
+        """Return a rotor in its own frame; without halves of pairs unless it is `whole`."""
+        alone = self._whole(name)
+        return alone if whole else alone.without_halves
+
+    def _whole(self, name: str) -> RotorAlone:
         inner = self.rotors[name] if self.is_richer else None
-        return rotor_alone(self._used[name], self.stiffening_asked, whole, inner)
+        return rotor_alone(self._used[name], self.stiffening_asked, inner)
 
     @cached_property
     def _own_unevenness(self) -> dict[str, float]:
         """Unevenness of each rotor and of the places that something acts on."""
-        return {name: self._alone(name, False).unevenness(self.places(name)) for name in self._used}
+        ends = dict.fromkeys(end for element in self._elements[0] for end in element.ends)
+        places = {name: tuple(at for owner, at in ends if owner == name) for name in self._used}
+        return {name: self._whole(name).unevenness(at) for name, at in places.items()}
 
     @cached_property
     def turns(self) -> int:
         """Whether the axes of the rotors turn with Ω (1) or stand still (0)."""
         if self.wanted_axes != "auto":
             return int(self.wanted_axes == "rotor")
-        elements = self._elements[0]
-        turning = [element for element in elements if element.turns]
-        if any(u > self.largest_unevenness for u in self._own_unevenness.values()):
-            return 1
-        if not all(each.is_isotropic(0.0) for each in turning):
+        is_uneven = any(u > self.largest_unevenness for u in self._own_unevenness.values())
+        turning = (element for element in self._elements[0] if element.turns)
+        if is_uneven or not all(each.is_isotropic(0.0) for each in turning):
             return 1
         # a basis with halves of pairs is taken whole where that is constant, too
-        halves = any(self._alone(name, False).has_halves for name in self._used)
-        return int(self._is_alike and halves)
+        return int(self._is_alike and any(self._whole(name).has_halves for name in self._used))
 
     @property
     def _is_alike(self) -> bool:
@@ -207,28 +200,29 @@ class LinearModel:
         """Axes in which the equations are: 'inertial' or 'rotor'."""
         return AXES[1 + self.turns]
 
-    def _assembled(self, turns: int, at_rest: bool = False, kind: str = "") -> Assembly:
-        elements, own = self._elements_for(0 if at_rest else turns, kind)
+    def _assembled(self, at_rest: bool = False, kind: str = "") -> Assembly:
+        turns = 0 if at_rest else self.turns
+        elements, own = self._elements_for(turns, kind)
         if not at_rest:
             for element in elements:
                 element.check_axes(turns)
-        bodies = (*self._bodies(turns, at_rest), *own)
-        return Assembly(bodies, tuple(elements), 0 if at_rest else turns)
+        return Assembly((*self._bodies(turns, at_rest), *own), tuple(elements), turns)
 
     def _bodies(self, turns: int, at_rest: bool) -> list[RotorBody | StandingBody]:
         """Return rotors and what stands beside them."""
         bodies = []
-        for name in self._used:
-            ratio = self.ratios[name]
+        for name, ratio in self.ratios.items():
             whole = self.turns == 1 and ratio == 1.0
-            alone = self._alone(name, whole)
-            if at_rest:
-                bodies.append(rotor_body(alone, name, 0.0, 0, False))
-                continue
-            if ratio != turns and not whole:
-                self._check_round(name)
-            is_apart = not self._holds_spin(name, alone)
-            bodies.append(rotor_body(alone, name, ratio, turns, is_apart))
+            alone, uneven = self._alone(name, whole), self._own_unevenness[name]
+            is_refused = len(self._used) > 1 and uneven > self.largest_unevenness
+            if is_refused and not (whole or at_rest):
+                raise ValueError(
+                    f"rotors[{name!r}]: its unevenness is {uneven:.2g}, and it turns with {ratio:g}"
+                    " times the speed of the analysis; give a finer mesh, a number of modes that "
+                    "leaves no pair of bending modes in halves, a larger largest_unevenness=…, or "
+                    f"train.relative_to({name!r})"
+                )
+            bodies.append(rotor_body(alone, name, 0.0 if at_rest else ratio, turns))
         return bodies + self._standing_bodies
 
     @cached_property
@@ -237,36 +231,13 @@ class LinearModel:
             return []
         return [foundation_body(self.foundation, next(iter(self._used.values())))]
 
-    def _check_round(self, name: str) -> None:
-        uneven = self._own_unevenness[name]
-        if uneven > self.largest_unevenness and len(self._used) > 1:
-            raise ValueError(
-                f"rotors[{name!r}]: its unevenness is {uneven:.2g}, and it turns with "
-                f"{self.ratios[name]:g} times the speed of the analysis; give a finer mesh, a "
-                "number of modes that leaves no pair of bending modes in halves, a larger "
-                f"largest_unevenness=…, or train.relative_to({name!r})"
-            )
-
-    def _holds_spin(self, name: str, alone: RotorAlone) -> bool:
-        """Return whether springs that turn with a rotor hold its spin."""
-        if alone.spin is None:
-            return False
-        for element in self._elements[0]:
-            if element.turns and element.ends[0][0] == name:
-                turned_by = alone.motion(element.ends[0][1]) @ alone.spin.turn
-                K, _ = element.matrices(0.0)
-                arm = np.abs(turned_by[:2]).max() ** 2 * alone.invariants.mass > ARM
-                if np.any(K[5]) or (arm and turned_by @ K @ turned_by != 0.0):
-                    return True
-        return False
-
     @cached_property
     def _running(self) -> Assembly:
-        return self._assembled(self.turns)
+        return self._assembled()
 
     @cached_property
     def _at_rest(self) -> Assembly:
-        return self._assembled(self.turns, at_rest=True)
+        return self._assembled(at_rest=True)
 
     def assembly(self, speed: float) -> Assembly:
         """Return bodies and elements as they are at a speed [rad/s]."""
@@ -304,39 +275,32 @@ class LinearModel:
             Where there are equations at none of the speeds.
         """
         speeds = np.asarray(speeds, dtype=float)
-        parts, refused = [], {}
-        for places in (np.flatnonzero(speeds), np.flatnonzero(speeds == 0.0)):
-            if places.size:
-                rates = None if frequencies is None else np.asarray(frequencies)[places]
-                part, errors = self.systems(speeds[places], rates)
-                refused |= {int(places[i]): error for i, error in errors.items()}
-                if part is not None:
-                    parts.append((np.delete(places, list(errors)), part))
+        stack, refused = self.systems(
+            speeds, np.abs(speeds) if frequencies is None else frequencies
+        )
         lost = [(f"{speeds[i]:.5g}", refused[i]) for i in sorted(refused)]
         warn_of_refused(lost, len(speeds), " rad/s")
-        return spread(speeds, parts)
+        return stack
 
     def systems(
-        self, speeds: np.ndarray, frequencies: np.ndarray | None
+        self, speeds: np.ndarray, frequencies: np.ndarray
     ) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
-        """Return the stack at speeds (s,), all zero or none, and why there are none at some."""
-        if self._is_list:
-            try:
-                added = self._added(speeds[0])
-                return self.assembly(speeds[0]).system(speeds, frequencies, added), {}
-            except NO_EQUATIONS:
-                pass  # one by one, then
-        found, refused = {}, {}
-        rates = [None] * len(speeds) if frequencies is None else frequencies.tolist()
-        for place in np.argsort(-np.abs(speeds), kind="stable").tolist():  # films carry more there
-            try:
-                found[place] = self.coefficients(float(speeds[place]), rates[place])
-            except NO_EQUATIONS as error:
-                refused[place] = error
-        if not found:
-            return None, refused
-        known = sorted(found)
-        return self.at_points(speeds[known], [found[place] for place in known]), refused
+        """Return the stack at speeds (s,), None where all are refused, and why some are."""
+        parts, refused = [], {}
+        for at in (np.flatnonzero(speeds), np.flatnonzero(speeds == 0.0)):
+            if at.size and self._is_list:
+                assembly, added = self.assembly(speeds[at[0]]), self._added(speeds[at[0]])
+                try:
+                    parts.append((at, assembly.system(speeds[at], frequencies[at], added)))
+                    continue
+                except NO_EQUATIONS:
+                    pass  # one by one, then
+            for i in sorted(at.tolist(), key=lambda i: -abs(speeds[i])):  # films carry more there
+                try:
+                    parts.append((i, self.at(speeds[i], frequencies[i])))
+                except NO_EQUATIONS as error:
+                    refused[i] = error
+        return spread(speeds, parts) if parts else None, refused
 
     @property
     def pattern(self) -> tuple:
@@ -346,10 +310,10 @@ class LinearModel:
             for each in self.supports.values()
             for one in each
         ]
-        parts = (*self.rotors.values(), *self.links, self.foundation)
-        rest = self.ratios.values(), self.driven, (self.stiffening_asked, self.wanted_axes)
-        kind = self.largest_unevenness, self.is_undamped, self.is_richer, self.is_full
-        return *given, *map(id, parts), *map(tuple, rest), kind
+        parts = *self.rotors.values(), *self.links, self.foundation
+        rest = *self.ratios.values(), self.stiffening_asked, self.wanted_axes
+        kind = self.largest_unevenness, self.is_undamped, self.is_richer
+        return *given, *map(id, parts), *rest, *kind
 
     def coefficients(self, speed: float, frequency: float | None = None) -> list:
         """Return what :meth:`at_points` needs of a model at a speed, as :meth:`at` [rad/s].
@@ -359,7 +323,7 @@ class LinearModel:
         NoCoefficientsError
             As :meth:`at`.
         """
-        return [element.coefficients(speed, frequency) for element in self._elements[0]]
+        return [element.matrices(speed, frequency) for element in self._elements[0]]
 
     def at_points(self, speeds: np.ndarray, coefficients: Sequence) -> PeriodicSystem:
         """Return the equations of models of one :attr:`pattern` at points, as one stack.
@@ -449,6 +413,12 @@ class LinearModel:
         """Return the model whose critical speeds are those without damping."""
         return replace(self, is_undamped=True)
 
+    @property
+    def is_full(self) -> bool:
+        """Whether the bases of its rotors leave nothing out that is known of."""
+        found = [(rotor.size, rotor.with_attachments) for rotor in self.rotors.values()]
+        return all(finer is not None and finer.size == size for size, finer in found)
+
     @cached_property
     def richer(self) -> LinearModel | None:
         """The model with the shapes that the bases of its rotors lack; None if not known."""
@@ -467,22 +437,6 @@ class LinearModel:
     def unevenness(self) -> float:
         """Largest share of a rotor that differs around its axis, averaged or not."""
         return max(self._own_unevenness.values())
-
-    @property
-    def may_be_round(self) -> bool:
-        """Whether the axes turn with a rotor that a finer mesh may show to be round."""
-        cut = any(self._alone(name, False).has_halves for name in self._used)  # told by `reduce`
-        limit, turns = self.largest_unevenness, self.wanted_axes == "auto" and self.turns
-        return bool(turns) and limit < self.unevenness <= _MESH and not cut
-
-    @cached_property
-    def complete_up_to(self) -> float:
-        """Frequency of the lowest pair of which the basis holds one half alone [rad/s].
-
-        Such a half is left out of a round rotor; infinity where there is none.
-        """
-        averaged = [b.alone for b in rotors_of(self.bodies) if b.mean]
-        return min((alone.complete_up_to for alone in averaged), default=np.inf)
 
     @property
     def stiffening(self) -> str:
@@ -591,10 +545,7 @@ class LinearModel:
         rows = rotor.shapes.matrix[3 * number : 3 * number + 3]
         if self.is_richer:  # the shapes that are added have no motion of nodes
             rows = rows @ rotor.in_attached.T
-        rows = rows @ body.alone.Q
-        rows = np.column_stack([rotor.axis.plane, rotor.axis.direction]).T @ rows
-        if body.is_apart:
-            rows = body.spin.about_axis(rows)
+        rows = axes_of(rotor.axis).T @ rows @ body.Q
         rows = np.vstack([rows, 0.0 * rows])
         return assembly.wide(body.from_outside(rows), assembly.slices[0])
 
@@ -624,7 +575,7 @@ class LinearModel:
     @cached_property
     def _held_at_rest(self) -> tuple[Assembly, np.ndarray]:
         """Bodies at rest without own coordinates, and the stiffness of what holds them."""
-        assembly = self._assembled(self.turns, at_rest=True, kind="static")
+        assembly = self._assembled(at_rest=True, kind="static")
         K = np.zeros((assembly.size, assembly.size))
         for element, U in zip(assembly.elements, assembly.motions, strict=True):
             U = sum(U.values()).real
@@ -638,12 +589,18 @@ class LinearModel:
         names, columns = [], []
         for body, place in zip(assembly.bodies, assembly.slices, strict=True):
             if isinstance(body, RotorBody):
-                own, rigid = rigid_columns_of(body.alone)
                 prefix = f"{body.name}: " if len(self._used) > 1 else ""
-                names += [prefix + name for name in own]
-                columns.append(np.zeros((assembly.size, len(own))))
-                columns[-1][place] = rigid
-        return _named_free(names, np.hstack(columns), K)
+                for name, motion in zip(body.alone.rotor.rigid, body.alone.Q, strict=False):
+                    if np.linalg.norm(motion) > 0.5:  # a scene may prescribe it
+                        names.append(prefix + name)
+                        columns.append(np.zeros(assembly.size))
+                        columns[-1][place] = motion
+        free = _unheld(np.reshape(columns, (-1, assembly.size)).T, K)
+        share = np.sum(free**2, axis=1)
+        alone = [name for name, s in zip(names, share, strict=True) if s > _ALONE]
+        partly = [name for name, s in zip(names, share, strict=True) if 1.0 - _ALONE < s <= _ALONE]
+        combination = "combination of " + ", ".join(partly)
+        return (*alone, *(combination,) * (free.shape[1] - len(alone)))
 
     @cached_property
     def _neutral(self) -> tuple[np.ndarray, np.ndarray]:
@@ -656,14 +613,15 @@ class LinearModel:
         for body, place in zip(self.bodies, assembly.slices, strict=False):
             if not isinstance(body, RotorBody):
                 continue
-            wide = np.zeros((2, self.size))
             if ModeKind.AXIAL in body.alone.rotor.rigid_kinds:
-                wide[:, place] = body.alone.Q[body.alone.rotor.rigid_kinds.index(ModeKind.AXIAL)]
-                shifts.append(wide.copy())
-            if body.spin is not None and (body.is_apart or len(self._used) > 1):
-                wide[:, place] = body.spin.turn, body.spin.momentum
-                spins.append(wide)
-        return tuple(_unheld(np.array(X).reshape(-1, 2, self.size), K) for X in (shifts, spins))
+                shifts.append(np.zeros((2, self.size)))
+                along = body.alone.Q[body.alone.rotor.rigid_kinds.index(ModeKind.AXIAL)]
+                shifts[-1][:, place] = along
+            if body.spin is not None:
+                spins.append(np.zeros((2, self.size)))
+                spins[-1][:, place] = body.spin.turn, body.spin.momentum
+        pairs = [np.reshape(X, (-1, 2, self.size)).transpose(1, 2, 0) for X in (shifts, spins)]
+        return tuple(each @ _unheld(each[0, : len(K)], K) for each in pairs)
 
     @property
     def free_spins(self) -> np.ndarray:
@@ -678,12 +636,13 @@ class LinearModel:
     @cached_property
     def held_basis(self) -> np.ndarray | None:
         """Motions without a free spin as orthonormal columns; None where no spin is free."""
-        return beside(self.free_spins)
+        return others(self.free_spins) if self.free_spins.shape[1] else None
 
     @cached_property
     def moving_basis(self) -> np.ndarray | None:
         """Motions without :attr:`neutral_motions` as orthonormal columns; None for all."""
-        return beside(np.hstack([momenta for _, momenta in self._neutral]))
+        momenta = np.hstack([momenta for _, momenta in self._neutral])
+        return others(momenta) if momenta.shape[1] else None
 
     @cached_property
     def for_responses(self) -> LinearModel:
@@ -725,26 +684,8 @@ def warn_of_refused(refused: Sequence[tuple[str, Exception]], count: int, unit: 
         )
 
 
-def _unheld(pairs: np.ndarray, K: np.ndarray) -> np.ndarray:
-    """Return what a stiffness (r, r) of the first coordinates leaves free, of pairs (f, 2, k)."""
-    both = pairs.transpose(1, 2, 0)
-    S = both[0, : len(K)]
-    _, values, combined = np.linalg.svd(S.T @ K @ S)
+def _unheld(columns: np.ndarray, K: np.ndarray) -> np.ndarray:
+    """Return which combinations (f, r) of motions (k, f) a stiffness (k, k) leaves free."""
+    _, values, combined = np.linalg.svd(columns.T @ K @ columns)
     most = max(np.abs(np.diag(K)).max(initial=0.0), 1e-300)
-    return both @ combined[values <= _HELD * most].T
-
-
-def beside(momenta: np.ndarray) -> np.ndarray | None:
-    """Return motions orthogonal to others, coordinates kept where they can be; None for all."""
-    return others(momenta) if momenta.shape[1] else None
-
-
-def _named_free(names: Sequence[str], columns: np.ndarray, K: np.ndarray) -> tuple[str, ...]:
-    """Name the rigid motions that a stiffness leaves free; columns have unit mass."""
-    _, values, vectors = np.linalg.svd(columns.T @ K @ columns)
-    free = vectors[values <= _HELD * values.max(initial=0.0)].T
-    share = np.sum(free**2, axis=1)
-    alone = [name for name, s in zip(names, share, strict=True) if s > _ALONE]
-    partly = [name for name, s in zip(names, share, strict=True) if 1.0 - _ALONE < s <= _ALONE]
-    combination = "combination of " + ", ".join(partly)
-    return (*alone, *(combination,) * (free.shape[1] - len(alone)))
+    return combined[values <= _HELD * most].T

@@ -136,8 +136,7 @@ class RotorTrain:
     Raises
     ------
     TypeError, ValueError
-        For unknown names and bad numbers, and for gears of other ratios. Analyses refuse rotors
-        with structural damping or with supports off the axis that hold the spin, and rotors,
+        For unknown names and bad numbers, and for gears of other ratios. Analyses refuse rotors,
         supports and links that are uneven where the equations do not repeat with the angle of Ω.
 
     Notes
@@ -193,15 +192,9 @@ class RotorTrain:
         if uneven is None:
             uneven = EVEN if len(rotors) == 1 else _EVEN_ENOUGH
         uneven = checks.number(uneven, "largest_unevenness", least=0.0, most=1.0)
-        for name, value in {
-            "rotors": checks.read_only_mapping(rotors),
-            "ratios": checks.read_only_mapping(ratios),
-            "supports": checks.read_only_mapping(supports),
-            "links": links,
-            "largest_unevenness": uneven,
-            "driven": driven,
-        }.items():
-            object.__setattr__(self, name, value)
+        named = {"rotors": rotors, "ratios": ratios, "supports": supports}
+        checks.keep(self, **{name: checks.read_only_mapping(each) for name, each in named.items()})
+        checks.keep(self, links=links, largest_unevenness=uneven, driven=driven)
 
     def relative_to(self, rotor: str) -> RotorTrain:
         """Return the train for analyses over the speed of one of its rotors, whose ratio is 1.

@@ -11,8 +11,8 @@ The deviation φ of the spin angle from Ωt is a rigid rotation. One law holds i
   coupling of spin and lateral motion by an eccentric centre of mass, and by products of inertia,
   is left out: frequencies err by ``m e²/Θ`` and ``J²/(I_t Θ)`` at most, and lateral motion is that
   of a rotor at constant speed.
-- What holds the spin, a torsion spring that stands still or a gear, acts on it as on any motion.
-  Springs that turn with the rotor, off its axis, hold it with all of their forces.
+- What holds the spin, a torsion spring that stands still or turns, a gear, or springs on an arm off
+  the axis, acts on it as on any motion.
 - Where an analysis holds a free spin at θ = Ωt, as stability and unbalance response do, other
   motions have no mean rotation about the axis.
 """

@@ -18,6 +18,7 @@ little: their mean over a turn is the round part, and the rest is the unevenness
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,7 +35,7 @@ ACROSS = np.eye(3)[:, :2]  # a pair along (n1, n2) as a vector
 HIGHEST = 4  # largest |n| that is looked at
 # how many T_q(z) with each of 1, r², r⁴: shafts bend in many waves, discs have nodal circles
 _AXIAL_TERMS = (10, 6, 2)
-# share of a field that others must leave over to count as new: what less is left tells noise
+# share of a field that others of its wave must leave over to count as new: what is less tells noise
 _NEW_SHARE = 3e-2
 # share of a field, squared, that those of lower waves must leave over in the points: of less the
 # fit makes large fields of two waves that cancel each other
@@ -135,9 +136,9 @@ def wave_amplitudes(
 def _wave_fields(points: np.ndarray, highest: int) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Return cosines, then sines of the fields of the waves ``exp(ilα)`` at points, (s, p) per l.
 
-    Those of ``r^|l| (1, r², r⁴) T_q(z) exp(ilα)`` that the waves of lower |l| do not hold yet, and
-    their combinations (p, q) that the points tell from these: where the points are too few to tell
-    waves apart, as on the edges of a bar, they are of low |l|.
+    Those of ``r^|l| (1, r², r⁴) T_q(z) exp(ilα)``, and their combinations (p, q) that the points
+    tell from the waves of lower |l|: where the points are too few to tell waves apart, as on the
+    edges of a bar, they are of low |l|.
     """
     x, y, z = points.T
     radius = np.hypot(x, y)
@@ -155,11 +156,7 @@ def _wave_fields(points: np.ndarray, highest: int) -> tuple[list[np.ndarray], li
     turning = np.vander(scaled * np.exp(1j * np.arctan2(y, x)), highest + 1, increasing=True)
     spaces, told, known = [], [], np.zeros((len(points), 0))
     for count in range(highest + 1):
-        fields = turning[:, count, None] * steady
-        rest = fields - known @ (known.T @ fields)
-        lengths, directions = np.linalg.eigh(rest.conj().T @ rest)
-        least = max((_NEW_SHARE * np.linalg.norm(fields, 2)) ** 2, 1e-300)
-        fields = np.linalg.qr(fields @ directions[:, lengths > least])[0]
+        fields = la.orth(turning[:, count, None] * steady, rcond=_NEW_SHARE)
         # both senses at once, so that neither is preferred: one has the conjugate fields
         both = np.sqrt(2.0) * np.hstack([fields.real, fields.imag]) if count else fields.real
         spaces.append(both)
@@ -188,19 +185,16 @@ class Turning:
         Waves as columns, unitary: the coordinates are mass-orthonormal.
     waves : ndarray of int, shape (k,)
         Their n, one of −1, 0, 1.
-    weights : ndarray, shape (k,)
-        ``1/(1 + ω²/ω₁²)`` of the frequencies at rest and the lowest flexible one: how much a wave
-        counts in slow motions.
-    flexibility : ndarray, shape (k,)
-        ``1/ω²`` of elastic motions, 0 of rigid ones [s²].
-    halves : ndarray, shape (k, h)
-        Motions that are half of a pair, whose other half the number of modes has cut off.
+    frequencies : ndarray, shape (k,)
+        Their frequencies at rest [rad/s]; 0 of rigid motions.
+    halves : ndarray of bool, shape (k,)
+        Which are half of a lateral pair, whose other half the number of modes has cut off. They
+        have n = 0, and are real.
     """
 
     T: np.ndarray
     waves: np.ndarray
-    weights: np.ndarray
-    flexibility: np.ndarray
+    frequencies: np.ndarray
     halves: np.ndarray
 
     @property
@@ -214,9 +208,8 @@ class Turning:
         The basis holds every wave or nothing of it.
         """
         T = basis.T @ self.T
-        kept = np.linalg.norm(T, axis=0) > 0.5
-        given = self.waves[kept], self.weights[kept], self.flexibility[kept]
-        return Turning(T[:, kept], *given, np.zeros((len(T), 0)))
+        held = np.linalg.norm(T, axis=0) > 0.5
+        return Turning(T[:, held], self.waves[held], self.frequencies[held], self.halves[held])
 
     @property
     def still(self) -> np.ndarray:
@@ -245,170 +238,112 @@ class Turning:
             wave: (rows @ self.T) * (self.waves == wave) @ self.T.conj().T for wave in (-1, 0, 1)
         }
 
-    def matrix_share(self, X: np.ndarray) -> float:
-        """Return the share of a matrix that is not round, in slow motions."""
+    def unevenness(self, matrices: Sequence[np.ndarray], places: Sequence[np.ndarray]) -> float:
+        """Return the largest share of matrices (k, k) and places (6, k) that is not round.
 
-        def size(Y: np.ndarray) -> float:
-            return np.linalg.norm(self.weights[:, None] * (self.T.T @ Y @ self.T) * self.weights)
+        In slow motions: waves count by ``1/(1 + ω²/ω₁²)`` in the matrices, halves of pairs left
+        out, and by their flexibility ``1/ω²`` in the lateral motion of places. Without places the
+        share of halves of pairs counts.
+        """
+        squares = self.frequencies**2
+        elastic = squares > 0.0
+        flexibility = np.divide(1.0, squares, out=np.zeros(len(squares)), where=elastic)
+        slow = np.where(self.halves, 0.0, 1.0 / (1.0 + squares * flexibility.max(initial=0.0)))
 
-        whole = size(X)
-        return float(size(X - self.mean(X)) / whole) if whole else 0.0
+        def size(X: np.ndarray) -> float:
+            return np.linalg.norm(slow[:, None] * (self.T.T @ X @ self.T) * slow)
 
-    def place_share(self, U: np.ndarray) -> float:
-        """Return the share of the lateral flexibility of a place (6, k) that is not round."""
-        V = U[:2] - self.motion(U[:3])[0][:2]
-        return self._flexible(V) / (self._flexible(U[:2]) or 1.0)
+        def flexible(U: np.ndarray) -> float:
+            return np.linalg.norm(U @ self.T * np.sqrt(flexibility)) ** 2
 
-    @property
-    def _in_halves(self) -> np.ndarray:
-        """Which of the waves are halves of pairs, (k,)."""
-        return np.linalg.norm(self.halves.T @ self.T, axis=0) > 0.5
-
-    @property
-    def halves_share(self) -> float:
-        """Share of halves of pairs in all slow lateral motions."""
-        slow = np.where(self._in_halves | (self.waves != 0), self.weights**2, 0.0)
-        return float(slow[self._in_halves].sum() / (slow.sum() or 1.0))
-
-    def halves_share_at(self, U: np.ndarray) -> float:
-        """Return the share of the lateral flexibility of a place (6, k) by halves of pairs."""
-        return self._flexible(U[:2], self._in_halves) / (self._flexible(U[:2]) or 1.0)
-
-    def _flexible(self, U: np.ndarray, chosen: np.ndarray | slice = slice(None)) -> float:
-        return float(np.linalg.norm((U @ self.T * np.sqrt(self.flexibility))[:, chosen]) ** 2)
+        shares = [size(X - self.mean(X)) / (size(X) or 1.0) for X in matrices]
+        if not places:
+            shares.append(flexibility[self.halves].sum() / (flexibility.sum() or 1.0))
+        for U in places:
+            rest = (U - self.motion(U)[0])[:2]
+            shares.append(flexible(rest) / (flexible(U[:2]) or 1.0))
+        return float(max(shares))
 
 
 @kept
 def turning_of(rotor: ReducedRotor, inner: ReducedRotor | None = None) -> Turning:
-    """Find the waves of a reduced rotor from its modes at rest.
+    """Find the waves of a reduced rotor: those of its rigid motions, and of its modes at rest.
 
     Of each group of nearly equal frequencies the combinations with the most of one lateral wave,
-    and the least of the opposite one, are a pair. A rotor with all motions of an `inner` one has
-    the waves of that, and waves of the rest.
+    and the least of the opposite one, are a pair. The attachments of an `inner` rotor have no mode
+    shapes: with them a rotor has the waves of that one, and those that interfaces tell of the rest.
     """
+    known = _rigid_waves(rotor) if inner is None else turning_of(inner)
+    T, whole = known.T, ~known.halves
+    rest, omega = np.eye(rotor.size)[:, T.shape[1] :], rotor.frequencies[T.shape[1] :]
     if inner is not None:
-        return _beyond(turning_of(inner), inner.in_attached, rotor)
-    omega, kinds = rotor.frequencies.copy(), rotor.rigid_kinds
-    size, rigid = rotor.size, len(rotor.rigid_kinds)
-    omega[:rigid] = 0.0
-    first = omega[omega > 0.0].min(initial=np.inf)
-    weights = 1.0 / (1.0 + (omega / first) ** 2)
-    flexibility = np.divide(1.0, omega**2, out=np.zeros(size), where=omega > 0.0)
-    seen, lateral = _energies(rotor)
-    floor = _SEEN * seen.diagonal().max(initial=0.0) or 1.0
-    # the unnamed free motions of a grounded rotor are one group
-    start = 0 if ModeKind.FREE in kinds else rigid
-    T, waves, halves = _of_groups(omega, start, *lateral, seen + floor * np.eye(size))
+        T = inner.in_attached @ T[:, whole]
+        rest = la.null_space(np.vstack([T.real.T, T.imag.T]))
+        squares, modes = np.linalg.eigh(rest.T @ rotor.invariants.K @ rest)
+        rest, omega = rest @ modes, np.sqrt(np.maximum(squares, 0.0))
+    size, forms = len(omega), [rest.T @ form @ rest for form in _energies(rotor)]
+    waves, halves = np.zeros(size, dtype=int), np.zeros(size, dtype=bool)
+    found, order = np.eye(size, dtype=complex), np.argsort(omega, kind="stable")
+    apart = np.diff(omega[order]) > _GROUP * omega[order[1:]]
+    for group in np.split(order, np.flatnonzero(apart) + 1) if size else ():
+        at = np.ix_(group, group)
+        found[at], waves[group], halves[group] = _pairs(*(form[at] for form in forms))
+    return Turning(
+        np.hstack([T, rest @ found]),
+        np.r_[known.waves[whole], waves],
+        np.r_[known.frequencies[whole], omega],
+        np.r_[known.halves[whole], halves],
+    )
+
+
+def _rigid_waves(rotor: ReducedRotor) -> Turning:
+    """Return the waves of the rigid motions that have names; others count as modes."""
+    kinds = [kind for kind in rotor.rigid_kinds if kind is not ModeKind.FREE]
+    T, waves = np.eye(rotor.size, len(kinds), dtype=complex), np.zeros(len(kinds), dtype=int)
     for pair in _RIGID_PAIRS:
         if set(pair) <= set(kinds):
             columns = [kinds.index(kind) for kind in pair]
             T[np.ix_(columns, columns)], waves[columns] = _PAIR, (1, -1)
-    order = np.argsort(np.abs(T).argmax(axis=0), kind="stable")
-    return Turning(T[:, order], waves[order], weights[order], flexibility[order], halves)
+    return Turning(T, waves, np.zeros(len(kinds)), np.zeros(len(kinds), dtype=bool))
 
 
-def _beyond(known: Turning, columns: np.ndarray, rotor: ReducedRotor) -> Turning:
-    """Return the waves of a rotor of which those of some `columns` (l, k) are `known`.
-
-    The others, and halves of pairs, are told by the motion of interfaces, and by the waves that
-    they are coupled with.
-    """
-    paired = ~known._in_halves
-    waves, weights, flexibility = (
-        each[paired] for each in (known.waves, known.weights, known.flexibility)
-    )
-    T, inv = columns @ known.T[:, paired], rotor.invariants
-    rest = la.null_space(np.vstack([T.real.T, T.imag.T]))
-    squares, modes = np.linalg.eigh(rest.T @ inv.K @ rest)
-    rest = rest @ modes
-    rows = {n: [] for n in (-1, 0, 1)}
-    for name, place in rotor.interfaces.items():
-        U = np.repeat([1.0, place.radius], 3)[:, None] * interface_motion(rotor, name)
-        for n, turn in turning_harmonics(6).items():
-            rows[n].append(turn @ U @ rest)
-    for X in (inv.K, inv.G, inv.C):
-        coupled = T.conj().T @ X @ rest
-        size = np.linalg.norm(T.conj().T @ X @ T) * np.linalg.norm(rest.T @ X @ rest)
-        for n, each in rows.items():
-            each.append(coupled[waves == n] / (np.sqrt(size) or 1.0))
-    forms = {n: sum(R.conj().T @ R for R in each) for n, each in rows.items()}
-    whole = sum(forms.values()).real
-    whole = whole + (_SEEN * np.trace(whole) + 1e-300) * np.eye(len(whole))
-    given = np.sqrt(np.maximum(squares, 0.0)), 0, forms[1], forms[-1], whole
-    found, more, halves = _of_groups(*given)
-    first = flexibility.max(initial=0.0) or 1.0 / squares.min(initial=np.inf)
-    return Turning(
-        np.hstack([T, rest @ found]),
-        np.r_[waves, more],
-        np.r_[weights, 1.0 / (1.0 + squares * first)],
-        np.r_[flexibility, 1.0 / squares],
-        rest @ halves,
-    )
-
-
-def _of_groups(
-    omega: np.ndarray, start: int, forward: np.ndarray, backward: np.ndarray, whole: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return waves (k, k) of modes from `start` on, by groups of nearly equal frequencies.
-
-    With their n, and halves of pairs (k, h).
-    """
-    size, halves = len(omega), [np.zeros((len(omega), 0))]
-    T, waves = np.eye(size, dtype=complex), np.zeros(size, dtype=int)
-    for group in _groups(omega, start):
-        within = np.ix_(group, group)
-        given = forward[within], backward[within], whole[within]
-        T[within], waves[group], half = _pairs(*given)
-        halves.append(np.zeros((size, half.shape[1])))
-        halves[-1][group] = half
-    return T, waves, np.hstack(halves)
-
-
-def _energies(rotor: ReducedRotor) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
-    """Return quadratic forms (k, k): the energy of all waves, and of the two lateral ones.
+def _energies(rotor: ReducedRotor) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the energies of the waves 1 and −1, and of all, as quadratic forms (k, k).
 
     At points of the mesh and, as much again, at the interfaces: interfaces see motions with many
     waves along the axis, which the points do not resolve.
     """
     points, motion = rotor_points(rotor, _POINTS)
-    _orders, amplitudes, _ = wave_amplitudes(points, motion)
-    weight = np.sqrt(len(points) / max(len(rotor.interfaces), 1))
+    orders, amplitudes, _ = wave_amplitudes(points, motion)
+    forms = {n: W.conj().T @ W for n, W in zip(orders.tolist(), amplitudes, strict=True)}
+    weight = len(points) / max(len(rotor.interfaces), 1)
     for name, place in rotor.interfaces.items():
         U = np.repeat([1.0, place.radius], 3)[:, None] * interface_motion(rotor, name)
         for n, turn in turning_harmonics(6).items():  # R_n projects on what turns with n
-            at = HIGHEST + n
-            amplitudes[at] = np.vstack([amplitudes[at], weight * (turn @ U)])
-    forms = [W.conj().T @ W for W in amplitudes]
-    return sum(form.real for form in forms), (forms[HIGHEST + 1], forms[HIGHEST - 1])
-
-
-def _groups(omega: np.ndarray, start: int) -> list[np.ndarray]:
-    """Return the columns from `start` on in groups of nearly equal frequencies."""
-    order = start + np.argsort(omega[start:], kind="stable")
-    apart = np.diff(omega[order]) > _GROUP * omega[order[1:]]
-    groups = np.split(order, np.flatnonzero(apart) + 1)
-    return [group for group in groups if group.size]
+            forms[n] = forms[n] + weight * (turn @ U).conj().T @ (turn @ U)
+    whole = sum(form.real for form in forms.values())
+    floor = _SEEN * whole.diagonal().max(initial=0.0) or 1.0
+    return forms[1], forms[-1], whole + floor * np.eye(rotor.size)
 
 
 def _pairs(
     forward: np.ndarray, backward: np.ndarray, whole: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return waves as orthonormal columns (g, g), their n, and halves of pairs (g, h), real."""
+    """Return waves as orthonormal columns (g, g), their n, and which are halves of pairs.
+
+    By the energies of both lateral waves and of all motion. Waves that are no pair are real.
+    """
     more, columns = la.eigh(forward - backward, whole)
     both = np.einsum("ij,ik,kj->j", columns.conj(), forward + backward, columns).real
     # of half a pair together with another motion both waves are strong
-    F = columns[:, (more > _TURNS) & (more > _PURE * both)][:, ::-1]
+    F = columns[:, (more > _TURNS) & (more > _PURE * both)]
     F = F / np.linalg.norm(F, axis=0)
-    pairs, count = np.hstack([F, F.conj()]), 2 * F.shape[1]
-    span, _, turn = np.linalg.svd(pairs, full_matrices=True)
-    pairs = span[:, :count] @ turn[:count]  # the nearest orthonormal ones, pair by pair
-    rest = np.eye(len(whole)) - (pairs @ pairs.conj().T).real
-    still = np.linalg.eigh(rest)[1][:, count:]
-    within = still.T @ whole @ still
-    share, alone = la.eigh(still.T @ (forward + backward).real @ still, within)
-    half = np.linalg.qr(still @ alone[:, share > _HALF])[0] if still.size else still
-    n = np.r_[np.ones(count // 2), -np.ones(count // 2), np.zeros(len(whole) - count)]
-    if half.shape[1]:  # halves stand by themselves, so that they can be left out
-        others = la.null_space(np.hstack([half.T.conj() @ still]))
-        still = np.hstack([half, still @ others])
-    return np.hstack([pairs, still]), n.astype(int), half
+    pairs = la.polar(np.hstack([F, F.conj()]))[0]  # the nearest orthonormal ones
+    still = la.null_space(np.vstack([F.real.T, F.imag.T]))
+    lateral = still.T @ (forward + backward).real @ still
+    share, alone = la.eigh(lateral, still.T @ whole @ still)
+    # halves stand by themselves, so that they can be left out
+    alone = np.linalg.qr(still @ alone[:, ::-1])[0]
+    n = np.repeat([1, -1, 0], [F.shape[1], F.shape[1], len(share)])
+    halves = np.r_[np.zeros(pairs.shape[1], dtype=bool), share[::-1] > _HALF]
+    return np.hstack([pairs, alone]), n, halves

@@ -376,14 +376,11 @@ class _Standing:
 
 def _by_rotor(scene: LinearScene, body: RotorBody) -> Terms:
     """Return the unknowns that move the rotor by its coordinates, (r, l)."""
-    source, alone = scene.body.selection.source, body.alone
-    Q = alone.Q if len(alone.Q) == source.size else source.in_attached.T @ alone.Q
-    L = scene.of_coordinates(Q.T)[0].T
-    if body.is_apart:
-        L = body.spin.about_axis(L)
-    if not body.mean:
-        return {0: L}
-    return {-n: L @ part for n, part in alone.turning.parts(np.eye(L.shape[1])).items()}
+    source = scene.body.selection.source
+    rows = scene.of_coordinates(np.eye(source.size))[0].T
+    if len(body.Q) != source.size:  # in a richer basis
+        rows = rows @ source.in_attached.T
+    return {-n: part for n, part in body.by_wave(rows).items()}
 
 
 def _follows_load(one: Given) -> bool:
