@@ -38,7 +38,7 @@ def turned(rotor, direction, point=(0.0, 0.0, 0.0)):
     """The same rotor with its length along `direction`, its axis through `point` of the mesh."""
     R = Rotation.align_vectors([direction], [[0.0, 0.0, 1.0]])[0].as_matrix()
     B = np.kron(np.eye(rotor.node_count), R)
-    sets = {name: (face.nodes, face.weights) for name, face in rotor.interfaces.items()}
+    sets = {name: face.nodes for name, face in rotor.interfaces.items()}
     stiffness = B @ rotor.stiffness.toarray() @ B.T
     axis = er.SpinAxis(direction, R @ np.array(point))
     nodes = rotor.nodes @ R.T
