@@ -224,7 +224,7 @@ class Content:
         above = (orders[:, None] + self.shifts).ravel()  # of all waves in all harmonics
         by_wave = energy.sum(axis=1)
         energy = energy.reshape(len(values), len(above), values.shape[1])
-        best = np.argmax(energy, axis=1)
+        best = _strongest(energy, above)
         still = _STATIC * np.abs(speeds) + motions.bounds[:, None]
         seen = nu[:, None, :] + above[:, None] * speeds[:, :, None]
         wave = np.tile(self.waves, len(orders))[:, None]
@@ -350,6 +350,17 @@ def _seen(alone: RotorAlone, mean: bool) -> tuple[list, list[np.ndarray], float]
             if len(rows):
                 waves.append((n, turned, rows))
     return waves, directions, len(points) / alone.invariants.mass
+
+
+def _strongest(energy: np.ndarray, multiples: np.ndarray) -> np.ndarray:
+    """Return which wave (n,) is the strongest one of the strongest frequency, (s, k).
+
+    Waves (s, n, k) of one of the `multiples` (n,) of Ω have one frequency seen from outside.
+    """
+    known, place = np.unique(np.round(multiples, 6), return_inverse=True)
+    alike = (place == np.arange(known.size)[:, None]).astype(float)
+    first = np.argmax(np.round(alike @ energy, _DIGITS), axis=1)
+    return np.argmax(np.where(place[:, None] == first[:, None], energy, -1.0), axis=1)
 
 
 def _of_most(values: np.ndarray, energy: np.ndarray) -> np.ndarray:

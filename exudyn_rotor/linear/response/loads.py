@@ -340,12 +340,10 @@ def total(
 
 def unbalance_load(model: LinearModel, unbalances: Sequence[Unbalance], own: bool) -> Harmonics:
     """Return the harmonics (k,) of the load per Ω² of all unbalances."""
-    if not (unbalances or own):
-        raise ValueError(
-            "no unbalance, so no response: own=False leaves out the rotor's own; give "
-            "unbalances=[Unbalance(…)]"
-        )
     of_rotor = model.unbalance() if own else {0: np.zeros(model.size)}
+    if not unbalances and not any(np.any(force) for force in of_rotor.values()):
+        reason = "the rotor itself is balanced" if own else "own=False leaves out the rotor's own"
+        raise ValueError(f"no unbalance, so no response: {reason}; give unbalances=[Unbalance(…)]")
     return _sum([of_rotor, *(unbalance._harmonics(model, 1.0) for unbalance in unbalances)])
 
 

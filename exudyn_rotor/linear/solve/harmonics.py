@@ -18,8 +18,9 @@ import scipy.linalg as la
 from exudyn_rotor.linear.equations import PeriodicSystem, States
 
 _SIZES = (2, 4, 8, 16)  # harmonics on either side, in steps of the coefficients
-_MOST = 8  # iterations, each of which squares the error
-_ENOUGH = 1e-5  # of |λ| and Ω: the last change
+_FEW = 2  # harmonics with which a motion need not settle
+_MOST = 6  # iterations, each of which squares the error
+_ENOUGH = 1e-10  # of |λ| and Ω: the last change
 _ASIDE = 1e-10  # of |λ| and Ω: how far the shift is from λ, where the equations are singular
 _NONE = 1e-12  # share of the energy: a harmonic that no motion has
 _ROUNDING = 1e-14  # share of a coefficient's singular values
@@ -104,16 +105,20 @@ def with_all_harmonics(
     outside = [energy[: most - n + 1].sum(axis=0) + energy[most + n :].sum(axis=0) for n in _SIZES]
     enough = [*(np.array(outside[:-1]) <= least), np.ones(len(values), dtype=bool)]
     within = np.array(_SIZES)[np.argmax(enough, axis=0)]
+    hopeful = np.ones(len(values), dtype=bool)
+    done = ~hopeful  # a guess is less exact than what is at its edge tells
     for size in _SIZES:
-        waiting = np.flatnonzero((edges > least) & (within <= size))
+        waiting = np.flatnonzero(~done & (within <= size) & hopeful)
         if not waiting.size:
             continue
         inner = slice(most - size, most + size + 1)
         better, shapes, settled = _settled(chain, values[waiting], states[inner][:, :, waiting])
         at = waiting[settled]
+        hopeful[waiting[~settled]] = size <= _FEW
         values[at], states[:, :, at] = better[settled], 0.0
         states[inner, :, at] = shapes[:, :, settled]
         edges[at] = edge_energy(shapes[:, :, settled])
+        done[at] = edges[at] <= least
     energy = np.sum(np.abs(states) ** 2, axis=1)
     used = np.flatnonzero(np.any(energy > _NONE * energy.sum(axis=0), axis=1))
     most_used = max(most - used[0], used[-1] - most)

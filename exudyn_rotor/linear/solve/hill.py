@@ -16,8 +16,8 @@ import numpy as np
 from exudyn_rotor.linear.equations import PeriodicSystem, States
 from exudyn_rotor.linear.solve.harmonics import chain_of, edge_energy, with_all_harmonics
 
-_LARGEST = 750  # unknowns of a first guess
-_AROUND = 2  # times the speed: harmonics of the smallest one
+_LARGEST = 600  # unknowns of a first guess
+_AROUND, _HIGHEST = 2, 5  # harmonics of the smallest one; steps on either side of the largest
 SLOW = 20.0  # |λ| over Ω up to which motions are waited for
 _FAST = 30.0  # decay over Ω above which a motion is over before the coefficients change
 _OVER = 3.0  # decay over Ω, and over the own frequency, beyond which nobody looks at a motion
@@ -25,6 +25,7 @@ _OVER = 3.0  # decay over Ω, and over the own frequency, beyond which nobody lo
 # than a tenth of it; and energy that is too much
 _EDGE, _LOST = 10.0, 1e-4
 _COPY, _ALIKE = 1e-6, 0.7  # of pΩ, and of a shape: how near a copy of a motion is
+_AWAY = 100.0  # of pΩ, times the energy at the edge: how far copies of it may be
 
 
 class Exponents(NamedTuple):
@@ -60,21 +61,22 @@ def hill_motions(
     """Return the motions of a system, and whether all are known.
 
     Guesses are the motions `beside`, as those at a speed before, then the eigenvalues of a sum of
-    few harmonics, and of more where motions are missing. Each motion then gets as many harmonics as
-    it has. As many different ones as there are coordinates are all. Fast decays are not waited for.
-    Exponents that do not get there are NaN.
+    few harmonics, and of more where motions are missing. Each motion then gets as many
+    harmonics as it has. As many different ones as there are coordinates are all. Fast motions and
+    decays are not waited for. Exponents that do not get there are NaN.
     """
     k, speed, least = system.size, abs(system.speed), _EDGE * tolerance
     chain = chain_of(system, made)
     for values, states, orders in _guesses(system, made, beside):
         is_sum = orders is not None
         edges = edge_energy(states) if is_sum else np.full(k, np.inf)
+        slow = (np.abs(values) <= SLOW * speed) & (-values.real <= _FAST * speed)
         better, states, orders, edges = with_all_harmonics(chain, values, states, edges, least)
         fast = -better.real > _FAST * speed
-        waited = is_sum & (fast | (np.abs(better) > SLOW * speed))
         chosen = one_of_each_family(better, states, orders, system, made)
         same = np.sum(_is_own(better, system)) == np.sum(_is_own(values, system))
-        is_whole = bool(len(chosen) == k and same and np.all((edges <= least) | waited))
+        known = edges <= np.where(slow, least, _LOST)
+        is_whole = bool(len(chosen) == k and same and np.all(known))
         if is_whole:
             break
     found = (fast | (edges <= _LOST)) & np.isin(np.arange(k), chosen)
@@ -90,14 +92,15 @@ def _guesses(
     k = system.size
     if beside is not None and beside.motions.states.shape[1:] == (2 * k, k):
         yield *_carried(beside, system, made), None
-    size = -(-_AROUND // system.step)
+    # where the speed before has left motions open few harmonics do not suffice
+    size = -(-_AROUND // system.step) + (beside is None)
     while True:
         orders = system.step * np.arange(-size, size + 1)
         values, states = _solved(made, orders, system.speed)
         chosen = one_of_each_family(values, states, orders, system, made)
         yield values[chosen], states[:, :, chosen], orders
         size += 1
-        if 2 * k * (2 * size + 1) > _LARGEST:
+        if 2 * k * (2 * size + 1) > _LARGEST or size > _HIGHEST:
             return
 
 
@@ -154,7 +157,7 @@ def one_of_each_family(
             break
         if not left[i]:
             continue
-        near = (_COPY + edges + edges[i]) * abs(base) + 1e-6 * abs(values[i])
+        near = (_COPY + _AWAY * (edges + edges[i])) * abs(base) + 1e-6 * abs(values[i])
         own = _copies(values, shapes, values[i], shapes[:, :, i], base, near)
         mirrored = shapes[::-1, :, i].conj()
         mirrored = _copies(values, shapes, values[i].conj(), mirrored, base, near)
