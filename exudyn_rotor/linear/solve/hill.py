@@ -74,8 +74,9 @@ def hill_motions(
         better, states, orders, edges = with_all_harmonics(chain, values, states, edges, least)
         fast = -better.real > _FAST * speed
         chosen = one_of_each_family(better, states, orders, system, made)
-        same = np.sum(_is_own(better, system)) == np.sum(_is_own(values, system))
-        known = edges <= np.where(slow, least, _LOST)
+        seen = _looked_at(better, system)
+        same = np.array_equal(_is_own(better, system)[seen], _is_own(values, system)[seen])
+        known = (edges <= np.where(slow, least, _LOST)) | fast | ~seen
         is_whole = bool(len(chosen) == k and same and np.all(known))
         if is_whole:
             break
@@ -121,8 +122,11 @@ def _is_own(values: np.ndarray, system: PeriodicSystem) -> np.ndarray:
 
 def lost_of(values: np.ndarray, system: PeriodicSystem) -> np.ndarray:
     """Return those exponents that an engineer looks at."""
-    looked_at = -values.real <= np.maximum(_OVER * abs(system.speed), np.abs(values.imag))
-    return values[looked_at]
+    return values[_looked_at(values, system)]
+
+
+def _looked_at(values: np.ndarray, system: PeriodicSystem) -> np.ndarray:
+    return -values.real <= np.maximum(_OVER * abs(system.speed), np.abs(values.imag))
 
 
 def shares(states: np.ndarray) -> np.ndarray:
