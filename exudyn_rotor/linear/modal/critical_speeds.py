@@ -41,9 +41,11 @@ if TYPE_CHECKING:
 
 _JUDGED = 6  # critical speeds that count where no largest speed is given
 _ALIKE = 0.5  # likeness of two shapes below which they are not the same motion
+_ERROR = 1e-6  # last change of a critical speed in a richer basis
 # relative distance of the speeds of one motion in the two planes of a rotor that counts as round
 _PLANES = 0.5 * EVEN
 _CURVE = 200  # speeds of a bearing's own curve
+_FILM = 1e-4  # last change of a critical speed on films
 
 
 class _Undamped(ModelResult):
@@ -275,7 +277,7 @@ def _basis_errors(search: Search, found: Motions) -> np.ndarray:
         held = np.any(vectors, axis=1)  # the harmonics that it was found with
         x = vectors[held] @ lifted.T
         try:
-            better, y = stiffness.refined(speed, x, center + found.orders[held])
+            better, y = stiffness.refined(speed, x, center + found.orders[held], _ERROR)
         except NO_EQUATIONS:
             continue
         likeness = abs(np.vdot(x, y)) ** 2 / (np.vdot(x, x) * np.vdot(y, y)).real
@@ -454,7 +456,9 @@ def critical_speed_map(
     failed: list[tuple[str, Exception]] = []
     for row, stiffness in enumerate(tqdm(values, "critical speed map", disable=not progress)):
         model = replace(first, supports={"": _with(kept, names, stiffness)})
-        search = Search(model, order, nodal_diameters, max_speed)
+        # a map takes what a film is within its own smoothness
+        given = order, nodal_diameters, max_speed
+        search = Search(model, *given, 1e-7 if model.table_speeds.size else _FILM)
         try:
             solved.append(collected(search, row in judged))
         except ValueError as error:  # as of a support whose stiffness is negative

@@ -47,9 +47,8 @@ _UNHELD = 1e-12  # rad²/s²: stiffness over inertia where nothing is held
 _NO_INERTIA = 1e-6  # share of the largest inertia
 _BRACKETS = 200  # speeds at which signs of eigenvalues are looked at; half of them for blocks
 _SLOW, _RATIO = 12, 2.0**0.25  # speeds on each side of the first of these, and their ratio
-_FEW, _MOST = 4, 12  # harmonics on each side of the middle one, before and after refinement
-_EDGE = 1e-8  # energy of the last harmonics that is none
-_CLOSE = 1e-6  # last relative change of a speed that is refined
+_FEW, _MORE = 4, (8, 12, 16)  # harmonics on each side of the middle one
+_EDGE, _CLOSE = 1e-10, 1e-4  # energy of the last ones that is none, and a last change of a speed
 _ITERATIONS = 12
 _BESIDE = 0.97  # of a critical speed: from where its slope is told at first
 _STEP = 1e-6  # relative distance of speeds between which H has a slope
@@ -100,12 +99,14 @@ class Stiffness:
         speed: float,
         motion: np.ndarray,
         multiples: np.ndarray,
+        tolerance: float,
         before: float | None = None,
     ) -> tuple[float, np.ndarray]:
         """Return the zero next to a speed and a motion (h, c), and its motion.
 
         By inverse iteration, with the slope of H between the last two speeds, of which `before` is
-        the first, a slower one by default; NaN where it does not converge.
+        the first, a slower one by default. The last relative change is below the `tolerance`, and
+        the error its square; NaN where it does not converge.
         """
         x, begin = (motion @ self.basis).ravel(), speed
         last = _BESIDE * speed if before is None else before
@@ -123,7 +124,7 @@ class Stiffness:
             x, speed = moved / np.linalg.norm(moved), float(speed - change)
             if not abs(speed - begin) < _FAR * begin:
                 break
-            if abs(change) <= _CLOSE * speed:
+            if abs(change) <= tolerance * speed:
                 return speed, self.motions(x[:, None], multiples)[..., 0]
         return np.nan, motion
 
@@ -155,7 +156,8 @@ class Search:
     """The search for critical speeds of an undamped model.
 
     Of order p ≥ 0 and nodal `diameters`, up to the speed `limit` [rad/s], which has to be given
-    where the stiffness varies with it. What is left out stands in `lost`, speeds that did not
+    where the stiffness varies with it. The `error` is the relative change of a critical speed in
+    the last step, which errs by its square. What is left out stands in `lost`, speeds that did not
     settle, in `jumps`, where a film jumps, and in `refused`, speeds without equations.
     """
 
@@ -163,6 +165,7 @@ class Search:
     order: float
     diameters: Sequence[int]
     limit: float | None
+    error: float = 1e-7
     lost: list[float] = field(default_factory=list)
     jumps: list[float] = field(default_factory=list)
     refused: dict[float, Exception] = field(default_factory=dict)
@@ -241,21 +244,26 @@ class Search:
     def _settled(
         self, speed: float, motion: np.ndarray, center: float, step: int
     ) -> Motions | None:
-        """Return a motion with more harmonics; None where these are too few."""
+        """Return a motion with as many harmonics as it needs; None where there are too few."""
+        last = speed
         slower = self.grid.speed[self.grid.speed < _BESIDE * speed] if self.varies else np.zeros(0)
         before = float(slower[-1]) if slower.size else None  # where a film is solved already
-        orders = step * np.arange(-(_MOST // step), _MOST // step + 1)
-        room = (len(orders) - len(motion)) // 2
-        motion = np.pad(motion, ((room, room), (0, 0)))
-        try:
-            last, motion = self.stiffness.refined(speed, motion, center + orders, before)
-        except NO_EQUATIONS:  # beside the end of a table
-            last = np.nan
-        energy = np.sum(np.abs(motion) ** 2, axis=1)
-        if np.isnan(last) or energy[0] + energy[-1] > _EDGE * energy.sum():
-            self.lost.append(speed)
-            return None
-        return _motion(last, motion, center, orders)
+        for most in _MORE:
+            orders = step * np.arange(-(most // step), most // step + 1)
+            room = (len(orders) - len(motion)) // 2
+            motion = np.pad(motion, ((room, room), (0, 0)))
+            try:
+                given = last, motion, center + orders, _CLOSE, before
+                last, motion = self.stiffness.refined(*given)
+            except NO_EQUATIONS:  # beside the end of a table
+                break
+            energy = np.sum(np.abs(motion) ** 2, axis=1)
+            if np.isnan(last):
+                break
+            if energy[0] + energy[-1] <= _EDGE * energy.sum():
+                return _motion(last, motion, center, orders)
+        self.lost.append(speed)
+        return None
 
     # ------------------------------------------------------------------ stiffness over the speed
 
@@ -298,7 +306,7 @@ class Search:
             exact = guess, self.stiffness.motions(vectors[:, [j]], multiples)[..., 0]
             try:
                 before = float(speeds[row + (at < 0.5)])
-                exact = self.stiffness.refined(*exact, multiples, before)
+                exact = self.stiffness.refined(*exact, multiples, self.error, before)
             except NO_EQUATIONS:  # beyond the end of a table, by rounding
                 pass
             if abs(exact[0] - speeds[row] - 0.5 * width) < (0.5 + _BEYOND) * width:
@@ -350,7 +358,7 @@ class Search:
                 f"from {first:.4g} to {last:.4g} rad/s: {self.refused[first]}"
             )
         for speeds, why in (
-            (self.lost, f"they still change with harmonics up to the {_MOST}th"),
+            (self.lost, f"they still change with harmonics up to the {_MORE[-1]}th"),
             (self.jumps, "the stiffness of a film jumps, by less with more nodes"),
         ):
             if speeds:

@@ -16,16 +16,16 @@ import numpy as np
 from exudyn_rotor.linear.equations import PeriodicSystem, States
 from exudyn_rotor.linear.solve.harmonics import chain_of, edge_energy, with_all_harmonics
 
-_LARGEST = 600  # unknowns of a first guess
+_LARGEST, _SMALL = 600, 150  # unknowns of a guess; of one with more harmonics than the highest
 _AROUND, _HIGHEST = 2, 5  # harmonics of the smallest one; steps on either side of the largest
 SLOW = 20.0  # |λ| over Ω up to which motions are waited for
 _FAST = 30.0  # decay over Ω above which a motion is over before the coefficients change
 _OVER = 3.0  # decay over Ω, and over the own frequency, beyond which nobody looks at a motion
 # energy at the edge of the sum that counts as none, over the tolerance of λ, which errs by less
 # than a tenth of it; and energy that is too much
-_EDGE, _LOST = 10.0, 1e-4
+_EDGE, _LOST = 10.0, 3e-4
 _COPY, _ALIKE = 1e-6, 0.7  # of pΩ, and of a shape: how near a copy of a motion is
-_AWAY = 100.0  # of pΩ, times the energy at the edge: how far copies of it may be
+_AWAY, _MOST_AWAY = 100.0, 1e-3  # of pΩ: how far copies are by the energy at the edge, at most
 
 
 class Exponents(NamedTuple):
@@ -101,7 +101,7 @@ def _guesses(
         chosen = one_of_each_family(values, states, orders, system, made)
         yield values[chosen], states[:, :, chosen], orders
         size += 1
-        if 2 * k * (2 * size + 1) > _LARGEST or size > _HIGHEST:
+        if 2 * k * (2 * size + 1) > (_LARGEST if size <= _HIGHEST else _SMALL):
             return
 
 
@@ -155,17 +155,19 @@ def one_of_each_family(
     # the small number decides between two copies half a step from zero; copies of what is not
     # resolved do not tell that they are copies, and come last
     waiting = np.argsort(np.abs(mean - 1e-2) + 10.0 * (edges > _LOST), kind="stable")
-    left, pairs, single = np.ones(len(values), dtype=bool), [], []
+    waits, pairs, single = np.ones(len(values), dtype=bool), [], []
     for i in waiting:
         if 2 * len(pairs) + len(single) >= 2 * system.size:
             break
-        if not left[i]:
+        if not waits[i]:
             continue
-        near = (_COPY + _AWAY * (edges + edges[i])) * abs(base) + 1e-6 * abs(values[i])
+        left = edges + edges[i]
+        left = np.maximum(left, np.minimum(_AWAY * left, _MOST_AWAY))
+        near = (_COPY + left) * abs(base) + 1e-6 * abs(values[i])
         own = _copies(values, shapes, values[i], shapes[:, :, i], base, near)
         mirrored = shapes[::-1, :, i].conj()
         mirrored = _copies(values, shapes, values[i].conj(), mirrored, base, near)
-        left[own] = left[mirrored] = left[i] = False
+        waits[own] = waits[mirrored] = waits[i] = False
         if i in mirrored:
             single.append(i)
         else:

@@ -196,7 +196,7 @@ def _periodic(
             most = max(np.nanmax(exponents.values.real, initial=-np.inf), bound)
             # a slow motion that Hill's method has lost may be the one that grows
             slow = exponents.lost[np.abs(exponents.lost) <= _SOUGHT * abs(system.speed)]
-            if method == "auto" and np.any(slow.real > most):
+            if method == "auto" and slow.size:
                 other = floquet_motions(system, made)
                 if np.nanmax(other.values.real, initial=-np.inf) > most:
                     exponents = other
