@@ -93,16 +93,17 @@ def _guesses(
     k = system.size
     if beside is not None and beside.motions.states.shape[1:] == (2 * k, k):
         yield *_carried(beside, system, made), None
-    # where the speed before has left motions open few harmonics do not suffice
-    size = -(-_AROUND // system.step) + (beside is None)
-    while True:
+    fewest = -(-_AROUND // system.step)
+    sizes = [fewest]
+    for size in range(fewest + 1, _SMALL):
+        if 2 * k * (2 * size + 1) <= (_LARGEST if size <= _HIGHEST else _SMALL):
+            sizes.append(size)
+    # where the speed before has left motions open the fewest harmonics do not suffice
+    for size in sizes if beside is not None or len(sizes) == 1 else sizes[1:]:
         orders = system.step * np.arange(-size, size + 1)
         values, states = _solved(made, orders, system.speed)
         chosen = one_of_each_family(values, states, orders, system, made)
         yield values[chosen], states[:, :, chosen], orders
-        size += 1
-        if 2 * k * (2 * size + 1) > (_LARGEST if size <= _HIGHEST else _SMALL):
-            return
 
 
 def _carried(beside: Beside, system: PeriodicSystem, made: States) -> tuple[np.ndarray, np.ndarray]:
