@@ -22,6 +22,7 @@ Terms = Mapping[int, np.ndarray]
 _ROUNDING = 1e-13  # share of a matrix that is round-off
 EPSILON = float(np.finfo(float).eps)
 _LEAST = 1e-6  # of the largest ω: a motion with next to no stiffness is scaled by it
+_DEPENDENT = 1e-14  # share of the largest column: what others span but for rounding
 _FREE = 1e-12  # of matrices with diagonals of one: a free motion
 
 
@@ -273,6 +274,13 @@ def free_directions(stack: PeriodicSystem) -> np.ndarray:
     if not free.shape[1]:
         return free
     return la.solve_triangular(la.cholesky(free.T @ M @ free, lower=True), free.T, lower=True).T
+
+
+def spanned(columns: np.ndarray) -> np.ndarray:
+    """Return an orthonormal basis (k, r) of columns (k, n), without what is rounding of these."""
+    Q, R, _ = la.qr(columns, mode="economic", pivoting=True)
+    sizes = np.abs(R.diagonal())
+    return Q[:, sizes > _DEPENDENT * sizes[0]]
 
 
 def others(columns: np.ndarray, rounding: float | None = None) -> np.ndarray:

@@ -257,9 +257,9 @@ RIGHT = {
     "inf": "Motion.mass_matrix.q_t ModeBasis.frequencies",
     "shape": "Motion.mass_matrix.q_t",
     "texts": "Motion.mass_matrix.q_t",
-    "text": "Motion.mass_matrix.q_t at report.contents Proposal.reasons ReducedRotor.dropped",
+    "text": "Motion.mass_matrix.q_t at Proposal.reasons ReducedRotor.dropped",
     "entry": "SolidRotor.from_ngsolve.materials report.raised report.contents",
-    "an object": "Motion.mass_matrix.q_t report.contents",
+    "an object": "Motion.mass_matrix.q_t",
     "None": "UFforce UFmassMatrix BaseResponse.displacement.place BaseResponse.peak.place",
 }
 # functions and methods where it is wrong all the same

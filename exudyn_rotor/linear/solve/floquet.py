@@ -14,7 +14,8 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor.linear.equations import PeriodicSystem, States
-from exudyn_rotor.linear.solve.hill import SLOW, Exponents, lost_of, one_of_each_family, shares
+from exudyn_rotor.linear.solve.harmonics import shares
+from exudyn_rotor.linear.solve.hill import SLOW, Exponents, lost_of, one_of_each_family
 
 _GAUSS_POINTS = 0.5 + np.array([-1.0, 1.0]) * np.sqrt(3.0) / 6.0
 _STEPS = (64, 128, 256, 512, 1024)  # of a period

@@ -14,9 +14,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-import scipy.linalg as la
 
-from exudyn_rotor.linear.equations import PeriodicSystem, others
+from exudyn_rotor.linear.equations import PeriodicSystem, others, spanned
 
 Harmonics = Mapping[int, np.ndarray]
 _STILL = 1e-12  # share of ω and Ω: a frequency that is zero but for rounding
@@ -25,7 +24,6 @@ _NONE = 1e-14  # of matrices with diagonals of one: a motion that nothing resist
 _FAR = 1e6  # of matrices with diagonals of one: size of a solution without free motions
 _LOADED = 1e-6  # share of a load on a free motion that is the rounding of a mesh
 _SINGULAR = 1e-14  # reciprocal condition of equations without a solution
-_ROUNDING = 1e-14  # share of a coefficient's singular values
 _MOST = 16  # harmonics that are added on either side, in steps of the coefficients
 
 
@@ -174,10 +172,7 @@ def _acting(system: PeriodicSystem) -> np.ndarray:
                 mean = np.tensordot(each, X, axes=(0, 0)) if X.ndim == 3 else X * each
                 mean = mean / (np.abs(mean).max() or 1.0)
                 rows += [part for Y in (mean, mean.T) for part in (Y.real, Y.imag)]
-    rows = np.hstack(rows)
-    Q, R, _ = la.qr(rows, mode="economic", pivoting=True)
-    values = np.abs(R.diagonal())
-    return Q[:, values > _ROUNDING * values[0]]
+    return spanned(np.hstack(rows))
 
 
 def _coupled(

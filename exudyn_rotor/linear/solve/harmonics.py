@@ -13,9 +13,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import scipy.linalg as la
 
-from exudyn_rotor.linear.equations import PeriodicSystem, States
+from exudyn_rotor.linear.equations import PeriodicSystem, States, spanned
 
 _SIZES = (2, 4, 8, 16)  # harmonics on either side, in steps of the coefficients
 _FEW = 2  # harmonics with which a motion need not settle
@@ -23,7 +22,6 @@ _MOST = 6  # iterations, each of which squares the error
 _ENOUGH = 1e-10  # of |λ| and Ω: the last change
 _ASIDE = 1e-10  # of |λ| and Ω: how far the shift is from λ, where the equations are singular
 _NONE = 1e-12  # share of the energy: a harmonic that no motion has
-_ROUNDING = 1e-14  # share of a coefficient's singular values
 
 
 class Chain(NamedTuple):
@@ -59,17 +57,21 @@ def chain_of(system: PeriodicSystem, made: States) -> Chain:
     rates, shapes = np.linalg.eig(made.A[0])
     repeating = {n: A for n, A in made.A.items() if n}
     columns = np.hstack([part for A in repeating.values() for part in (A.real, A.imag)])
-    Q, R, _ = la.qr(columns, mode="economic", pivoting=True)
-    sizes = np.abs(R.diagonal())
-    U, inverse = Q[:, sizes > _ROUNDING * sizes[0]], np.linalg.inv(shapes)
+    U, inverse = spanned(columns), np.linalg.inv(shapes)
     seen = {n // system.step: U.T @ A @ shapes for n, A in repeating.items()}
     return Chain(system.speed, system.step, rates, shapes, inverse, inverse @ U, seen)
 
 
+def shares(states: np.ndarray) -> np.ndarray:
+    """Return the share of each harmonic in the energy of motions with states (h, 2k, n), (h, n)."""
+    energy = np.sum(np.abs(states) ** 2, axis=1)
+    return energy / energy.sum(axis=0)
+
+
 def edge_energy(states: np.ndarray) -> np.ndarray:
     """Return the share (n,) of the outermost harmonics in the energy of states (h, 2k, n)."""
-    energy = np.sum(np.abs(states) ** 2, axis=1)
-    return (energy[0] + energy[-1]) / energy.sum(axis=0)
+    energy = shares(states)
+    return energy[0] + energy[-1]
 
 
 def with_all_harmonics(
@@ -100,7 +102,7 @@ def with_all_harmonics(
     most = max(_SIZES[-1], len(states) // 2)
     padding = most - len(states) // 2
     states = np.pad(states, [(padding, padding), (0, 0), (0, 0)]).astype(complex)
-    energy = np.sum(np.abs(states) ** 2, axis=1) / np.sum(np.abs(states) ** 2, axis=(0, 1))
+    energy = shares(states)
     # within which the motions are, as far as is known
     outside = [energy[: most - n + 1].sum(axis=0) + energy[most + n :].sum(axis=0) for n in _SIZES]
     enough = [*(np.array(outside[:-1]) <= least), np.ones(len(values), dtype=bool)]
@@ -119,8 +121,7 @@ def with_all_harmonics(
         states[inner, :, at] = shapes[:, :, settled]
         edges[at] = edge_energy(shapes[:, :, settled])
         done[at] = edges[at] <= least
-    energy = np.sum(np.abs(states) ** 2, axis=1)
-    used = np.flatnonzero(np.any(energy > _NONE * energy.sum(axis=0), axis=1))
+    used = np.flatnonzero(np.any(shares(states) > _NONE, axis=1))
     most_used = max(most - used[0], used[-1] - most)
     inner = slice(most - most_used, most + most_used + 1)
     return values, states[inner], chain.step * np.arange(-most_used, most_used + 1), edges

@@ -14,10 +14,11 @@ from typing import NamedTuple
 import numpy as np
 
 from exudyn_rotor.linear.equations import PeriodicSystem, States
-from exudyn_rotor.linear.solve.harmonics import chain_of, edge_energy, with_all_harmonics
+from exudyn_rotor.linear.solve.harmonics import chain_of, edge_energy, shares, with_all_harmonics
 
-_LARGEST, _SMALL = 600, 150  # unknowns of a guess; of one with more harmonics than the highest
-_AROUND, _HIGHEST = 2, 5  # harmonics of the smallest one; steps on either side of the largest
+_AROUND = 2  # harmonics on either side in the smallest guess
+# unknowns of the largest guess; with more steps of harmonics on either side than so many, fewer
+_LARGEST, _HIGHEST, _SMALL = 600, 5, 150
 SLOW = 20.0  # |λ| over Ω up to which motions are waited for
 _FAST = 30.0  # decay over Ω above which a motion is over before the coefficients change
 _OVER = 3.0  # decay over Ω, and over the own frequency, beyond which nobody looks at a motion
@@ -61,8 +62,8 @@ def hill_motions(
     """Return the motions of a system, and whether all are known.
 
     Guesses are the motions `beside`, as those at a speed before, then the eigenvalues of a sum of
-    few harmonics, and of more where motions are missing. Each motion then gets as many
-    harmonics as it has. As many different ones as there are coordinates are all. Fast motions and
+    few harmonics, and of more where motions are missing. Each motion then gets as many harmonics as
+    it has. As many different motions as there are coordinates are all of them. Fast motions and
     decays are not waited for. Exponents that do not get there are NaN.
     """
     k, speed, least = system.size, abs(system.speed), _EDGE * tolerance
@@ -128,12 +129,6 @@ def lost_of(values: np.ndarray, system: PeriodicSystem) -> np.ndarray:
 
 def _looked_at(values: np.ndarray, system: PeriodicSystem) -> np.ndarray:
     return -values.real <= np.maximum(_OVER * abs(system.speed), np.abs(values.imag))
-
-
-def shares(states: np.ndarray) -> np.ndarray:
-    """Return the share of each harmonic in the energy of motions with states (h, 2k, n), (h, n)."""
-    energy = np.sum(np.abs(states) ** 2, axis=1)
-    return energy / energy.sum(axis=0)
 
 
 def one_of_each_family(
