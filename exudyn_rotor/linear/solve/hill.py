@@ -20,7 +20,8 @@ _AROUND = 2  # harmonics on either side in the smallest guess
 # unknowns of the largest guess; with more steps of harmonics on either side than so many, fewer
 _LARGEST, _HIGHEST, _SMALL = 600, 5, 150
 SLOW = 20.0  # |λ| over Ω up to which motions are waited for
-_FAST = 30.0  # decay over Ω above which a motion is over before the coefficients change
+_FAST = 30.0  # decay over Ω above which a motion may be over before the coefficients change
+_APART = 2.0  # ratio of decays that are far apart
 _OVER = 3.0  # decay over Ω, and over the own frequency, beyond which nobody looks at a motion
 # energy at the edge of the sum that counts as none, over the tolerance of λ, which errs by less
 # than a tenth of it; and energy that is too much
@@ -50,49 +51,68 @@ class Exponents(NamedTuple):
 
 
 class Beside(NamedTuple):
-    """All motions at another speed, with the states that they are in."""
+    """All motions at another speed but decays over at once, with the states that they are in."""
 
-    motions: Exponents
+    values: np.ndarray
+    states: np.ndarray
+    orders: np.ndarray
     made: States
 
 
 def hill_motions(
     system: PeriodicSystem, made: States, tolerance: float, beside: Beside | None = None
-) -> tuple[Exponents, bool]:
-    """Return the motions of a system, and whether all are known.
+) -> tuple[Exponents, Beside | None]:
+    """Return the motions of a system; where all are known, also for a search at a speed beside.
 
     Guesses are the motions `beside`, as those at a speed before, then the eigenvalues of a sum of
     few harmonics, and of more where motions are missing. Each motion then gets as many harmonics as
-    it has. As many different motions as there are coordinates are all of them. Fast motions and
-    decays are not waited for. Exponents that do not get there are NaN.
+    it has. As many different motions as there are coordinates are all of them. Decays that are over
+    at once count by the mean equations, and are left out. Exponents that do not get there are NaN.
     """
     k, speed, least = system.size, abs(system.speed), _EDGE * tolerance
     chain = chain_of(system, made)
-    for values, states, orders in _guesses(system, made, beside):
+    at_once, wanted = _over_at_once(-chain.rates.real, speed)
+    for values, states, orders in _guesses(system, made, beside, at_once, wanted):
         is_sum = orders is not None
-        edges = edge_energy(states) if is_sum else np.full(k, np.inf)
-        slow = (np.abs(values) <= SLOW * speed) & (-values.real <= _FAST * speed)
+        edges = edge_energy(states) if is_sum else np.full(len(values), np.inf)
         better, states, orders, edges = with_all_harmonics(chain, values, states, edges, least)
-        fast = -better.real > _FAST * speed
-        chosen = one_of_each_family(better, states, orders, system, made)
-        seen = _looked_at(better, system)
-        same = np.array_equal(_is_own(better, system)[seen], _is_own(values, system)[seen])
-        known = (edges <= np.where(slow, least, _LOST)) | fast | ~seen
-        is_whole = bool(len(chosen) == k and same and np.all(known))
+        slow = np.abs(better) <= SLOW * speed
+        known = (edges <= np.where(slow, least, _LOST)) | ~_looked_at(better, system)
+        chosen, count = one_of_each_family(better, states, orders, system, made, wanted)
+        is_whole = count == wanted and bool(np.all(known[chosen]))
         if is_whole:
             break
-    found = (fast | (edges <= _LOST)) & np.isin(np.arange(k), chosen)
-    kept = np.where(found, better, np.nan)
-    exponents = Exponents(kept, states, orders, lost_of(values[~found], system))
-    return exponents, is_whole and bool(np.all(found))
+    found = np.isin(np.arange(len(values)), chosen) & (edges <= _LOST)
+    lost = (
+        lost_of(values[~found], system) if not is_whole or not np.all(found[chosen]) else values[:0]
+    )
+    values, states, found = better[chosen], states[:, :, chosen], found[chosen]
+    beside = Beside(values, states, orders, made) if is_whole and np.all(found) else None
+    values, missing = np.where(found, values, np.nan)[:k], max(0, k - len(chosen))
+    values = np.pad(values, (0, missing), constant_values=np.nan)
+    states = np.pad(states[:, :, :k], [(0, 0), (0, 0), (0, missing)])
+    return Exponents(values, states, orders, lost), beside
+
+
+def _over_at_once(decays: np.ndarray, speed: float) -> tuple[float, int]:
+    """Return the decay above which motions are over at once, and how many exponents do not.
+
+    Where decays of the mean equations (2k,) beyond many Ω first lie far apart.
+    """
+    ascending = np.sort(np.maximum(decays, _FAST * speed))
+    if ascending[-1] == _FAST * speed:
+        return np.inf, len(decays)
+    apart = ascending[1:] / ascending[:-1]
+    last = int(np.argmax(np.minimum(apart, _APART)))
+    return float(np.sqrt(ascending[last] * ascending[last + 1])), last + 1
 
 
 def _guesses(
-    system: PeriodicSystem, made: States, beside: Beside | None
+    system: PeriodicSystem, made: States, beside: Beside | None, at_once: float, wanted: int
 ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray | None]]:
     """Yield exponents, states and orders of guesses; those of motions beside have no orders."""
     k = system.size
-    if beside is not None and beside.motions.states.shape[1:] == (2 * k, k):
+    if beside is not None and beside.states.shape[1] == 2 * k:
         yield *_carried(beside, system, made), None
     fewest = -(-_AROUND // system.step)
     sizes = [fewest]
@@ -103,23 +123,18 @@ def _guesses(
     for size in sizes if beside is not None or len(sizes) == 1 else sizes[1:]:
         orders = system.step * np.arange(-size, size + 1)
         values, states = _solved(made, orders, system.speed)
-        chosen = one_of_each_family(values, states, orders, system, made)
+        stays = values.real >= -at_once
+        values, states = values[stays], states[:, :, stays]
+        chosen, _ = one_of_each_family(values, states, orders, system, made, wanted)
         yield values[chosen], states[:, :, chosen], orders
 
 
 def _carried(beside: Beside, system: PeriodicSystem, made: States) -> tuple[np.ndarray, np.ndarray]:
     """Return exponents and states of the motions beside, in the states of a system."""
-    (values, states, orders, _), k = beside.motions, system.size
+    (values, states, orders, _), k = beside, system.size
     moved = np.linalg.solve(made.shape[:, :k], beside.made.shape @ states)
     rates = values + 1j * system.speed * orders[:, None, None]
     return values, np.hstack([moved, rates * moved / made.A[0][:k, k:].diagonal()[:, None]])
-
-
-def _is_own(values: np.ndarray, system: PeriodicSystem) -> np.ndarray:
-    """Return which motions may be their own conjugates: Im λ is a multiple of pΩ/2."""
-    half = 0.5 * abs(system.step * system.speed)
-    away = values.imag - half * np.round(values.imag / half)
-    return np.abs(away) <= _COPY * (np.abs(values) + half)
 
 
 def lost_of(values: np.ndarray, system: PeriodicSystem) -> np.ndarray:
@@ -137,11 +152,12 @@ def one_of_each_family(
     orders: np.ndarray,
     system: PeriodicSystem,
     made: States,
-) -> np.ndarray:
-    """Return which of many exponents stand for all, k.
+    wanted: int,
+) -> tuple[np.ndarray, int]:
+    """Return which of many exponents stand for all that are `wanted`, and for how many they do.
 
-    Of each motion, its copies and their conjugates one, whose harmonics lie around zero; of motions
-    that are their own conjugates the less damped half.
+    Of each motion, its copies and their conjugates one, whose harmonics lie around zero. Those that
+    are their own conjugates come last, the least damped first.
     """
     step, base = system.step, system.step * system.speed
     energy = shares(states)
@@ -153,7 +169,7 @@ def one_of_each_family(
     waiting = np.argsort(np.abs(mean - 1e-2) + 10.0 * (edges > _LOST), kind="stable")
     waits, pairs, single = np.ones(len(values), dtype=bool), [], []
     for i in waiting:
-        if 2 * len(pairs) + len(single) >= 2 * system.size:
+        if 2 * len(pairs) + len(single) >= wanted:
             break
         if not waits[i]:
             continue
@@ -169,7 +185,7 @@ def one_of_each_family(
         else:
             pairs.append(i)
     single.sort(key=lambda i: -values[i].real)
-    return np.array([*pairs, *single][: system.size], dtype=int)
+    return np.array([*pairs, *single], dtype=int), 2 * len(pairs) + len(single)
 
 
 def _copies(

@@ -191,8 +191,7 @@ def _periodic(
         if method == "floquet":
             exponents = floquet_motions(system, made)
         else:
-            exponents, is_whole = hill_motions(system, made, tolerance, beside)
-            beside = Beside(exponents, made) if is_whole else None
+            exponents, beside = hill_motions(system, made, tolerance, beside)
             most = max(np.nanmax(exponents.values.real, initial=-np.inf), bound)
             # a slow motion that Hill's method has lost may be the one that grows
             slow = exponents.lost[np.abs(exponents.lost) <= _SOUGHT * abs(system.speed)]

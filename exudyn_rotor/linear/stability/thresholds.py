@@ -212,7 +212,8 @@ class _Margin:
         model, speeds = built[0][0], [speed for _, speed in built]
         model = model.richer if richer else model
         how = {"held": True, "warns": False, "beside": None if richer else self.beside}
-        found = motions_in(model, model.at_all(speeds), "auto", self.tolerance, **how)
+        method = "hill" if richer else "auto"
+        found = motions_in(model, model.at_all(speeds), method, self.tolerance, **how)
         self.beside = self.beside if richer else found.beside
         return found
 
