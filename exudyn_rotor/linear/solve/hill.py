@@ -83,13 +83,13 @@ def hill_motions(
         if is_whole:
             break
     found = np.isin(np.arange(len(values)), chosen) & (edges <= _LOST)
-    lost = (
-        lost_of(values[~found], system) if not is_whole or not np.all(found[chosen]) else values[:0]
-    )
+    lost = lost_of(values[~found], system)
     values, states, found = better[chosen], states[:, :, chosen], found[chosen]
-    beside = Beside(values, states, orders, made) if is_whole and np.all(found) else None
-    values, missing = np.where(found, values, np.nan)[:k], max(0, k - len(chosen))
-    values = np.pad(values, (0, missing), constant_values=np.nan)
+    beside = None
+    if is_whole and np.all(found):
+        beside, lost = Beside(values, states, orders, made), lost[:0]
+    missing = max(0, k - len(chosen))  # decays that are left out
+    values = np.pad(np.where(found, values, np.nan)[:k], (0, missing), constant_values=np.nan)
     states = np.pad(states[:, :, :k], [(0, 0), (0, 0), (0, missing)])
     return Exponents(values, states, orders, lost), beside
 
