@@ -46,7 +46,7 @@ _FREE = 1e-13  # share of the largest stiffness that is rounding
 _UNHELD = 1e-12  # rad²/s²: stiffness over inertia where nothing is held
 _NO_INERTIA = 1e-6  # share of the largest inertia
 _BRACKETS = 200  # speeds at which signs of eigenvalues are looked at; half of them for blocks
-_SLOW, _RATIO = 12, 2.0**0.25  # speeds on each side of the first of these, and their ratio
+_SLOW, _RATIO = 24, 8.0  # more speeds around the first of these, and how far apart they reach
 _FEW, _MORE = 4, (8, 12, 16)  # harmonics on each side of the middle one
 _EDGE = 1e-10  # energy of the last ones that is none
 _CLOSE = 1e-5  # last relative change of a critical speed, which errs by its square
@@ -271,9 +271,9 @@ class Search:
         """
         count = _BRACKETS // (1 + self.model.turns)
         first, kinks = self.limit / count, self.model.table_speeds
-        slow = first * _RATIO ** np.arange(-_SLOW, _SLOW)
+        slow = np.geomspace(first / _RATIO, first * _RATIO, _SLOW)
         even = np.linspace(first, self.limit, count)
-        wanted = np.unique([*even, *slow, *kinks[(kinks > first) & (kinks < self.limit)]])
+        wanted = np.unique(np.r_[even, slow, kinks[(kinks > first) & (kinks < self.limit)]])
         wanted = wanted[np.diff(wanted, prepend=0.0) > SAME * first]
         stack, errors = self.model.systems(wanted, self.order * wanted)
         if stack is None or np.count_nonzero(stack.known) < 2:
@@ -352,16 +352,17 @@ class Search:
                 f"none are looked for at {count} of {len(self.grid.speed) + count - 1} speeds "
                 f"from {first:.4g} to {last:.4g} rad/s: {self.refused[first]}"
             )
-        for speeds, why in (
-            (self.lost, f"they still change with harmonics up to the {_MORE[-1]}th"),
-            (self.jumps, "the stiffness of a film jumps, by less with more nodes"),
-        ):
+        reasons = {
+            f"they still change with harmonics up to the {_MORE[-1]}th": self.lost,
+            "the stiffness of a film jumps, by less with more nodes": self.jumps,
+        }
+        for why, speeds in reasons.items():
             if speeds:
                 near = ", ".join(f"{speed:.5g}" for speed in np.unique(np.round(speeds, 6))[:5])
                 told.append(f"near {near} rad/s {why}, and they are left out")
         if told:
-            what = "; ".join(told)
-            warnings.warn(f"critical speeds: {what}", UserWarning, stacklevel=user_level())
+            what = "critical speeds: " + "; ".join(told)
+            warnings.warn(what, UserWarning, stacklevel=user_level())
 
 
 def _motion(speed: float, motion: np.ndarray, center: float, orders: np.ndarray) -> Motions:

@@ -171,7 +171,7 @@ class _Margin:
     beside: Beside | None = None
 
     def look_at(self, points: Sequence[float]) -> None:
-        """Compute the margin at points, with one warning where there are no coefficients."""
+        """Compute the margin at points; warn once where there are no coefficients."""
         self.known |= dict.fromkeys(points, np.nan)
         refused, together = [], [points] if self.model else [[point] for point in points]
         for group in together:
@@ -299,16 +299,15 @@ def stability_threshold(
         checks.number(low, "low", "rad/s", least=0.0)
         if speed is not None:
             raise ValueError("speed: is the parameter, from low to high; leave it out")
-        margin = _over_speed(target, high, tolerance, supports=supports, **made)
-        kinks = margin.model.table_speeds
+        model = linear_model(target, supports=supports, **made)
+        margin, kinks = _over_speed(model, high, tolerance), model.table_speeds
     points = np.linspace(low, high, samples + 1)
     points = np.union1d(points, kinks[(kinks > low) & (kinks < high)])
     return _found(margin, points.tolist(), label, accuracy)
 
 
-def _over_speed(target: Target, fastest: float, tolerance: float, **made) -> _Margin:
-    """Return the margin over the speed; warn of what its model leaves out."""
-    model = linear_model(target, **made)
+def _over_speed(model: LinearModel, fastest: float, tolerance: float) -> _Margin:
+    """Return the margin of a model over the speed; warn of what it leaves out."""
     warn_of_omissions(model, fastest, WHAT)
     return _Margin(lambda speed: (model, speed), tolerance, model)
 
@@ -379,6 +378,6 @@ def unstable_ranges(
     """
     values = checks.ascending_from_zero(speeds, "speeds")
     check_options(tolerance, accuracy)
-    made = {"supports": supports, "body": body, "stiffening": stiffening, "axes": axes}
-    margin = _over_speed(target, values[-1], tolerance, **made)
+    model = linear_model(target, supports=supports, body=body, stiffening=stiffening, axes=axes)
+    margin = _over_speed(model, values[-1], tolerance)
     return _found(margin, values.tolist(), _SPEED, accuracy).ranges
