@@ -36,15 +36,15 @@ def first_forward(
     rad/s.
     """
     model = model_at(1.0)
-    content = Content.of(model)
+    content, motions_under = Content.of(model), _motions_under(model_at, speed)
 
     def margin(multiple: float) -> float:
         """Return the growth of the mode that grows most, beyond rounding [1/s]."""
-        modes = content.named(_motions(model, model_at, [multiple], speed))
+        modes = content.named(motions_under([multiple]))
         growth = modes.motions.values.real - modes.motions.bounds[:, None]
         return float(np.max(growth[_swings(modes)], initial=-speed))
 
-    modes = content.named(_motions(model, model_at, _STEPS, speed))
+    modes = content.named(motions_under(_STEPS))
     modes = _followed(modes, model.mass_matrix)
     growth, swings = modes.motions.values.real, _swings(modes)
     unstable = swings & (growth > modes.motions.bounds[:, None])
@@ -63,16 +63,25 @@ def first_forward(
     return (growth + 1j * modes.inertial)[wanted, mode], limit
 
 
-def _motions(
-    model: LinearModel, model_at: Callable, multiples: Sequence[float], speed: float
-) -> Motions:
-    """Return the motions under each of the multiples."""
-    models, speeds = [model_at(each) for each in multiples], np.full(len(multiples), speed)
-    if model.over_frequency:
-        found = [motions_over(each, [speed], held=True) for each in models]
-        return joined_motions(speeds, [(np.array([i]), each) for i, each in enumerate(found)])
-    stack = model.at_points(speeds, [each.coefficients(speed) for each in models])
-    return motions_in(model, stack, "auto", 1e-6, held=True)
+def _motions_under(
+    model_at: Callable[[float], LinearModel], speed: float
+) -> Callable[[Sequence[float]], Motions]:
+    """Return the motions under multiples, in which the stiffness is linear, as a function."""
+    model = model_at(1.0)
+    ends = model_at(0.0).coefficients(speed), model.coefficients(speed)
+
+    def under(multiple: float) -> list[tuple[np.ndarray, np.ndarray]]:
+        return [(K + multiple * (more - K), D) for (K, D), (more, _) in zip(*ends, strict=True)]
+
+    def motions(multiples: Sequence[float]) -> Motions:
+        speeds = np.full(len(multiples), speed)
+        if model.over_frequency:
+            found = [motions_over(model_at(each), [speed], held=True) for each in multiples]
+            return joined_motions(speeds, [(np.array([i]), each) for i, each in enumerate(found)])
+        stack = model.at_points(speeds, [under(each) for each in multiples])
+        return motions_in(model, stack, "auto", 1e-6, held=True)
+
+    return motions
 
 
 def _followed(modes: Named, M: np.ndarray) -> Named:

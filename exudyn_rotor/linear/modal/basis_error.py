@@ -96,10 +96,9 @@ def judged(
     if these are fewer; the highest modes of a basis are always wrong. If `every`, all that move.
     Overdamped ones count up to decays of that size.
     """
-    moving = np.where(frequencies > 0.0, frequencies, np.inf)
-    lowest = np.sort(moving, axis=1)[:, :_LOWEST][:, -1:]
-    lowest = np.where(np.isfinite(lowest), lowest, np.nan_to_num(frequencies).max(axis=1)[:, None])
-    limit = np.maximum(lowest, _RANGE * np.abs(speeds).max(initial=0.0))
+    moving = np.sort(np.where(frequencies > 0.0, frequencies, np.nan), axis=1)
+    lowest = np.nanmax(moving[:, :_LOWEST], axis=1, keepdims=True, initial=0.0)
+    limit = np.maximum(lowest, _RANGE * speeds[-1])
     overdamped = (frequencies == 0.0) & (-growth > limit)
     return ((frequencies <= limit) | every) & ~overdamped
 

@@ -31,9 +31,6 @@ if TYPE_CHECKING:
 _UNSTABLE = 1e-4
 _SPLIT = 4e-8  # of the fastest motion: the split of a double zero by rounding
 _LATERAL = whirl.FORWARD, whirl.BACKWARD, whirl.MIXED, whirl.OVERDAMPED
-# of the excitation's frequency: a mode that keeps to its line, as one fixed in the rotor, does
-# not cross it by rounding
-_ON_THE_LINE = 1e-9
 _STYLES = {  # colour, line
     whirl.FORWARD: (plotting.COLORS[0], "-"),
     whirl.BACKWARD: (plotting.COLORS[1], "--"),
@@ -166,10 +163,9 @@ class Campbell(OfMotions, ModelResult):
         """
         inertial = checks.choice(frame, "frame", FRAMES) == "inertial"
         order = checks.number(order, "order", above=0.0)
-        tracked, line = self.tracked(), order * np.abs(self.speeds)[:, None]
+        tracked, line = self.tracked(), order * self.speeds[:, None]
         values = tracked.frequencies_inertial if inertial else tracked.frequencies_rotor
         apart = values - line
-        apart[np.abs(apart) <= _ON_THE_LINE * np.maximum(values, line)] = 0.0
         before, after = apart[:-1], apart[1:]
         crossed = (before * after < 0.0) | ((after == 0.0) & (before != 0.0))
         rows, modes = np.nonzero(crossed & tracked.continued[1:])
@@ -219,7 +215,7 @@ class Campbell(OfMotions, ModelResult):
         if orders is not None:
             handles += self._draw_orders(ax, frame, shown, orders)
         elif frame == "inertial":
-            line = shown.speeds(self.speeds), shown.frequencies(np.abs(self.speeds))
+            line = shown.speeds(self.speeds), shown.frequencies(self.speeds)
             handles += ax.plot(*line, color="0.6", lw=0.8, label="spin speed")
         ax.set_xlabel(f"spin speed [{shown.speed}]")
         ax.set_ylabel(f"frequency in the {frame} frame [{shown.frequency}]")
@@ -253,28 +249,27 @@ class Campbell(OfMotions, ModelResult):
             for code, (color, line) in _STYLES.items()
             if code in seen
         ]
-        fastest = np.abs(self.speeds)
-        unstable = self.growth > _UNSTABLE * np.maximum(self.frequencies_inertial, fastest[:, None])
+        sizes = np.maximum(self.frequencies_inertial, self.speeds[:, None])
+        unstable = self.growth > _UNSTABLE * sizes
         if np.any(unstable):
             rows = np.nonzero(unstable)[0]
             handles += ax.plot(speeds[rows], values[unstable], "kx", ms=4, label="unstable")
-        top = max(np.nanmax(values, initial=0.0), units.frequencies(fastest.max()))
+        top = max(np.nanmax(values, initial=0.0), units.frequencies(self.speeds[-1]))
         ax.set_ylim(0.0, 1.05 * top or None)
         return handles
 
     def _draw_orders(self, ax: Axes, frame: str, units: Units, orders: np.ndarray) -> list[Line2D]:
         """Draw the lines pΩ and mark where modes cross them; return what the legend needs."""
         handles, places = [], []
-        last = self.speeds[np.argmax(np.abs(self.speeds))]
         for order, style in zip(orders, itertools.cycle(plotting.LINES)):
             label = "spin speed" if order == 1.0 else f"{order:g} × spin speed"
-            line = units.speeds(self.speeds), units.frequencies(order * np.abs(self.speeds))
+            line = units.speeds(self.speeds), units.frequencies(order * self.speeds)
             handles += ax.plot(*line, color="0.6", lw=0.8, ls=style, label=label)
-            end = units.speeds(last), units.frequencies(order * abs(last))
+            end = line[0][-1], line[1][-1]
             ax.annotate(f"{order:g}×", end, textcoords="offset points", xytext=(2, 0), fontsize=8,
                         color="0.4", annotation_clip=True)  # fmt: skip
             met, _ = self.crossings(order, frame)
-            places += zip(units.speeds(met), units.frequencies(order * np.abs(met)), strict=True)
+            places += zip(units.speeds(met), units.frequencies(order * met), strict=True)
         if places:
             style = {"mfc": "none", "mec": "0.2", "ms": 6, "label": "crossing"}
             handles += ax.plot(*zip(*places, strict=True), "o", **style)
@@ -343,7 +338,6 @@ def campbell(
     frame: str = "inertial",
     stiffening: str = "auto",
     axes: str = "auto",
-    allow_negative: bool = False,
     accuracy: float | None = 1e-2,
     progress: bool = False,
 ) -> Campbell:
@@ -376,8 +370,6 @@ def campbell(
         prestress (:meth:`SolidRotor.prestress`).
     axes : {'auto', 'inertial', 'rotor'}
         Of the equations, see :func:`linear_model`.
-    allow_negative : bool, optional
-        Accept speeds below zero.
     accuracy : float, optional
         Relative error of frequencies and growth by the basis of a reduced rotor, estimated, above
         which a warning is given: see :attr:`Campbell.basis_errors`. It looks at the modes asked
@@ -414,7 +406,7 @@ def campbell(
     >>> result.whirl[1, 1:5].tolist()
     ['forward', 'forward', 'backward', 'backward']
     """
-    values = checks.spin_speeds(speeds, allow_negative)
+    values = checks.ascending_from_zero(speeds, "speeds")
     if modes is not None:
         modes = checks.count(modes, "modes", least=1)
     checks.accuracy(accuracy)
@@ -426,15 +418,14 @@ def campbell(
     )  # fmt: skip
     if modes is not None and modes > model.size:
         raise ValueError(f"modes: {modes} is not between 1 and the {model.size} there are")
-    warn_of_omissions(model, np.abs(values).max(), "campbell finds modes")
+    warn_of_omissions(model, values[-1], "campbell finds modes")
     motions = motions_over(model, values, warns=False, progress=progress, label="Campbell")
     named = Content.of(model).named(motions)
     if model.free_motions:
         named = _resting(named)
     order, continued = whirl.track(named, model.mass_matrix)
     every = named.columns(order)
-    first = whirl.first_known(every)
-    kept = _ascending(first, frame)[:, :modes]
+    kept = _ascending(whirl.first_known(every), frame)[:, :modes]
     named = every.columns(np.repeat(kept, len(values), axis=0))
     warn_of(model, every.motions, named.motions)
     upwards = _ascending(named, frame)

@@ -20,12 +20,11 @@ from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.modal import basis_error
-from exudyn_rotor.linear.modal.resonance import SAME, Search, Stiffness, groups_of
-from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, Named, signed_diameters
+from exudyn_rotor.linear.modal.resonance import Search, Stiffness, groups_of
+from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, signed_diameters
 from exudyn_rotor.linear.model.assembly import NO_EQUATIONS
-from exudyn_rotor.linear.model.body import EVEN
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
-from exudyn_rotor.linear.model.linear_model import AXES, warn_of_refused
+from exudyn_rotor.linear.model.linear_model import warn_of_refused
 from exudyn_rotor.linear.over import ModelResult, basis_column, table_lines
 from exudyn_rotor.linear.solve.motions import Motions
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
@@ -33,7 +32,6 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import numbers, storable, words
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.solvers.factor import one_thread
-from exudyn_rotor.theory.stiffening import CHOICES
 from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:
@@ -41,11 +39,7 @@ if TYPE_CHECKING:
 
 _JUDGED = 6  # critical speeds that count where no largest speed is given
 _ALIKE = 0.5  # likeness of two shapes below which they are not the same motion
-_ERROR = 1e-6  # last change of a critical speed in a richer basis
-# relative distance of the speeds of one motion in the two planes of a rotor that counts as round
-_PLANES = 0.5 * EVEN
 _CURVE = 200  # speeds of a bearing's own curve
-_FILM = 1e-4  # last change of a critical speed on films
 
 
 class _Undamped(ModelResult):
@@ -71,7 +65,7 @@ class _Undamped(ModelResult):
 @storable
 @dataclass(frozen=True, eq=False)
 class CriticalSpeeds(_Undamped):
-    """Critical speeds, ascending; an uneven rotor has both of a pair, from 0.5 % apart on.
+    """Critical speeds, ascending; an uneven rotor has both of a pair.
 
     Attributes
     ----------
@@ -224,8 +218,6 @@ def collected(search: Search, estimate: bool) -> CriticalSpeeds:
     model, named = search.model, search.content.named(search.motions(), apart=True)
     senses = signed_diameters(named.codes, named.diameters)[:, 0]
     named = named.rows(np.lexsort((senses, groups_of(named.motions.speeds))))
-    if model.turns:
-        named = named.rows(_of_one_plane(named))
     motions, errors = named.motions, None
     if estimate and basis_error.is_known(model, 1.0):
         errors = _basis_errors(search, motions)
@@ -242,21 +234,6 @@ def collected(search: Search, estimate: bool) -> CriticalSpeeds:
         axes=model.axes,
         unevenness=model.unevenness,
     )
-
-
-def _of_one_plane(named: Named) -> list[int]:
-    """Return which critical speeds are not of the same motion in the other plane of a rotor.
-
-    Bending modes of which a basis holds one half alone make both planes of a round rotor differ.
-    The softer plane has more modes.
-    """
-    speeds, kinds = named.motions.speeds, np.hstack([named.codes, named.diameters])
-    kept: list[int] = []
-    for row, speed in enumerate(speeds):
-        near = (1.0 - speeds[kept] / speed > SAME) & (1.0 - speeds[kept] / speed < _PLANES)
-        if not np.any(near & np.all(kinds[kept] == kinds[row], axis=1)):
-            kept.append(row)
-    return kept
 
 
 @one_thread()
@@ -277,7 +254,7 @@ def _basis_errors(search: Search, found: Motions) -> np.ndarray:
         held = np.any(vectors, axis=1)  # the harmonics that it was found with
         x = vectors[held] @ lifted.T
         try:
-            better, y = stiffness.refined(speed, x, center + found.orders[held], _ERROR)
+            better, y = stiffness.refined(speed, x, center + found.orders[held])
         except NO_EQUATIONS:
             continue
         likeness = abs(np.vdot(x, y)) ** 2 / (np.vdot(x, x) * np.vdot(y, y)).real
@@ -440,8 +417,6 @@ def critical_speed_map(
     )
     if not names:
         raise ValueError("interfaces: needs at least one name, got none")
-    checks.choice(stiffening, "stiffening", CHOICES)
-    checks.choice(axes, "axes", AXES)
     checks.accuracy(accuracy)
     checks.flag(progress, "progress")
     if bearing is not None:
@@ -456,9 +431,7 @@ def critical_speed_map(
     failed: list[tuple[str, Exception]] = []
     for row, stiffness in enumerate(tqdm(values, "critical speed map", disable=not progress)):
         model = replace(first, supports={"": _with(kept, names, stiffness)})
-        # a map takes what a film is within its own smoothness
-        given = order, nodal_diameters, max_speed
-        search = Search(model, *given, 1e-7 if model.table_speeds.size else _FILM)
+        search = Search(model, order, nodal_diameters, max_speed)
         try:
             solved.append(collected(search, row in judged))
         except ValueError as error:  # as of a support whose stiffness is negative

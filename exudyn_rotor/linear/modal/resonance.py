@@ -18,7 +18,7 @@ added to each motion by itself. Source: Genta, Dynamics of Rotating Systems (200
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -46,9 +46,10 @@ _FREE = 1e-13  # share of the largest stiffness that is rounding
 _UNHELD = 1e-12  # rad²/s²: stiffness over inertia where nothing is held
 _NO_INERTIA = 1e-6  # share of the largest inertia
 _BRACKETS = 200  # speeds at which signs of eigenvalues are looked at; half of them for blocks
-_SLOW, _RATIO = 12, 2.0**0.25  # speeds on each side of the first of these, and their ratio
+_SLOW, _RATIO = 24, 8.0  # more speeds around the first of these, and how far apart they reach
 _FEW, _MORE = 4, (8, 12, 16)  # harmonics on each side of the middle one
-_EDGE, _CLOSE = 1e-10, 1e-4  # energy of the last ones that is none, and a last change of a speed
+_EDGE = 1e-10  # energy of the last ones that is none
+_CLOSE = 1e-5  # last relative change of a critical speed, which errs by its square
 _ITERATIONS = 12
 _BESIDE = 0.97  # of a critical speed: from where its slope is told at first
 _STEP = 1e-6  # relative distance of speeds between which H has a slope
@@ -99,14 +100,12 @@ class Stiffness:
         speed: float,
         motion: np.ndarray,
         multiples: np.ndarray,
-        tolerance: float,
         before: float | None = None,
     ) -> tuple[float, np.ndarray]:
         """Return the zero next to a speed and a motion (h, c), and its motion.
 
         By inverse iteration, with the slope of H between the last two speeds, of which `before` is
-        the first, a slower one by default. The last relative change is below the `tolerance`, and
-        the error its square; NaN where it does not converge.
+        the first, a slower one by default. NaN where it does not converge.
         """
         x, begin = (motion @ self.basis).ravel(), speed
         last = _BESIDE * speed if before is None else before
@@ -124,7 +123,7 @@ class Stiffness:
             x, speed = moved / np.linalg.norm(moved), float(speed - change)
             if not abs(speed - begin) < _FAR * begin:
                 break
-            if abs(change) <= tolerance * speed:
+            if abs(change) <= _CLOSE * speed:
                 return speed, self.motions(x[:, None], multiples)[..., 0]
         return np.nan, motion
 
@@ -156,8 +155,7 @@ class Search:
     """The search for critical speeds of an undamped model.
 
     Of order p ≥ 0 and nodal `diameters`, up to the speed `limit` [rad/s], which has to be given
-    where the stiffness varies with it. The `error` is the relative change of a critical speed in
-    the last step, which errs by its square. What is left out stands in `lost`, speeds that did not
+    where the stiffness varies with it. What is left out stands in `lost`, speeds that did not
     settle, in `jumps`, where a film jumps, and in `refused`, speeds without equations.
     """
 
@@ -165,7 +163,6 @@ class Search:
     order: float
     diameters: Sequence[int]
     limit: float | None
-    error: float = 1e-7
     lost: list[float] = field(default_factory=list)
     jumps: list[float] = field(default_factory=list)
     refused: dict[float, Exception] = field(default_factory=dict)
@@ -253,8 +250,7 @@ class Search:
             room = (len(orders) - len(motion)) // 2
             motion = np.pad(motion, ((room, room), (0, 0)))
             try:
-                given = last, motion, center + orders, _CLOSE, before
-                last, motion = self.stiffness.refined(*given)
+                last, motion = self.stiffness.refined(last, motion, center + orders, before)
             except NO_EQUATIONS:  # beside the end of a table
                 break
             energy = np.sum(np.abs(motion) ** 2, axis=1)
@@ -275,9 +271,9 @@ class Search:
         """
         count = _BRACKETS // (1 + self.model.turns)
         first, kinks = self.limit / count, self.model.table_speeds
-        slow = first * _RATIO ** np.arange(-_SLOW, _SLOW)
+        slow = np.geomspace(first / _RATIO, first * _RATIO, _SLOW)
         even = np.linspace(first, self.limit, count)
-        wanted = np.unique([*even, *slow, *kinks[(kinks > first) & (kinks < self.limit)]])
+        wanted = np.unique(np.r_[even, slow, kinks[(kinks > first) & (kinks < self.limit)]])
         wanted = wanted[np.diff(wanted, prepend=0.0) > SAME * first]
         stack, errors = self.model.systems(wanted, self.order * wanted)
         if stack is None or np.count_nonzero(stack.known) < 2:
@@ -299,14 +295,13 @@ class Search:
         for row, j in np.argwhere((signs[:-1] != signs[1:]) & ~gaps[:, None]):
             A, change = stack[row], stack[row + 1] - stack[row]
             width = speeds[row + 1] - speeds[row]
-            ends = {0.0: values[row, j], 1.0: values[row + 1, j]}
-            at = brentq(_between, 0.0, 1.0, args=(A, change, j, ends), xtol=_FINE)
+            at = _zero_between(A, change, j)
             at = np.round(at, _DIGITS)  # of zeros that are one, orthogonal vectors
             guess, vectors = speeds[row] + at * width, basis @ np.linalg.eigh(A + at * change)[1]
             exact = guess, self.stiffness.motions(vectors[:, [j]], multiples)[..., 0]
             try:
                 before = float(speeds[row + (at < 0.5)])
-                exact = self.stiffness.refined(*exact, multiples, self.error, before)
+                exact = self.stiffness.refined(*exact, multiples, before)
             except NO_EQUATIONS:  # beyond the end of a table, by rounding
                 pass
             if abs(exact[0] - speeds[row] - 0.5 * width) < (0.5 + _BEYOND) * width:
@@ -357,16 +352,17 @@ class Search:
                 f"none are looked for at {count} of {len(self.grid.speed) + count - 1} speeds "
                 f"from {first:.4g} to {last:.4g} rad/s: {self.refused[first]}"
             )
-        for speeds, why in (
-            (self.lost, f"they still change with harmonics up to the {_MORE[-1]}th"),
-            (self.jumps, "the stiffness of a film jumps, by less with more nodes"),
-        ):
+        reasons = {
+            f"they still change with harmonics up to the {_MORE[-1]}th": self.lost,
+            "the stiffness of a film jumps, by less with more nodes": self.jumps,
+        }
+        for why, speeds in reasons.items():
             if speeds:
                 near = ", ".join(f"{speed:.5g}" for speed in np.unique(np.round(speeds, 6))[:5])
                 told.append(f"near {near} rad/s {why}, and they are left out")
         if told:
-            what = "; ".join(told)
-            warnings.warn(f"critical speeds: {what}", UserWarning, stacklevel=user_level())
+            what = "critical speeds: " + "; ".join(told)
+            warnings.warn(what, UserWarning, stacklevel=user_level())
 
 
 def _motion(speed: float, motion: np.ndarray, center: float, orders: np.ndarray) -> Motions:
@@ -391,11 +387,9 @@ def _eigenvalues(H: np.ndarray) -> np.ndarray:
     return np.where(np.abs(values) <= rounding, 0.0, values)
 
 
-def _between(
-    at: float, A: np.ndarray, change: np.ndarray, j: int, known: Mapping[float, float]
-) -> float:
-    """Return an eigenvalue of what lies between two matrices, at a share from 0 to 1."""
-    return known[at] if at in known else _eigenvalues(A + at * change)[j]
+def _zero_between(A: np.ndarray, change: np.ndarray, j: int) -> float:
+    """Return the share of a change, from 0 to 1, at which an eigenvalue of A is zero."""
+    return brentq(lambda at: _eigenvalues(A + at * change)[j], 0.0, 1.0, xtol=_FINE)
 
 
 def _solved(H: np.ndarray, load: np.ndarray, reach: int) -> np.ndarray:

@@ -218,9 +218,7 @@ class Content:
             vectors = np.where(swings, rate, 1.0)[:, None] * vectors
         energy, directions, beside = self.parts(self.energies(vectors))
         *directions, whole = directions.sum(axis=2)  # (s, k) each
-        # equal but for rounding is equal
         energy = np.moveaxis(energy, 0, 2) / np.maximum(whole, 1e-300)[:, None, None]
-        energy = np.round(energy, _DIGITS)
         above = (orders[:, None] + self.shifts).ravel()  # of all waves in all harmonics
         by_wave = energy.sum(axis=1)
         energy = energy.reshape(len(values), len(above), values.shape[1])
@@ -230,9 +228,7 @@ class Content:
         wave = np.tile(self.waves, len(orders))[:, None]
         turns = np.sign(wave * seen) * np.where(speeds < 0.0, -1.0, 1.0)[:, :, None]
         turns = np.where(np.abs(seen) <= still[:, None], 0.0, turns)
-        forward, backward = (
-            np.round(np.sum(energy * (turns == sense), axis=1), _DIGITS) for sense in (1.0, -1.0)
-        )
+        forward, backward = (np.sum(energy * (turns == sense), axis=1) for sense in (1.0, -1.0))
         codes = np.where(forward >= backward, FORWARD, BACKWARD)
         weaker, stronger = np.minimum(forward, backward), np.maximum(forward, backward)
         codes[weaker > MIXED_SHARE * stronger] = MIXED

@@ -147,24 +147,6 @@ class Stability(OfMotions, ModelResult):
         growth = np.where(self.families == family, self._growth, np.nan)
         return np.fmax.reduce(growth, axis=1, initial=np.nan)
 
-    def least_stable_of(self, family: str) -> tuple[int, int] | None:
-        """Return row and column of a family's least stable motion over all speeds.
-
-        The first of several that are one but for their bounds; None where the family has no motion,
-        or only neutral ones.
-
-        Parameters
-        ----------
-        family : {'lateral', 'torsional', 'axial', 'disc', 'other', 'foundation'}
-        """
-        checks.choice(family, "family", FAMILIES)
-        told = (self.families == family) & self._moving
-        if not np.any(told):
-            return None
-        growth = np.where(told, self.exponents.real, -np.inf)
-        row, column = np.argwhere(growth >= growth.max() - np.nanmax(self.bounds))[0]
-        return int(row), int(column)
-
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns; `units` are those of :meth:`plot`.
 
@@ -196,15 +178,18 @@ class Stability(OfMotions, ModelResult):
         verdict = np.where(self.stable, "stable", verdict)
         lines = table_lines(self.columns(units) | {"stable": verdict}, "growth [1/s]")
         for family in FAMILIES:
-            found = self.least_stable_of(family)
-            if found is not None:
-                lines.append(f"least stable {family} motion: {self._told(found, shown)}")
+            named = (self.families == family) & self._moving
+            if np.any(named):
+                growth = np.where(named, self.exponents.real, -np.inf)
+                # the first of several that are one but for rounding
+                worst, *_ = np.argwhere(growth >= growth.max() - np.nanmax(self.bounds))
+                lines.append(f"least stable {family} motion: {self._told(*worst, shown)}")
         return "\n".join([*lines, *self._closing(self.basis_errors)])
 
-    def _told(self, at: tuple[int, int], shown: Units) -> str:
+    def _told(self, row: int, column: int, shown: Units) -> str:
         """Return a motion in words: growth, speed, frequency, whirl, log decrement."""
-        speed, n = shown.speeds(self.speeds[at[0]]), self.nodal_diameters[at]
-        place = f"{speed:.6g} {shown.speed}"
+        at = row, column
+        place, n = f"{shown.speeds(self.speeds[row]):.6g} {shown.speed}", self.nodal_diameters[at]
         heard = f"{shown.frequencies(self.frequencies_inertial[at]):.5g} {shown.frequency}"
         whirl = f"{self.whirl[at]}" + (f", n = {n}" if n >= 0 else "")
         return _in_words(self.exponents[at].real, place, heard, whirl, self.log_decrement[at])
@@ -318,7 +303,7 @@ def stability(
     result = of_motions(model, Content.of(model), motions, accuracy)
 
     def told(row: int) -> str:
-        worst = result._told((row, result.least_stable[row]), Units.of("rpm"))
+        worst = result._told(row, result.least_stable[row], Units.of("rpm"))
         return f"the least stable motion ({worst})"
 
     basis_error.warn(result.basis_errors, told, model, accuracy)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import brentq
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given
@@ -44,7 +44,6 @@ _SMALL = 0.1  # share of the range that a limit counts as at least
 _SPEED = "speed [rad/s]"  # how the names of parameters end that are shown in other units
 Supports = Sequence[Given] | Given
 _ROOT = 1e-8  # of the largest parameter: where the search for a limit stops
-_PEAKS, _STEPS = 6, 6  # peaks that are looked at, each with so many values
 _ASIDE = 1e-4  # of the range, or half of an unstable one: where the growing motion is named
 
 
@@ -172,7 +171,7 @@ class _Margin:
     beside: Beside | None = None
 
     def look_at(self, points: Sequence[float]) -> None:
-        """Compute the margin at points, with one warning where there are no coefficients."""
+        """Compute the margin at points; warn once where there are no coefficients."""
         self.known |= dict.fromkeys(points, np.nan)
         refused, together = [], [points] if self.model else [[point] for point in points]
         for group in together:
@@ -187,24 +186,6 @@ class _Margin:
                 margins = np.where(np.isnan(margins), -found.bounds, margins)
                 self.known |= dict(zip(group, margins.tolist(), strict=True))
         warn_of_refused(refused, len(together))
-
-    def look_at_peaks(self) -> None:
-        """Compute the margin near peaks below zero and gaps above, which may cross it."""
-        known = sorted((p, margin) for p, margin in self.known.items() if not np.isnan(margin))
-        near = []
-        for (a, before), (_, margin), (b, after) in zip(known, known[1:], known[2:], strict=False):
-            sign = 1.0 if margin > 0.0 else -1.0
-            if 0.0 < sign * margin < max(sign * before, sign * after) and sign * margin <= min(
-                sign * before, sign * after
-            ):
-                near.append((sign * margin, sign, (a, b)))
-        for _, sign, ends in sorted(near)[:_PEAKS]:
-            minimize_scalar(
-                lambda point, sign=sign: sign * self(float(point)),
-                bounds=ends,
-                method="bounded",
-                options={"maxiter": _STEPS},
-            )
 
     def motions(self, points: Sequence[float], richer: bool = False) -> Motions:
         """Return the motions at points of one model, or of a richer one."""
@@ -251,9 +232,8 @@ def stability_threshold(
     """Find the limits of stability over the spin speed or another parameter.
 
     Each is found to 1e-7 of the largest parameter, with the motion that grows there. The range is
-    looked at in `samples` intervals, and closer where the growth has a peak near zero. A range that
-    is narrower than an interval can be missed, as one of a parametric resonance with little
-    damping: take more where that matters.
+    looked at in `samples` intervals. A range that is narrower than an interval can be missed, as
+    one of a parametric resonance with little damping: take more where that matters.
 
     Parameters
     ----------
@@ -320,16 +300,15 @@ def stability_threshold(
         checks.number(low, "low", "rad/s", least=0.0)
         if speed is not None:
             raise ValueError("speed: is the parameter, from low to high; leave it out")
-        margin = _over_speed(target, high, tolerance, supports=supports, **made)
-        kinks = margin.model.table_speeds
+        model = linear_model(target, supports=supports, **made)
+        margin, kinks = _over_speed(model, high, tolerance), model.table_speeds
     points = np.linspace(low, high, samples + 1)
     points = np.union1d(points, kinks[(kinks > low) & (kinks < high)])
     return _found(margin, points.tolist(), label, accuracy)
 
 
-def _over_speed(target: Target, fastest: float, tolerance: float, **made) -> _Margin:
-    """Return the margin over the speed; warn of what its model leaves out."""
-    model = linear_model(target, **made)
+def _over_speed(model: LinearModel, fastest: float, tolerance: float) -> _Margin:
+    """Return the margin of a model over the speed; warn of what it leaves out."""
     warn_of_omissions(model, fastest, WHAT)
     return _Margin(lambda speed: (model, speed), tolerance, model)
 
@@ -340,7 +319,6 @@ def _found(
 ) -> StabilityThresholds:
     """Return the limits between points."""
     margin.look_at(points)
-    margin.look_at_peaks()
     points = [point for point in sorted(margin.known) if not np.isnan(margin.known[point])]
     low, high = points[0], points[-1]
     changes = [(a, b) for a, b in pairwise(points) if (margin(a) > 0.0) != (margin(b) > 0.0)]
@@ -401,6 +379,6 @@ def unstable_ranges(
     """
     values = checks.ascending_from_zero(speeds, "speeds")
     check_options(tolerance, accuracy)
-    made = {"supports": supports, "body": body, "stiffening": stiffening, "axes": axes}
-    margin = _over_speed(target, values[-1], tolerance, **made)
+    model = linear_model(target, supports=supports, body=body, stiffening=stiffening, axes=axes)
+    margin = _over_speed(model, values[-1], tolerance)
     return _found(margin, values.tolist(), _SPEED, accuracy).ranges
