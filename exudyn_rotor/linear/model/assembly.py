@@ -306,11 +306,6 @@ def elements_of(
     coordinates turn with `turns` times Ω. Of the kind 'static' elements have their static stiffness
     in the place of own coordinates; 'undamped' ones are also without damping and the skew part of
     their stiffness, and keep rings.
-
-    Raises
-    ------
-    ValueError
-        For a bearing without the load that it needs.
     """
     elements, own = [], []
     for name, given in supports.items():

@@ -75,12 +75,6 @@ class LinearScene:
         """Return the unknowns of an assembled scene; `mbs` is left as it is.
 
         Whether and at which speed the rotor spins in `mbs` plays no part.
-
-        Raises
-        ------
-        TypeError, ValueError
-            For a system that is not assembled, a body of another system, a second rotor,
-            coordinates of first order, and constraints that turn with the rotor.
         """
         check_scene(mbs, body)
         alone = cls.of_rotor(body)
@@ -174,16 +168,12 @@ class LinearScene:
         about_axis = source.invariants.moved(source.axis.project(center) - center).g
         return np.column_stack([self.columns, about_axis])
 
-    @cached_property
-    def _by_columns(self) -> np.ndarray:
-        return np.linalg.pinv(self._with_spin)
-
     def of_coordinates(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return unknowns (…, r) that move the rotor, and the turn of a free spin (…).
 
         By the coordinates (…, n) of the reduced rotor.
         """
-        found = x @ self._by_columns.T
+        found = x @ np.linalg.pinv(self._with_spin).T
         count = self.columns.shape[1]
         return found[..., :count], found[..., count:].sum(axis=-1)
 
