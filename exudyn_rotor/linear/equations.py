@@ -137,12 +137,11 @@ def without_rounding(terms: Terms) -> dict[int, np.ndarray]:
 
 
 def stacked(motions: Sequence[Terms]) -> dict[int, np.ndarray]:
-    """Return motions (p, k) one below the other."""
+    """Return motions (p, …) one below the other."""
+    none = [np.zeros_like(next(iter(motion.values()))) for motion in motions]
     orders = sorted({n for motion in motions for n in motion})
-    return {
-        n: np.vstack([motion.get(n, np.zeros(motion[0].shape)) for motion in motions])
-        for n in orders
-    }
+    pairs = list(zip(motions, none, strict=True))
+    return {n: np.concatenate([motion.get(n, zero) for motion, zero in pairs]) for n in orders}
 
 
 def difference(one: Terms, other: Terms) -> dict[int, np.ndarray]:
