@@ -137,12 +137,11 @@ def without_rounding(terms: Terms) -> dict[int, np.ndarray]:
 
 
 def stacked(motions: Sequence[Terms]) -> dict[int, np.ndarray]:
-    """Return motions (p, k) one below the other."""
+    """Return motions (p, …) one below the other."""
+    none = [np.zeros_like(next(iter(motion.values()))) for motion in motions]
     orders = sorted({n for motion in motions for n in motion})
-    return {
-        n: np.vstack([motion.get(n, np.zeros(motion[0].shape)) for motion in motions])
-        for n in orders
-    }
+    pairs = list(zip(motions, none, strict=True))
+    return {n: np.concatenate([motion.get(n, zero) for motion, zero in pairs]) for n in orders}
 
 
 def difference(one: Terms, other: Terms) -> dict[int, np.ndarray]:
@@ -151,31 +150,12 @@ def difference(one: Terms, other: Terms) -> dict[int, np.ndarray]:
     return {n: one.get(n, 0.0) - other.get(n, 0.0) for n in orders}
 
 
-def congruent(U: Terms, X: np.ndarray) -> dict[int, np.ndarray]:
-    """Return the Fourier terms of ``Uᵀ(θ) X U(θ)``, of a matrix (p, p) or a stack (s, p, p).
-
-    The symmetric and the skew part of X stay exactly that: the rounding of a stiff support would
-    else be a circulatory force.
-    """
-    result: dict[int, np.ndarray] = {}
-    acting = np.any(X, axis=(*range(X.ndim - 2), -1)) | np.any(X, axis=(*range(X.ndim - 2), -2))
-    U, X = {n: Y[acting] for n, Y in U.items()}, X[..., acting, :][..., acting]
-    for sign in (1.0, -1.0):
-        part = 0.5 * (X + sign * _transposed(X))
-        if np.any(part):
-            for n, Y in products(U, part, U, 0).items():
-                Y = 0.5 * (Y + sign * _transposed(Y))
-                add(result, {n: Y, -n: Y.conj()} if n else {0: Y})
-    return result
-
-
-def products(U: Terms, X: np.ndarray, V: Terms, least: float = -np.inf) -> dict[int, np.ndarray]:
-    """Return the Fourier terms of ``Uᵀ(θ) X V(θ)`` from the order `least` on."""
+def products(U: Terms, X: np.ndarray, V: Terms) -> dict[int, np.ndarray]:
+    """Return the Fourier terms of ``Uᵀ(θ) X V(θ)``, of a matrix (p, q) or a stack (s, p, q)."""
     result: dict[int, np.ndarray] = {}
     for a, left in U.items():
         for b, right in V.items():
-            if a + b >= least:
-                add(result, {a + b: left.T @ X @ right})
+            add(result, {a + b: left.T @ X @ right})
     return result
 
 

@@ -316,13 +316,7 @@ class LinearModel:
         return *given, *map(id, parts), *rest, *kind
 
     def coefficients(self, speed: float, frequency: float | None = None) -> list:
-        """Return what :meth:`at_points` needs of a model at a speed, as :meth:`at` [rad/s].
-
-        Raises
-        ------
-        NoCoefficientsError
-            As :meth:`at`.
-        """
+        """Return what :meth:`at_points` needs of a model at a speed, as :meth:`at` [rad/s]."""
         return [element.matrices(speed, frequency) for element in self._elements[0]]
 
     def at_points(self, speeds: np.ndarray, coefficients: Sequence) -> PeriodicSystem:
@@ -465,12 +459,7 @@ class LinearModel:
         return bool(self.table_frequencies.size)
 
     def check_without_frequency(self, what: str) -> None:
-        """Refuse coefficients over the frequency, of which motions of `what` have several.
-
-        Raises
-        ------
-        ValueError
-        """
+        """Refuse coefficients over the frequency, of which motions of `what` have several."""
         for element in self._elements[0]:
             if element.table_frequencies.size:
                 raise ValueError(

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.calls import user_level
+from exudyn_rotor.linear.equations import stacked
 from exudyn_rotor.linear.modal.basis_error import basis_errors, warn
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_omissions
 from exudyn_rotor.linear.model.linear_model import LinearModel
@@ -55,7 +56,7 @@ def unbalance_response(
     *,
     own: bool = True,
     supports: Sequence[Given] | Given = (),
-    body: RotorBody | Sequence[RotorBody] | None = None,
+    body: RotorBody | None = None,
     at: Sequence[At] | At | None = None,
     frame: str = "inertial",
     stiffening: str = "auto",
@@ -85,8 +86,8 @@ def unbalance_response(
         that is not symmetric has some: :attr:`UnbalanceResponse.loads` tells how much.
     supports : sequence of Support, optional
         Of a rotor.
-    body : RotorBody or sequence of these, optional
-        The rotor in a scene, or all of several, see :func:`linear_model`.
+    body : RotorBody, optional
+        The rotor in a scene, see :func:`linear_model`.
     at : sequence of str, int or position, optional
         Interfaces and mesh nodes to look at; all interfaces by default.
     frame : {'inertial', 'rotor'}
@@ -159,7 +160,7 @@ def harmonic_response(
     *,
     speed: float = 0.0,
     supports: Sequence[Given] | Given = (),
-    body: RotorBody | Sequence[RotorBody] | None = None,
+    body: RotorBody | None = None,
     at: Sequence[At] | At | None = None,
     frame: str = "inertial",
     stiffening: str = "auto",
@@ -343,7 +344,7 @@ class _Sweep:
             added = 0.5 * (values[between] + values[between + 1])
             values = np.concatenate([values, added])
             order = np.argsort(values)
-            motions = _stacked(motions, self._motions(model, added)[0])
+            motions = stacked([motions, self._motions(model, added)[0]])
             values, motions = values[order], {n: a[order] for n, a in motions.items()}
         kept = ~_is_missing(motions) | np.isin(values, given)
         return values[kept], {n: a[kept] for n, a in motions.items()}
@@ -378,12 +379,3 @@ def _turns(motions: Harmonics) -> np.ndarray:
     matters = np.maximum(size[1:], size[:-1]) > _SMALL * np.nan_to_num(size).max()
     turned = np.where(product == 0.0, np.pi, np.abs(np.angle(product)))
     return np.where(matters, turned, 0.0).max(axis=1)
-
-
-def _stacked(first: Harmonics, second: Harmonics) -> Harmonics:
-    """Return harmonics at the values of both; one may be in either of them only."""
-    none = [np.zeros_like(next(iter(each.values()))) for each in (first, second)]
-    return {
-        n: np.concatenate([first.get(n, none[0]), second.get(n, none[1])])
-        for n in sorted({*first, *second})
-    }

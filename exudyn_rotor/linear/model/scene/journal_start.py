@@ -21,11 +21,6 @@ def journal_start(scene: LinearScene, speed: float) -> tuple[np.ndarray, np.ndar
     """Return the motion with all journals at rest in their equilibria, at a spin speed [rad/s].
 
     Orders (3,) and harmonics (3, k).
-
-    Raises
-    ------
-    UnconvergedError
-        Where a bearing has no equilibrium under its load.
     """
     orders = np.array([-1, 0, 1])
     harmonics = np.zeros((3, scene.size), dtype=complex)

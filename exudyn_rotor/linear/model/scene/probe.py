@@ -89,10 +89,14 @@ class Probe:
 
         What moves as much kinetic energy as the rotor by a metre; beside the rotor at least one.
         """
-        T, scene = self.turn(0.0)[0], self.scene
-        masses = np.diag(T.T @ self.rotor_terms(0.0)[0] @ T + self.mass_beside)
-        metres = np.sqrt(np.maximum(masses, 1e-300) / scene.mass)
-        metres[~scene.touching] = np.maximum(metres[~scene.touching], 1.0)  # of light pads
+        T = self.turn(0.0)[0]
+        mass = T.T @ self.rotor_terms(0.0)[0] @ T + self.mass_beside
+        return self.metres_of(mass, ~self.scene.touching)
+
+    def metres_of(self, mass: np.ndarray, beside: np.ndarray | slice) -> np.ndarray:
+        """Return the same of coordinates with a mass matrix (k, k), some `beside` the rotor."""
+        metres = np.sqrt(np.maximum(np.diag(mass), 1e-300) / self.scene.mass)
+        metres[beside] = np.maximum(metres[beside], 1.0)  # of light pads
         return metres
 
     def _rotor_terms(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -147,10 +151,6 @@ class Probe:
         """Refuse what Exudyn has as a spring about the axis of a free spin, in the mean of angles.
 
         By the undeformed state without loads: what remains is no moment of a static force.
-
-        Raises
-        ------
-        UnconvergedError
         """
         scene, stiffness = self.scene, []
         if not scene.is_spin_free:

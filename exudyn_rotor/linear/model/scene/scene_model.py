@@ -172,15 +172,7 @@ class SceneModel(LinearModel):
     # ------------------------------------------------------------------ equations
 
     def at(self, speed: float, frequency: float | None = None) -> PeriodicSystem:
-        """Return the equations at a spin speed, and a frequency of motions [rad/s].
-
-        About the equilibrium at this speed.
-
-        Raises
-        ------
-        NoCoefficientsError, UnconvergedError
-            For a speed beyond a table, at which a film carries nothing, or without an equilibrium.
-        """
+        """Return the equations about the equilibrium at a speed, see :meth:`LinearModel.at`."""
         if self._is_list:
             return super().at(speed, frequency)
         assembly = self.assembly(speed)
@@ -194,12 +186,6 @@ class SceneModel(LinearModel):
         """Return what foreign forces add to the equations of an assembly, about a state.
 
         In axes that stand still it is the mean over a turn, as of the rotor's matrices.
-
-        Raises
-        ------
-        UnconvergedError
-            Where it changes as the rotor turns, but for the unevenness of the mesh, and where it
-            holds a free spin.
         """
         moved, found = _Standing(probe, self.in_scene(assembly), np.zeros(assembly.size)), []
         # what stands still has two harmonics in axes that turn
@@ -269,9 +255,7 @@ class SceneModel(LinearModel):
         speed, scene = probe.speed, self.scene
         _, controllers = self._elements_for(0, "full")
         assembly = Assembly((*self._bodies(0, speed == 0.0), *controllers), (), 0)
-        metres = np.sqrt(np.maximum(np.diag(assembly.M), 1e-300) / scene.mass)
-        beside = slice(assembly.slices[0].stop, None)
-        metres[beside] = np.maximum(metres[beside], 1.0)  # of light pads
+        metres = probe.metres_of(assembly.M, slice(assembly.slices[0].stop, None))
         parts = self.in_scene(assembly)
         with_own = [one for one in scene.body.supports if one.connector.own]
         first = len(assembly.bodies) - len(controllers)
@@ -288,18 +272,13 @@ class SceneModel(LinearModel):
         weights = [state.by_coordinates(a)[0].T @ still.rotor_terms(a)[3] for a in angles]
         weight = np.mean(weights, axis=0)
 
-        def linearised(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            force, K, D = probe.forces(0.0, by_z @ z, by_rate @ z)
+        def balance(z: np.ndarray, slopes: bool) -> tuple[np.ndarray, np.ndarray]:
+            force, K, D = probe.forces(0.0, by_z @ z, by_rate @ z, slopes=slopes)
             return own + by_z.T @ (K @ by_z + D @ by_rate), own @ z - weight - by_z.T @ force
-
-        def unbalanced(z: np.ndarray) -> np.ndarray:
-            force = probe.forces(0.0, by_z @ z, by_rate @ z, slopes=False)[0]
-            return own @ z - weight - by_z.T @ force
 
         z = newton(
             scene,
-            linearised,
-            unbalanced,
+            balance,
             z,
             metres,
             _TOLERANCE,

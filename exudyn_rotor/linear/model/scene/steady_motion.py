@@ -9,7 +9,7 @@ turns in the rotor.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -151,8 +151,7 @@ class _Search:
         values = (np.exp(1j * np.outer(self.angles, orders)) @ Y).real
         parts = newton(
             probe.scene,
-            self._linearised,
-            self._unbalanced,
+            self._balance,
             self._parts(values),
             np.tile(probe.metres, 2 * count + 1),
             self.tolerance,
@@ -172,9 +171,13 @@ class _Search:
 
     # ------------------------------------------------------------------ equations of the parts
 
-    def _linearised(self, parts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the stiffness between the parts, and what is unbalanced of each."""
-        points = [self.probe.linearised(*at) for at in self._motion(parts)]
+    def _balance(self, parts: np.ndarray, slopes: bool) -> tuple[np.ndarray | None, np.ndarray]:
+        """Return the stiffness between the parts with `slopes`, and what is unbalanced of each."""
+        parts = parts.reshape(2 * len(self.orders) + 1, -1)
+        motion = zip(self.angles, *(wave @ parts for wave in self.waves), strict=True)
+        if not slopes:
+            return None, self._parts(np.array([self.probe.unbalanced(*at) for at in motion]))
+        points = [self.probe.linearised(*at) for at in motion]
         M, D, K, left = (np.array(each) for each in zip(*points, strict=True))
         h, k = self.waves[0].shape[1], left.shape[1]
         total = np.zeros((h * h, k * k))
@@ -183,26 +186,14 @@ class _Search:
             total += pairs.reshape(-1, h * h).T @ X.reshape(-1, k * k) / self.samples
         return total.reshape(h, h, k, k).swapaxes(1, 2).reshape(h * k, h * k), self._parts(left)
 
-    def _unbalanced(self, parts: np.ndarray) -> np.ndarray:
-        """Return what is unbalanced of each part."""
-        return self._parts(np.array([self.probe.unbalanced(*at) for at in self._motion(parts)]))
-
     def _parts(self, values: np.ndarray) -> np.ndarray:
         """Return the parts of values (s, k) at the angles."""
         return (self.waves[0].T @ values).ravel() / self.samples
 
-    def _motion(
-        self, parts: np.ndarray
-    ) -> Iterator[tuple[float, np.ndarray, np.ndarray, np.ndarray]]:
-        """Return every angle with the motion there, its rate and acceleration."""
-        parts = parts.reshape(2 * len(self.orders) + 1, -1)
-        return zip(self.angles, *(wave @ parts for wave in self.waves), strict=True)
-
 
 def newton(
     scene: LinearScene,
-    linearised: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]],
-    unbalanced: Callable[[np.ndarray], np.ndarray],
+    balance: Callable[[np.ndarray, bool], tuple[np.ndarray | None, np.ndarray]],
     start: np.ndarray,
     metres: np.ndarray,
     tolerance: float,
@@ -217,8 +208,9 @@ def newton(
 
     Parameters
     ----------
-    linearised, unbalanced : callable
-        Stiffness (k, k) and what is unbalanced (k,), and the latter alone.
+    balance : callable
+        Takes coordinates, and whether their stiffness is wanted; gives the stiffness (k, k) and
+        what is unbalanced (k,).
     metres : ndarray, shape (k,)
         Per unit of each coordinate.
     tolerance : float
@@ -229,7 +221,7 @@ def newton(
     y, reach, least, stalled = start, _FIRST_REACH, np.inf, 0
     enough, far = _BALANCED * scene.mass, _FAR * radius_of_gyration(scene.body.motion.invariants)
     for iteration in range(_MOST_ITERATIONS):
-        K, residual = linearised(y)
+        K, residual = balance(y, True)
         step, left = _solved(K, -residual)
         pull = np.abs(left / metres).max(initial=0.0)
         held = pull <= _UNHELD * scene.mass
@@ -243,7 +235,7 @@ def newton(
         least = min(least, most)
         share, allowed = 1.0, max(_AS_MUCH * most, enough)
         for _ in range(_MOST_HALVINGS):
-            if np.linalg.norm(unbalanced(y + share * step) / metres) <= allowed:
+            if np.linalg.norm(balance(y + share * step, False)[1] / metres) <= allowed:
                 break
             share *= 0.5
         y = y + share * step
