@@ -150,12 +150,31 @@ def difference(one: Terms, other: Terms) -> dict[int, np.ndarray]:
     return {n: one.get(n, 0.0) - other.get(n, 0.0) for n in orders}
 
 
-def products(U: Terms, X: np.ndarray, V: Terms) -> dict[int, np.ndarray]:
-    """Return the Fourier terms of ``Uᵀ(θ) X V(θ)``, of a matrix (p, q) or a stack (s, p, q)."""
+def congruent(U: Terms, X: np.ndarray) -> dict[int, np.ndarray]:
+    """Return the Fourier terms of ``Uᵀ(θ) X U(θ)``, of a matrix (p, p) or a stack (s, p, p).
+
+    The symmetric and the skew part of X stay exactly that: the rounding of a stiff support would
+    else be a circulatory force.
+    """
+    result: dict[int, np.ndarray] = {}
+    acting = np.any(X, axis=(*range(X.ndim - 2), -1)) | np.any(X, axis=(*range(X.ndim - 2), -2))
+    U, X = {n: Y[acting] for n, Y in U.items()}, X[..., acting, :][..., acting]
+    for sign in (1.0, -1.0):
+        part = 0.5 * (X + sign * _transposed(X))
+        if np.any(part):
+            for n, Y in products(U, part, U, 0).items():
+                Y = 0.5 * (Y + sign * _transposed(Y))
+                add(result, {n: Y, -n: Y.conj()} if n else {0: Y})
+    return result
+
+
+def products(U: Terms, X: np.ndarray, V: Terms, least: float = -np.inf) -> dict[int, np.ndarray]:
+    """Return the Fourier terms of ``Uᵀ(θ) X V(θ)`` from the order `least` on."""
     result: dict[int, np.ndarray] = {}
     for a, left in U.items():
         for b, right in V.items():
-            add(result, {a + b: left.T @ X @ right})
+            if a + b >= least:
+                add(result, {a + b: left.T @ X @ right})
     return result
 
 

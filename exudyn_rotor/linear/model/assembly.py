@@ -26,6 +26,7 @@ from exudyn_rotor.linear.equations import (
     Terms,
     UnconvergedError,
     add,
+    congruent,
     difference,
     products,
     rate_of,
@@ -39,6 +40,7 @@ from exudyn_rotor.linear.model.turning import ACROSS
 from exudyn_rotor.theory.rotating_axes import axial_skew
 
 NO_EQUATIONS = NoCoefficientsError, UnconvergedError
+_SMALL = 1e-13  # share of a matrix that is rounding
 _ROUNDING = 1e-12  # share of a matrix by which it may differ after a turn and be isotropic
 End = tuple[str, str]  # names of a body and of its interface
 Seen = Callable[[End], Terms]  # what a support acts on, seen from outside
@@ -117,14 +119,14 @@ class Element:
         if self.turns and self.turns == turns:  # seen from axes that turn with it, it stands still
             U = turned(U, -turns)
         elif self.turns:
-            put(found, "K", 1, products(U, -self.turns * D @ axial_skew(D.shape[-1]), U))
-        put(found, "D", 0, products(U, D, U))
-        put(found, "K", 0, products(U, K, U))
+            put(found, "K", 1, congruent(U, -self.turns * D @ axial_skew(D.shape[-1])))
+        put(found, "D", 0, congruent(U, D))
+        put(found, "K", 0, congruent(U, K))
         first = rate_of(U)
         if first and np.any(D):
             put(found, "K", 1, products(U, D, first))
         for mass in masses:  # ü = d²(U y)/dt²; in axes that turn it is alike in all directions
-            put(found, "M", 0, {0: products(U, mass, U)[0]})
+            put(found, "M", 0, {0: congruent(U, mass)[0]})
             if first:
                 put(found, "D", 1, products(U, 2.0 * mass, first))
                 put(found, "K", 2, products(U, mass, rate_of(first)))
@@ -404,7 +406,7 @@ class Assembly:
 
     @cached_property
     def _steady(self) -> Powers:
-        """What does not vary otherwise than by powers of Ω."""
+        """What does not vary otherwise than by powers of Ω; without rounding."""
         found: Powers = {}
         for body, place in zip(self.bodies, self.slices, strict=True):
             for name, given in (("M", [body.M]), ("D", body.D), ("K", body.K)):
@@ -416,7 +418,12 @@ class Assembly:
                 given = element.powers(element.matrices(0.0), U, self.turns)
                 for (name, n, power), X in given.items():
                     put(found, name, power, {n: X})
-        return found
+        largest = {name: np.abs(found[name, 0, 0]).max(initial=0.0) for name in "MDK"}
+        return {
+            key: X
+            for key, X in found.items()
+            if key[1] == 0 or np.abs(X).max() > _SMALL * largest[key[0]]
+        }
 
     def system(
         self,
