@@ -38,7 +38,9 @@ bearings = [
 
 # what the grade permits, half of it at either end
 permitted = permissible_unbalance(GRADE, mass, SERVICE)
-unbalances = [Unbalance(name, 0.5 * permitted) for name in rotor.interfaces]
+unbalances = [
+    Unbalance.from_grade(name, GRADE, mass, SERVICE, share=0.5) for name in rotor.interfaces
+]
 speeds = np.linspace(0.0, SERVICE, 211)
 response = unbalance_response(rotor, speeds, unbalances, own=False, supports=bearings)
 

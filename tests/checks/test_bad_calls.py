@@ -265,7 +265,7 @@ RIGHT = {
 # functions and methods where it is wrong all the same
 WRONG = {
     "negative": """
-        anticipated_cross_coupling.speed permissible_unbalance.speed
+        anticipated_cross_coupling.speed from_grade.speed permissible_unbalance.speed
         sensitivity.speed stability_level_one.speed stability_threshold.speed
         standard_unbalances.speed""",
     "unknown": """

@@ -118,6 +118,8 @@ def test_balance_grade(grade, speed_rpm, specific):
     # ISO 21940-11:2016: G = e_per Ω; e_per in m written out to four digits
     speed = speed_rpm * np.pi / 30.0
     assert permissible_unbalance(grade, 8.0, speed) == pytest.approx(8.0 * specific, rel=2e-4)
+    half = Unbalance.from_grade("left", grade, 8.0, speed, share=0.5, angle=1.0)
+    assert half.amount == pytest.approx(4.0 * specific, rel=2e-4)
 
 
 STIFFNESS, DAMPING = (2e5, 3e5), (500.0, 400.0)

@@ -162,11 +162,8 @@ class Unbalance:
 
     Examples
     --------
-    Half of what a grade permits, where two tolerance planes are at equal distances from the centre
-    of mass (ISO 21940-11:2016, Sect. 7):
-
-    >>> from exudyn_rotor import Unbalance, permissible_unbalance
-    >>> Unbalance("disc", 0.5 * permissible_unbalance(2.5, mass=40.0, speed=500.0))
+    >>> from exudyn_rotor import Unbalance
+    >>> Unbalance.from_grade("disc", 2.5, mass=40.0, speed=500.0, share=0.5)
     Unbalance(at='disc', amount=0.0001, angle=0.0)
     """
 
@@ -180,6 +177,38 @@ class Unbalance:
         amount = checks.number(self.amount, f"{where}: amount", "kg m", above=0.0)
         angle = checks.number(self.angle, f"{where}: angle", "rad")
         checks.keep(self, amount=amount, angle=angle)
+
+    @classmethod
+    def from_grade(
+        cls,
+        at: str | int | Sequence[float],
+        grade: float,
+        mass: float,
+        speed: float,
+        *,
+        angle: float = 0.0,
+        share: float = 1.0,
+    ) -> Unbalance:
+        """Return the largest unbalance that a balance quality grade permits.
+
+        Parameters
+        ----------
+        at : str, int, or sequence of three floats
+        grade, mass, speed : float
+            See :func:`permissible_unbalance`.
+        angle : float, optional
+            In the rotor frame [rad].
+        share : float, optional
+            Part of the whole in this plane: 0.5 where two tolerance planes lie at equal distances
+            from the centre of mass (ISO 21940-11:2016, Sect. 7).
+
+        Raises
+        ------
+        TypeError, ValueError
+            If `share` is not between 0 and 1, or another argument is refused.
+        """
+        share = checks.number(share, "share", above=0.0, most=1.0)
+        return cls(at, share * permissible_unbalance(grade, mass, speed), angle)
 
     def __str__(self) -> str:
         """Return place, amount [g mm] and angle [deg] in words."""
