@@ -48,7 +48,7 @@ def limit_cycles(
     gravity: ArrayLike = (0.0, 0.0, 0.0),
     loads: Sequence[HarmonicForce] | HarmonicForce = (),
     foundation: Foundation | None = None,
-    body: RotorBody | None = None,
+    body: RotorBody | Sequence[RotorBody] | None = None,
     at: Sequence[At] | At | None = None,
     stiffening: str = "auto",
     tolerance: float = 1e-3,

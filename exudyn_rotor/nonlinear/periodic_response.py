@@ -50,7 +50,7 @@ def periodic_response(
     loads: Sequence[HarmonicForce] | HarmonicForce = (),
     own: bool = True,
     foundation: Foundation | None = None,
-    body: RotorBody | None = None,
+    body: RotorBody | Sequence[RotorBody] | None = None,
     revolutions: int = 1,
     at: Sequence[At] | At | None = None,
     stiffening: str = "auto",
@@ -94,9 +94,9 @@ def periodic_response(
         Whether the rotor's own eccentricity counts, by added point masses and by its mesh.
     foundation : Foundation, optional
         What carries all supports, see :func:`linear_model`.
-    body : RotorBody, optional
-        The rotor in a scene, which has its own supports, foundation, loads and gravity. Whether
-        and how fast the rotor spins there plays no part.
+    body : RotorBody or sequence of RotorBody, optional
+        The rotor in a scene, or all of them; a scene has its own supports, foundation, loads and
+        gravity. Whether and how fast it spins there plays no part; of several, the ratios do.
     revolutions : int, optional
         After which the motion repeats: 2 for motions at half of the spin frequency. From doublings
         on the branch of a shorter period, those of a longer one are followed, too.

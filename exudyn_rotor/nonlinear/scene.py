@@ -1,4 +1,4 @@
-"""A scene as a rotor on supports and laws, and the start of a run in it.
+"""A scene as a rotor, or a train of rotors, on supports and laws, and the start of a run in it.
 
 Laws are known by what :func:`exudyn_rotor.add_supports` added, and Exudyn's own forces by their
 constants. Anything else might be nonlinear, and is refused by its name.
@@ -21,8 +21,10 @@ from exudyn_rotor.linear.model.build import Target
 from exudyn_rotor.linear.model.scene.linear_scene import (
     LinearScene,
     check_scene,
+    known_objects,
     objects_beside,
 )
+from exudyn_rotor.linear.model.scene.scene_train import scene_train
 from exudyn_rotor.linear.response.loads import HarmonicForce
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState
@@ -35,7 +37,7 @@ _INSTEAD = (
 
 
 class Listed(NamedTuple):
-    """A scene as it is given by lists; gravity is in axes of the rotor's mesh."""
+    """A scene as it is given by lists; gravity is in axes of the (first) rotor's mesh."""
 
     target: Target
     supports: tuple[Given, ...]
@@ -47,7 +49,7 @@ class Listed(NamedTuple):
 
 def as_lists(
     target: Target,
-    body: RotorBody | None,
+    body: RotorBody | Sequence[RotorBody] | None,
     supports: Sequence[Given] | Given,
     foundation: Foundation | None,
     gravity: ArrayLike,
@@ -69,18 +71,25 @@ def as_lists(
         raise ValueError(
             "supports, foundation, gravity, loads: a scene has its own; leave these out"
         )
-    check_scene(target, reduced_body(body, how="the rotor in the scene, of add_rotor"))
-    base = foundation_below(body)
-    _check_objects(body, base)
-    check_origin(body)
-    return Listed(
-        body.selection.source,
-        tuple(one.support for one in body.supports),
-        None if base is None else _in_mesh(base, body),
-        body.placement.rotation.T @ body.gravity,
-        tuple(_loads(body, base)),
-        body.stiffening,
-    )
+    mbs = target
+    if isinstance(body, list | tuple):
+        target, level = scene_train(mbs, body)
+        bodies, base, supports, foundation = list(body), None, (), None
+    else:
+        check_scene(mbs, reduced_body(body, how="the rotor in the scene, of add_rotor"))
+        base = foundation_below(body)
+        _check_objects(body, base)
+        target, level, bodies = body.selection.source, body.stiffening, [body]
+        supports = tuple(one.support for one in body.supports)
+        foundation = None if base is None else _in_mesh(base, body)
+    for one in bodies:
+        check_origin(one)
+    gravity = bodies[0].gravity
+    if any(np.any(one.gravity != gravity) for one in bodies):
+        raise ValueError("body: the rotors of this scene have different gravity; give all the same")
+    gravity = bodies[0].placement.rotation.T @ gravity
+    loads = tuple(_loads(mbs, bodies, base))
+    return Listed(target, supports, foundation, gravity, loads, level)
 
 
 def check_origin(body: RotorBody) -> None:
@@ -115,27 +124,35 @@ def _in_mesh(base: SceneFoundation, body: RotorBody) -> Foundation:
 
 def _check_objects(body: RotorBody, base: SceneFoundation | None) -> None:
     """Refuse all objects but known ones."""
-    for item in objects_beside(body, () if base is None else base.objects.values()):
+    known = known_objects(body)
+    known |= set() if base is None else set(map(int, base.objects.values()))
+    for item in objects_beside(body.mbs, known):
         raise ValueError(
             f"mbs: {item['objectType']} {item['name']!r} is no law of this package; {_INSTEAD}"
         )
 
 
-def _loads(body: RotorBody, base: SceneFoundation | None) -> Iterator[HarmonicForce]:
+def _loads(
+    mbs: exudyn.MainSystem, bodies: Sequence[RotorBody], base: SceneFoundation | None
+) -> Iterator[HarmonicForce]:
     """Yield constant forces at interfaces, and refuse all loads but these and weights."""
-    weights = [body.gravity_load, None if base is None else base.gravity_load]
+    weights = [one.gravity_load for one in (*bodies, *([] if base is None else [base]))]
     weights = {int(number) for number in weights if number is not None}
-    named = {int(marker): name for name, marker in body.markers.items()}
-    for number in set(range(body.mbs.systemData.NumberOfLoads())) - weights:
-        load = body.mbs.GetLoad(number)
+    named = {
+        int(marker): (f"{one.name}:{name}" if len(bodies) > 1 else name, one.standing_axes)
+        for one in bodies
+        for name, marker in one.markers.items()
+    }
+    for number in set(range(mbs.systemData.NumberOfLoads())) - weights:
+        load = mbs.GetLoad(number)
         is_known = load["loadType"] == "ForceVector" and int(load["markerNumber"]) in named
         if not is_known or load["bodyFixed"] or load["loadVectorUserFunction"]:
             raise ValueError(
                 f"mbs: load {number} ({load['loadType']} {load['name']!r}) is no constant force at "
                 f"an interface; {_INSTEAD}"
             )
-        at = named[int(load["markerNumber"])]
-        yield HarmonicForce(at, body.standing_axes.T @ load["loadVector"])
+        at, axes = named[int(load["markerNumber"])]
+        yield HarmonicForce(at, axes.T @ load["loadVector"])
 
 
 def state_in_scene(

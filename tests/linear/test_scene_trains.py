@@ -36,18 +36,7 @@ def scene(ratio, axis="z", rotation=None, **options):
     between = er.Support("a", 2e5, 15.0, 300.0)
     er.add_supports(second, between, base=first.marker("a"))
     mbs.Assemble()
-    return mbs, (first, second), train((first, second), ratio, [er.Link("HP:a", "LP:a", between)])
-
-
-def train(bodies, ratio, links):
-    """Return the train of two rotors of a scene, each of which is driven if its spin is given."""
-    return er.RotorTrain(
-        {body.name: body.selection.source for body in bodies},
-        {body.name: r for body, r in zip(bodies, (1.0, ratio), strict=True)},
-        {body.name: [s.support for s in body.supports if s.base is None] for body in bodies},
-        links,
-        driven=[body.name for body in bodies if not body.formulation.has_spin],
-    )
+    return mbs, (first, second), rotors
 
 
 def accelerations_left(mbs, bodies, model, rates):
@@ -124,8 +113,9 @@ def forces(mbs, bodies, model, rates, motion):
 )
 def test_accelerations_of_a_scene_are_those_of_its_train(ratio, axis, rotation):
     """Uneven and cross-coupled supports, a magnetic bearing with delay, a link with damping."""
-    mbs, bodies, given = scene(ratio, axis, rotation)
-    model = er.linear_model(given)
+    mbs, bodies, _ = scene(ratio, axis, rotation)
+    model = er.linear_model(mbs, body=bodies)
+    assert model.ratios == pytest.approx({"LP": 1.0, "HP": ratio})
     assert accelerations_left(mbs, bodies, model, (1.0, ratio)) < 1e-9
 
 
@@ -149,9 +139,7 @@ def geared(connection, driven="", turned=None, speed=SPEED, **options):
     ends = ("a", "a") if apart else ("b", "a")
     er.connect_rotors(connection, bodies[0], ends[0], bodies[1], ends[1])
     mbs.Assemble()
-    law = connection if apart else connection.support(ends[0])
-    link = er.Link(f"A:{ends[0]}", f"B:{ends[1]}", law)
-    return mbs, bodies, train(bodies, rates[1] / rates[0], [link])
+    return mbs, bodies
 
 
 GEARS = er.GearMesh(radii=[0.1, 0.2], stiffness=3e6, damping=30.0)
@@ -167,7 +155,26 @@ COUPLING = er.FlexibleCoupling(
 )  # fmt: skip
 def test_spins_of_a_scene_that_a_drive_holds_are_held_in_its_train(connection, turned, driven):
     """Torsion is that of the spins that are free in the scene, through gears and couplings."""
-    mbs, bodies, given = geared(connection, driven=driven, turned=turned)
-    model = er.linear_model(given)
+    mbs, bodies = geared(connection, driven=driven, turned=turned)
+    model = er.linear_model(mbs, body=bodies)
     assert model.size == 12 - len(driven)
     assert accelerations_left(mbs, bodies, model, [*model.ratios.values()]) < 1e-8
+
+
+def test_gears_and_couplings_of_a_scene_are_links():
+    """The same numbers as of the train that is written by hand."""
+    coupling = er.FlexibleCoupling(
+        torsion=2e3, lateral=[2e5, 1e5], angular=50.0, damping=[9.0, 9.0, 0.1, 0.1]
+    )
+    rotor = rings(*FIRST).reduce(0)
+    held = [er.Support(n, np.diag([3e5, 3e5, 1e5]), 9.0) for n in "ab"]
+    for connection, ratio, link in (
+        (GEARS, -0.5, er.Link("A:a", "B:a", GEARS)),
+        (coupling, 1.0, er.Link("A:b", "B:a", coupling.support("b"))),
+    ):
+        mbs, bodies = geared(connection)
+        train = er.RotorTrain(dict.fromkeys("AB", rotor), {"A": 1.0, "B": ratio},
+                           dict.fromkeys("AB", held), [link])  # fmt: skip
+        found = er.campbell(mbs, [0.0, SPEED], body=bodies, accuracy=None).frequencies_inertial
+        expected = er.campbell(train, [0.0, SPEED], accuracy=None).frequencies_inertial
+        np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-9)

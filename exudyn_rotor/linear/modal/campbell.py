@@ -333,7 +333,7 @@ def campbell(
     *,
     supports: Sequence[Given] | Given = (),
     foundation: Foundation | None = None,
-    body: RotorBody | None = None,
+    body: RotorBody | Sequence[RotorBody] | None = None,
     modes: int | None = None,
     frame: str = "inertial",
     stiffening: str = "auto",
@@ -357,8 +357,8 @@ def campbell(
         Of a rotor.
     foundation : Foundation, optional
         What carries them; the ground by default.
-    body : RotorBody, optional
-        The rotor in a scene, see :func:`linear_model`.
+    body : RotorBody or sequence of RotorBody, optional
+        The rotor in a scene, or all of several, see :func:`linear_model`.
     modes : int, optional
         How many modes to keep: those with the lowest frequencies in the `frame` at the first
         speed, followed from there, overdamped ones last; of a mode that is NaN there, at the

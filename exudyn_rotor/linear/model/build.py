@@ -18,6 +18,7 @@ from exudyn_rotor.linear.model.linear_model import AXES, ON_FOUNDATION, LinearMo
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.linear.model.scene.scene_model import SceneModel
+from exudyn_rotor.linear.model.scene.scene_train import scene_train
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
@@ -40,7 +41,7 @@ def linear_model(
     *,
     supports: Sequence[Given] | Given = (),
     foundation: Foundation | None = None,
-    body: RotorBody | None = None,
+    body: RotorBody | Sequence[RotorBody] | None = None,
     stiffening: str = "auto",
     axes: str = "auto",
 ) -> LinearModel:
@@ -61,8 +62,10 @@ def linear_model(
         Of a rotor; a scene has its own connectors.
     foundation : Foundation, optional
         What carries all supports of a rotor, by points of their names; the ground by default.
-    body : RotorBody, optional
-        The only rotor in a scene, from :func:`exudyn_rotor.add_rotor`.
+    body : RotorBody or sequence of RotorBody, optional
+        The rotor in a scene, from :func:`exudyn_rotor.add_rotor`; several make a
+        :class:`RotorTrain` of all rotors of the scene, with ratios of the speeds at which they
+        start.
     stiffening : {'auto', 'none', 'tilt', 'full'}
         Centrifugal stiffening of a rotor; a scene has that of its body. 'full' needs a rotor with
         prestress (:meth:`SolidRotor.prestress`); 'auto' is 'full' with one, which it computes for
@@ -106,8 +109,7 @@ def linear_model(
             "their own; leave them out"
         )
     if isinstance(target, exudyn.MainSystem):
-        rotor = reduced_body(body, how="the rotor in the scene, which add_rotor returned")
-        return SceneModel.of(LinearScene.of(target, rotor), axes)
+        return _of_scene(target, body, axes)
     if body is not None:
         raise TypeError(
             "body: is only for an exudyn.MainSystem, not for the rotor itself; got "
@@ -161,6 +163,17 @@ def _of_train(train: RotorTrain, stiffening: str, axes: str) -> LinearModel:
         rotors, train.ratios, train.supports, train.links, None, stiffening, axes,
         max(train.largest_unevenness, EVEN),
     )  # fmt: skip
+
+
+def _of_scene(
+    mbs: exudyn.MainSystem,
+    body: RotorBody | Sequence[RotorBody] | None,
+    axes: str,
+) -> LinearModel:
+    if isinstance(body, list | tuple):
+        return _of_train(*scene_train(mbs, body), axes)
+    how = "the rotor in the scene, which add_rotor returned; a list of several"
+    return SceneModel.of(LinearScene.of(mbs, reduced_body(body, how=how)), axes)
 
 
 def warn_of_omissions(model: LinearModel, speed: float = 0.0, what: str = "") -> None:

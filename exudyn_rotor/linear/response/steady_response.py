@@ -56,7 +56,7 @@ def unbalance_response(
     *,
     own: bool = True,
     supports: Sequence[Given] | Given = (),
-    body: RotorBody | None = None,
+    body: RotorBody | Sequence[RotorBody] | None = None,
     at: Sequence[At] | At | None = None,
     frame: str = "inertial",
     stiffening: str = "auto",
@@ -86,8 +86,8 @@ def unbalance_response(
         that is not symmetric has some: :attr:`UnbalanceResponse.loads` tells how much.
     supports : sequence of Support, optional
         Of a rotor.
-    body : RotorBody, optional
-        The rotor in a scene, see :func:`linear_model`.
+    body : RotorBody or sequence of these, optional
+        The rotor in a scene, or all of several, see :func:`linear_model`.
     at : sequence of str, int or position, optional
         Interfaces and mesh nodes to look at; all interfaces by default.
     frame : {'inertial', 'rotor'}
@@ -160,7 +160,7 @@ def harmonic_response(
     *,
     speed: float = 0.0,
     supports: Sequence[Given] | Given = (),
-    body: RotorBody | None = None,
+    body: RotorBody | Sequence[RotorBody] | None = None,
     at: Sequence[At] | At | None = None,
     frame: str = "inertial",
     stiffening: str = "auto",

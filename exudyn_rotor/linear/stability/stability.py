@@ -233,7 +233,7 @@ def stability(
     speeds: ArrayLike,
     *,
     supports: Sequence[Given] | Given = (),
-    body: RotorBody | None = None,
+    body: RotorBody | Sequence[RotorBody] | None = None,
     stiffening: str = "auto",
     axes: str = "auto",
     method: str = "auto",
@@ -252,8 +252,8 @@ def stability(
     supports : sequence of Support or bearings
         For a rotor. A spin that no support holds follows θ = Ωt and gives no exponent, see the
         notes of :func:`campbell`.
-    body : RotorBody, optional
-        The rotor in a ``MainSystem``, see :func:`linear_model`.
+    body : RotorBody or sequence of these, optional
+        The rotor in a ``MainSystem``, or all of several, see :func:`linear_model`.
     stiffening : {'auto', 'none', 'tilt', 'full'}
         For a rotor; 'full' needs one with prestress.
     axes : {'auto', 'inertial', 'rotor'}

@@ -9,7 +9,6 @@ Neglected: the change of mass matrices and constraint directions along small ste
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,10 +16,12 @@ import exudyn
 import numpy as np
 import scipy.linalg as la
 
+from exudyn_rotor import checks
 from exudyn_rotor.calls import kept
 from exudyn_rotor.linear.equations import others
 from exudyn_rotor.linear.model.body import RotorAlone
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
+from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody, StartState
 from exudyn_rotor.multibody.rotor.rotor_items import known_rotors
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
@@ -241,7 +242,7 @@ class LinearScene:
         mbs, body = self.body.mbs, self.body
         weight = set() if body.gravity_load is None else {int(body.gravity_load)}
         loads = set(range(mbs.systemData.NumberOfLoads())) - weight
-        return [*objects_beside(body), *map(mbs.GetLoad, sorted(loads))]
+        return [*objects_beside(mbs, known_objects(body)), *map(mbs.GetLoad, sorted(loads))]
 
     @cached_property
     def others(self) -> np.ndarray:
@@ -265,17 +266,22 @@ class LinearScene:
         return motion[:, self.free] @ self.N[:, self.others]
 
 
-def objects_beside(body: RotorBody, more: Iterable[int] = ()) -> list[dict]:
-    """Return all objects but those of a rotor and its supports, `more`, and grounds."""
-    of_supports = (one.objects for one in body.supports)
-    parts = body.objects.values(), body.constraints.values(), *of_supports, more
-    known = {int(number) for part in parts for number in part}
-    numbers = sorted(set(range(body.mbs.systemData.NumberOfObjects())) - known)
-    return [item for item in map(body.mbs.GetObject, numbers) if item["objectType"] != "Ground"]
+def known_objects(body: RotorBody) -> set[int]:
+    """Return the numbers of the objects of a rotor and its supports."""
+    found = {*map(int, body.objects.values()), *map(int, body.constraints.values())}
+    return found | {int(number) for one in body.supports for number in one.objects}
 
 
-def check_scene(mbs: exudyn.MainSystem, body: RotorBody) -> None:
-    """Refuse a system not assembled, another one's rotor, a second one, and first-order states."""
+def objects_beside(mbs: exudyn.MainSystem, known: set[int]) -> list[dict]:
+    """Return all objects but known ones and grounds, as dictionaries."""
+    numbers = sorted(set(range(mbs.systemData.NumberOfObjects())) - known)
+    return [item for item in map(mbs.GetObject, numbers) if item["objectType"] != "Ground"]
+
+
+def check_body(mbs: exudyn.MainSystem, body: RotorBody) -> None:
+    """Refuse a system not assembled, another one's rotor, and coordinates of first order."""
+    checks.instance(mbs, "mbs", exudyn.MainSystem)
+    reduced_body(body, how="exudyn_rotor.add_rotor returned it for the rotor in this system")
     if body.mbs is not mbs:
         raise ValueError(f"rotor {body.name!r} belongs to another mbs")
     body.check_present()
@@ -285,10 +291,16 @@ def check_scene(mbs: exudyn.MainSystem, body: RotorBody) -> None:
         raise ValueError("the system is not assembled: call mbs.Assemble() first")
     if mbs.systemData.ODE1Size():
         raise ValueError("linear scene: coordinates of first order (ODE1) are not supported")
+
+
+def check_scene(mbs: exudyn.MainSystem, body: RotorBody) -> None:
+    """Refuse what :func:`check_body` does, and a second rotor."""
+    check_body(mbs, body)
     second = [one.name for one in known_rotors(mbs) if one.script is not body.script]
     if second:
         raise ValueError(
             f"linear scene: a second rotor in this system, {second[0]!r}; one revolution is a "
             "period for one spin speed only, which steady_state needs. Linear analyses take "
-            "a RotorTrain of the reduced rotors, with supports=… and Link(…)"
+            "body=[…] with all rotors, on supports of add_supports and linked by connect_rotors, "
+            "or a RotorTrain of the reduced rotors"
         )
