@@ -196,6 +196,8 @@ def path(value: str | os.PathLike, name: str = "path") -> Path:
 def file(value: str | os.PathLike, name: str = "path") -> Path:
     """Return the path of a file that is there."""
     source = path(value, name)
+    if source.is_dir():
+        raise IsADirectoryError(f"{name}: needs the name of a file, {str(source)!r} is a folder")
     if not source.is_file():
         raise FileNotFoundError(
             f"{name}: there is no file {str(source)!r}; give its whole path, or that from the "

@@ -21,9 +21,8 @@ import numpy as np
 from exudyn_rotor.checks import Checked
 from exudyn_rotor.checks import numbers as numbers
 from exudyn_rotor.checks import words as words
-from exudyn_rotor.storage import plain, read_arrays, write_arrays, write_bytes
+from exudyn_rotor.storage import RESULT, plain, read_arrays, write_arrays, write_bytes
 
-_KIND = "result"
 _REGISTERED: dict[str, type[Result]] = {}
 
 Class = TypeVar("Class", bound=type)
@@ -70,7 +69,7 @@ class Result(Checked):
             if value is not None:
                 row = isinstance(value, tuple)
                 data[f"field.{item.name}"] = np.array(value, dtype=str) if row else value
-        write_arrays(path, _KIND, data)
+        write_arrays(path, RESULT, data)
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns of one length, named with their units.
@@ -185,7 +184,7 @@ def load_result(path: str | PathLike) -> Result:
     ...     load_result(Path(folder, "map.npz"))
     StabilityMap(x=array(1,), y=array(2,), growth=array(1, 2), stable=array(1, 2), ...)
     """
-    data = read_arrays(path, _KIND)
+    data = read_arrays(path, RESULT)
     name, package = str(data.pop("class", None)), sys.modules[__package__]
     if name in package.__all__:
         getattr(package, name)  # its module registers it

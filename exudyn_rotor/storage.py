@@ -19,6 +19,8 @@ from exudyn_rotor import checks
 _PACKAGE = "exudyn_rotor"
 _VERSION = 2  # of the file format
 _KINDS = "biufcU"  # flags, numbers, text
+RESULT, REDUCED_ROTOR = "result", "reduced rotor"  # what a file holds, and what loads it:
+_LOADED_BY = {RESULT: "load_result(path)", REDUCED_ROTOR: "ReducedRotor.load(path)"}
 
 
 def write_arrays(path: str | PathLike, kind: str, data: Mapping[str, object]) -> None:
@@ -98,9 +100,10 @@ def read_arrays(path: str | PathLike, kind: str) -> dict[str, np.ndarray]:
         ) from error
     written = str(data.pop("format", "no format"))
     if written != _format(kind):
+        loaders = {_format(one): loader for one, loader in _LOADED_BY.items()}
         raise ValueError(
-            f"{source}: holds {written!r}, where {_format(kind)!r} is needed; a file of another "
-            "version is made anew"
+            f"{source}: holds {written!r}, where {_format(kind)!r} is needed; "
+            + (f"{loaders[written]} reads it" if written in loaders else "make the file anew")
         )
     for array in data.values():
         array.flags.writeable = False

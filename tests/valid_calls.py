@@ -226,6 +226,7 @@ CALLS = {
         "basis": np.eye(w.SolidRotor.nodes.size)[:, :4],
         "direction": np.array([0.0, 0.0, 1.0]),
     },
+    "JournalBearing.table": {"speeds": [50.0, 100.0]},
     "JournalBearing": lambda w: {"film": w.OilFilm, "load": [0.0, -500.0]},
     "LinearActuator": {"force_current": 80.0, "negative_stiffness": 3e5},
     "Link": {"first": "first:left", "second": "second:left", "connection": er.Support("left", 1e6)},

@@ -19,9 +19,9 @@ Controlled = ControlledSupport | SeriesSupport
 _TILTING = ("tilt_stiffness", "tilt_damping")
 
 
-def given_supports(supports: Sequence[Given] | Given) -> tuple[Given, ...]:
+def given_supports(supports: Sequence[Given] | Given, name: str = "supports") -> tuple[Given, ...]:
     """Return supports and bearings as a tuple; TypeError for anything else."""
-    return checks.instances(supports, "supports", get_args(Given))
+    return checks.instances(supports, name, get_args(Given))
 
 
 def linear_supports(

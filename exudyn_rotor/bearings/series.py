@@ -124,7 +124,7 @@ class SeriesSupport:
         ValueError
             Where both together hold nothing.
         """
-        made = self.linearised()
+        speed, made = checks.number(speed, "speed", "rad/s"), self.linearised()
         inner, outer = (one.matrices(speed, 0.0)[0][:2, :2] for one in (made.inner, made.outer))
         return inner @ np.linalg.pinv(inner + outer) @ outer
 

@@ -10,20 +10,19 @@ from typing import Any, TypeVar
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.storage import plain, read_arrays, write_arrays
+from exudyn_rotor.storage import REDUCED_ROTOR, plain, read_arrays, write_arrays
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
 
 Rotor = TypeVar("Rotor")  # ReducedRotor, which has the methods that call this module
 
-_KIND = "reduced rotor"
 _ATTACHED = "attached."
 _IN_ATTACHED = "in_attached"
 
 
 def save_reduced(rotor: Rotor, path: str | PathLike) -> None:
     """Write `rotor` to `path`; a file of that name is replaced only by a complete one."""
-    write_arrays(path, _KIND, _entries(rotor))
+    write_arrays(path, REDUCED_ROTOR, _entries(rotor))
 
 
 def _entries(rotor: Rotor) -> dict[str, object]:
@@ -55,7 +54,7 @@ def load_reduced(path: str | PathLike, classes: tuple[type, ...]) -> Rotor:
 
     OSError when there is no such file; ValueError when it is damaged or describes no reduced rotor.
     """
-    data = {name: plain(value) for name, value in read_arrays(path, _KIND).items()}
+    data = {name: plain(value) for name, value in read_arrays(path, REDUCED_ROTOR).items()}
     try:
         return _rotor(data, classes)
     except (KeyError, TypeError, ValueError) as error:

@@ -55,6 +55,12 @@ class PointMass(Checked):
     mass: float
     distance: float
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        checks.count(self.node, "node")
+        checks.number(self.mass, "mass", "kg")
+        checks.number(self.distance, "distance", "m", least=0.0)
+
 
 def add_nodal_mass(matrix: sp.csr_array, node: int, mass: float) -> sp.csr_array:
     """Return the mass matrix `matrix` with `mass` [kg] added to all three directions of `node`."""

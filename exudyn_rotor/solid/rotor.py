@@ -398,7 +398,11 @@ class FiniteElementRotor:
             )
         count = self.node_count
         spring = STIFF * self.stiffness.diagonal().reshape(-1, 3)[nodes].max()
-        polar, transverse = checks.vector(inertia, "inertia", "kg m²", size=2)
+        try:
+            polar, transverse = checks.vector(inertia, "inertia", size=2)
+        except (TypeError, ValueError) as error:
+            needed = "the polar and the transverse moment, two finite numbers [kg m²]"
+            raise type(error)(checks.told("inertia", needed, inertia)) from error
         along = np.outer(self.axis.direction, self.axis.direction)
         tensor = polar * along + transverse * (np.eye(3) - along)
         disc = RigidDisc(center, mass, tensor, nodes, self.nodes[nodes], spring)

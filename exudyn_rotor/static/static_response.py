@@ -209,7 +209,8 @@ def bearing_loads(
     names = [one for one in listed if isinstance(one, str)]
     checks.different(checks.labels(names, "bearings", rotor.interfaces), "bearings")
     given = tuple(
-        RigidBearing(one) if isinstance(one, str) else given_supports(one)[0] for one in listed
+        RigidBearing(one) if isinstance(one, str) else given_supports(one, "bearings")[0]
+        for one in listed
     )
     if isinstance(rotor, SolidRotor):
         if len(given) <= 2 and len(names) == len(given):

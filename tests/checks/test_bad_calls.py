@@ -245,19 +245,23 @@ RIGHT = {
         synchronous_speed
         t time value HarmonicResponse.rates.order
         Pad.start PointMass.mass UnbalanceResponse.rates.order""",
-    "unknown": "at interface label name sensor title",
+    "unknown": "at interface label name sensor title Support.from_columns.source",
+    "blank": "Support.from_columns.source",
     "number": "Support.stiffness Support.damping Support.mass tilt_stiffness tilt_damping",
     "empty": """
         eulerParametersRef rotationMatrixRef triangles variation
         BaseRecord.integrals.times Motion.mass_matrix.q_t
         PeriodicResponse.displacement.time
-        Spectra.plot.orders Support.matrices.speed grooved_pads.grooves
+        Spectra.plot.orders Support.matrices.speed Support.mass_matrix.speed
+        grooved_pads.grooves
         keep_modes.indices""",
     "nan": "Motion.mass_matrix.q_t ModeBasis.frequencies",
     "inf": "Motion.mass_matrix.q_t ModeBasis.frequencies",
     "shape": "Motion.mass_matrix.q_t",
     "texts": "Motion.mass_matrix.q_t",
-    "text": "Motion.mass_matrix.q_t at Proposal.reasons ReducedRotor.dropped",
+    "text": """
+        Motion.mass_matrix.q_t at Proposal.reasons ReducedRotor.dropped
+        SolidRotor.from_mesh.leave_out""",
     "entry": "SolidRotor.from_ngsolve.materials report.raised report.contents",
     "an object": "Motion.mass_matrix.q_t",
     "None": "UFforce UFmassMatrix BaseResponse.displacement.place BaseResponse.peak.place",

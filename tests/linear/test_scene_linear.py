@@ -19,8 +19,10 @@ from point_rotors import ring_rotor
 from run_scenes import solve
 
 from exudyn_rotor import (
+    Drag,
     PrescribedMotion,
     SolidRotor,
+    add_drive,
     add_rotor,
     add_supports,
     campbell,
@@ -250,6 +252,24 @@ def test_springs_on_a_free_spin_are_refused(inertia):
     for analysis in (lambda: stability(mbs, [SPEED], body=body), lambda: steady_state(body)):
         with pytest.raises(ValueError, match="holds the free spin, 50 N m/rad"):
             analysis()
+
+
+def test_dampers_on_a_free_spin_are_refused_and_drag_is_not():
+    mbs, body = with_item(CoordinateSpringDamper, damping=0.5)
+    with pytest.raises(ValueError, match=r"brakes the free spin, 0.5 N m s/rad.*Drag"):
+        stability(mbs, [SPEED], body=body)
+    assert steady_state(body).speed == linear_model(mbs, body=body).undamped().at(SPEED).speed
+    mbs, body = on_springs("rigid", modes=0, initial_speed=SPEED)
+    drive = add_drive(body, Drag(linear=0.5))
+    mbs.Assemble()
+    assert stability(mbs, [SPEED], body=body).stable.all()
+    assert drive.values()[0] == -0.5 * SPEED  # as before the analysis
+
+
+def test_an_own_spin_that_nothing_holds_is_refused():
+    _, body = on_springs("rigid", spin=SPEED, drive="elastic", modes=0)
+    with pytest.raises(ValueError, match=r"own spin.*tilt_stiffness"):
+        steady_state(body)
 
 
 # ------------------------------------------------------------------ as in lists

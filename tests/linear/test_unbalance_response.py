@@ -132,6 +132,7 @@ STIFFNESS, DAMPING = (2e5, 3e5), (500.0, 400.0)
         ({"speeds": [-1.0, 2.0]}, "-1 is negative"),
         ({"speeds": [1.0, np.nan]}, "finite numbers"),
         ({"speeds": []}, "speeds: needs at least one number"),
+        ({"at": ["left", "left"]}, "at: 'left' is given twice"),
         ({"at": "top"}, "no such interface; the rotor has: mid, left, right"),
         ({"at": 10}, "nodes 0 to 9"),
         ({"at": [(0.0, 1.0)]}, "needs the name of an interface"),

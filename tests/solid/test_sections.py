@@ -108,7 +108,7 @@ def test_disc_whirls_as_a_meshed_stiff_one(rigid_and_meshed, level):
         ({"mass": 0.0}, "mass"),
         ({"inertia": (0.3, 0.1)}, "polar ≤ 2 × transverse"),
         ({"inertia": (0.1, -0.1)}, "above zero"),
-        ({"inertia": (0.1, 0.1, 0.1)}, "inertia: needs finite numbers"),
+        ({"inertia": 0.1 * np.eye(3)}, "inertia: needs the polar and the transverse moment"),
         ({"width": 0.001}, "on one line"),
         ({"name": "left"}, "exists already"),
         ({"position": 0.3}, "shares nodes with another disc; add one disc"),

@@ -95,7 +95,9 @@ def checked_places(at: Sequence[At] | At | None) -> tuple[At, ...] | None:
         return None
     listed = [at] if isinstance(at, str | int | np.integer) else at
     listed = checks.items(listed, "at", "places of the rotor in a sequence")
-    return tuple(checks.place(one, f"at[{index}]") for index, one in enumerate(listed))
+    found = tuple(checks.place(one, f"at[{index}]") for index, one in enumerate(listed))
+    checks.different(found, "at")
+    return found
 
 
 def places(model: LinearModel, at: Sequence[At] | None, speed: float = 1.0) -> list[Place]:

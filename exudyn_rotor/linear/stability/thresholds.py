@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.given import Given
@@ -44,6 +44,7 @@ _SMALL = 0.1  # share of the range that a limit counts as at least
 _SPEED = "speed [rad/s]"  # how the names of parameters end that are shown in other units
 Supports = Sequence[Given] | Given
 _ROOT = 1e-8  # of the largest parameter: where the search for a limit stops
+_PEAKS, _STEPS = 6, 6  # peaks that are looked at, each with so many values
 _ASIDE = 1e-4  # of the range, or half of an unstable one: where the growing motion is named
 
 
@@ -187,6 +188,24 @@ class _Margin:
                 self.known |= dict(zip(group, margins.tolist(), strict=True))
         warn_of_refused(refused, len(together))
 
+    def look_at_peaks(self) -> None:
+        """Compute the margin near peaks below zero and gaps above, which may cross it."""
+        known = sorted((p, margin) for p, margin in self.known.items() if not np.isnan(margin))
+        near = []
+        for (a, before), (_, margin), (b, after) in zip(known, known[1:], known[2:], strict=False):
+            sign = 1.0 if margin > 0.0 else -1.0
+            if 0.0 < sign * margin < max(sign * before, sign * after) and sign * margin <= min(
+                sign * before, sign * after
+            ):
+                near.append((sign * margin, sign, (a, b)))
+        for _, sign, ends in sorted(near)[:_PEAKS]:
+            minimize_scalar(
+                lambda point, sign=sign: sign * self(float(point)),
+                bounds=ends,
+                method="bounded",
+                options={"maxiter": _STEPS},
+            )
+
     def motions(self, points: Sequence[float], richer: bool = False) -> Motions:
         """Return the motions at points of one model, or of a richer one."""
         built = [self.model_at(point) for point in points]
@@ -232,8 +251,9 @@ def stability_threshold(
     """Find the limits of stability over the spin speed or another parameter.
 
     Each is found to 1e-7 of the largest parameter, with the motion that grows there. The range is
-    looked at in `samples` intervals. A range that is narrower than an interval can be missed, as
-    one of a parametric resonance with little damping: take more where that matters.
+    looked at in `samples` intervals, and closer where the growth has a peak near zero. A range that
+    is narrower than an interval can be missed, as one of a parametric resonance with little
+    damping: take more where that matters.
 
     Parameters
     ----------
@@ -319,6 +339,7 @@ def _found(
 ) -> StabilityThresholds:
     """Return the limits between points."""
     margin.look_at(points)
+    margin.look_at_peaks()
     points = [point for point in sorted(margin.known) if not np.isnan(margin.known[point])]
     low, high = points[0], points[-1]
     changes = [(a, b) for a, b in pairwise(points) if (margin(a) > 0.0) != (margin(b) > 0.0)]

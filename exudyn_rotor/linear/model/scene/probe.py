@@ -6,7 +6,7 @@ it turns with what carries the bearing, and that friction on this changes, by ab
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property, lru_cache
@@ -18,6 +18,7 @@ from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.linear.model.spin import ARM
 from exudyn_rotor.multibody.evaluation import evaluating, without_forces
+from exudyn_rotor.multibody.supports.connector import SceneLaw
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.stiffening import stiffening
@@ -147,32 +148,41 @@ class Probe:
                 D[places[:, None], places] += by_rate
         return force[self.scene.free], self._of_free(K), self._of_free(D)
 
-    def check_free_spin(self, angles: Iterable[float]) -> None:
-        """Refuse what Exudyn has as a spring about the axis of a free spin, in the mean of angles.
+    def check_free_spin(self, angles: Iterable[float], *, dampers: bool) -> None:
+        """Refuse what Exudyn has about the axis of a free spin, in the mean of angles.
 
-        By the undeformed state without loads: what remains is no moment of a static force.
+        Springs, and `dampers` where these count, but no drives of this package. By the undeformed
+        state without loads: what remains is no moment of a static force.
         """
-        scene, stiffness = self.scene, []
+        scene, found = self.scene, []
         if not scene.is_spin_free:
             return
         places = np.r_[scene.free, self.spin]
         still = np.zeros((2, len(scene.free)))
-        for theta in angles:
-            T, T1, _ = scene.turn(theta)
-            self._set(theta, *still)
-            K = self._exudyn_slopes(loads=0)[0][np.ix_(places, places)]
-            lateral = T[:, scene.touching] / self.metres[scene.touching]
-            most = np.abs(np.einsum("ij,ik,kj->j", lateral, K[:-1, :-1], lateral)).max(initial=0.0)
-            about_axis = np.r_[T1 @ scene.undeformed, 1.0]
-            stiffness.append(about_axis @ K @ about_axis)
-        held = abs(np.mean(stiffness))
-        least = ARM * max(most / scene.mass, 1.0) * scene.body.motion.invariants.Theta
-        if held > max(least, _WINDING * np.abs(stiffness).max()):
+        with _without(scene, scene.body.drives):
+            for theta in angles:
+                T, T1, _ = scene.turn(theta)
+                self._set(theta, *still)
+                slopes = np.array(self._exudyn_slopes(loads=0))[:, places[:, None], places]
+                lateral = T[:, scene.touching] / self.metres[scene.touching]
+                across = np.einsum("ij,nik,kj->nj", lateral, slopes[:, :-1, :-1], lateral)
+                about_axis = np.r_[T1 @ scene.undeformed, 1.0]
+                found.append(about_axis @ slopes @ about_axis)
+        held, most = np.abs(np.mean(found, axis=0)), np.abs(across).max(axis=1, initial=0.0)
+        least = ARM * np.maximum(most / scene.mass, 1.0) * scene.body.motion.invariants.Theta
+        counts = held > np.maximum(least, _WINDING * np.abs(found).max(axis=0))
+        if counts[0]:
             raise UnconvergedError(
                 f"linear scene at {self.speed:g} rad/s: a spring of Exudyn holds the free spin, "
-                f"{held:.3g} N m/rad; give a flywheel as a second rotor, "
+                f"{held[0]:.3g} N m/rad; give a flywheel as a second rotor, "
                 "connect_rotors(FlexibleCoupling(…), …), a spring to the ground as "
                 "Support(…, tilt_stiffness=…), or analyse the reduced rotor with these in a list"
+            )
+        if counts[1] and dampers:
+            raise UnconvergedError(
+                f"linear scene at {self.speed:g} rad/s: a damper of Exudyn brakes the free spin, "
+                f"{held[1]:.3g} N m s/rad; give it as Support(…, tilt_damping=…), as drag that "
+                "leaves the speed constant, add_drive(body, Drag(linear=…)), or prescribe the spin"
             )
 
     def _exudyn_slopes(self, loads: int = _LOADS) -> tuple[np.ndarray, np.ndarray]:
@@ -247,24 +257,29 @@ class Probe:
 
 @contextmanager
 def probing(scene: LinearScene, speed: float) -> Iterator[Probe]:
-    """Open a scene for probing and leave it as it was.
-
-    Objects of the laws are without force meanwhile, and those that Exudyn evaluates inactive.
-    """
+    """Open a scene for probing, its laws without force, and leave it as it was."""
     body, mbs = scene.body, scene.body.mbs
-    items = {number: mbs.GetObject(number) for one in body.supports for number in one.objects}
-    name = "activeConnector"
+    silent = _without(scene, body.supports)
+    with silent, without_forces(mbs, body.objects["physics"]), evaluating(mbs) as solver:
+        yield Probe(scene, speed, solver)
+
+
+@contextmanager
+def _without(scene: LinearScene, laws: Sequence[SceneLaw]) -> Iterator[None]:
+    """Let the objects of laws be without force, and those that Exudyn evaluates inactive."""
+    mbs, name = scene.body.mbs, "activeConnector"
+    items = {number: mbs.GetObject(number) for one in laws for number in one.objects}
     active = {number: item[name] for number, item in items.items() if name in item}
 
     def probe(angle: float | None) -> None:
-        for one in body.supports:
-            one.connector.probed = angle
+        for one in laws:
+            if one.connector is not None:
+                one.connector.probed = angle
         for number, given in active.items():
             mbs.SetObjectParameter(number, name, given and angle is None)
 
-    probe(body.placement.angle)
+    probe(scene.body.placement.angle)
     try:
-        with without_forces(mbs, body.objects["physics"]), evaluating(mbs) as solver:
-            yield Probe(scene, speed, solver)
+        yield
     finally:
         probe(None)

@@ -193,7 +193,7 @@ class SceneModel(LinearModel):
         angles = 2.0 * np.pi * np.arange(count) / count
         # where nothing moves, damping adds no stiffness
         seen = probe.at_rest() if self.is_undamped else probe
-        seen.check_free_spin(angles)
+        seen.check_free_spin(angles, dampers=not self.is_undamped)
         for theta in angles:
             x, v = state(theta)
             _, K, D = seen.forces(theta, x, 0.0 * v if self.is_undamped else v, laws=False)

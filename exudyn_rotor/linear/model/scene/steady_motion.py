@@ -21,7 +21,9 @@ from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.journal_start import journal_start
 from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.linear.model.scene.probe import Probe, probing
+from exudyn_rotor.linear.model.spin import ARM
 from exudyn_rotor.linear.model.turning import radius_of_gyration
+from exudyn_rotor.reduction.reduced_rotor import RIGID_KINDS, ModeKind
 
 Motion = tuple[np.ndarray, np.ndarray]  # orders (h,) and harmonics (h, k)
 _PERIODIC = 1e-6  # share of the forces that may change from one revolution to the next: round-off
@@ -58,12 +60,14 @@ def steady_motion(
     ------
     UnconvergedError
         Where no steady motion is found, or 192 angles do not resolve it, where loads do not
-        repeat with every revolution, and where a spring holds a free spin at a speed.
+        repeat with every revolution, where a spring holds a free spin at a speed, and where nothing
+        holds the own spin that drive='elastic' leaves to the rotor.
     """
     with probing(scene, checks.number(speed, "speed", "rad/s")) as probe:
         if speed:
-            probe.check_free_spin(2.0 * np.pi * np.arange(3) / 3.0)
+            probe.check_free_spin(2.0 * np.pi * np.arange(3) / 3.0, dampers=False)
         _check_period(probe)
+        _check_own_spin(probe)
         if not speed:
             return _Search(probe, _AT_REST, tolerance).found(start)[0]
         return _turning(probe, tolerance, start)
@@ -106,6 +110,24 @@ def _check_period(probe: Probe) -> None:
                 "revolution of the rotor, so there is no steady motion; leave out loads and "
                 "motions that vary in time"
             )
+
+
+def _check_own_spin(probe: Probe) -> None:
+    """Refuse an own spin, of an elastic drive, that bearings alone hold by their small arms."""
+    scene = probe.scene
+    kinds = scene.body.selection.kinds
+    if ModeKind.SPIN not in kinds:
+        return
+    _, _, K, _ = probe.linearised(0.0, *np.zeros((3, scene.size)))
+    rigid = [scene.count + i for i, kind in enumerate(kinds) if kind in RIGID_KINDS]
+    held = np.diag(scene.N[rigid] @ K @ scene.N[rigid].T)
+    own_spin = held[[kinds[row - scene.count] == ModeKind.SPIN for row in rigid]]
+    if np.abs(own_spin).max() <= ARM * np.abs(held).max():
+        raise UnconvergedError(
+            f"linear scene at {probe.speed:g} rad/s: drive='elastic' leaves the rotor's own spin "
+            "to the scene, where nothing holds it; add a torsional spring, as "
+            "Support(…, tilt_stiffness=…), or take drive='rigid'"
+        )
 
 
 @dataclass(frozen=True, eq=False)
