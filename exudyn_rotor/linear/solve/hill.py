@@ -14,7 +14,13 @@ from typing import NamedTuple
 import numpy as np
 
 from exudyn_rotor.linear.equations import PeriodicSystem, States
-from exudyn_rotor.linear.solve.harmonics import chain_of, edge_energy, shares, with_all_harmonics
+from exudyn_rotor.linear.solve.harmonics import (
+    Chain,
+    chain_of,
+    edge_energy,
+    shares,
+    with_all_harmonics,
+)
 
 _AROUND = 2  # harmonics on either side in the smallest guess
 # unknowns of the largest guess; with more steps of harmonics on either side than so many, fewer
@@ -88,10 +94,37 @@ def hill_motions(
     beside = None
     if is_whole and np.all(found):
         beside, lost = Beside(values, states, orders, made), lost[:0]
-    missing = max(0, k - len(chosen))  # decays that are left out
-    values = np.pad(np.where(found, values, np.nan)[:k], (0, missing), constant_values=np.nan)
-    states = np.pad(states[:, :, :k], [(0, 0), (0, 0), (0, missing)])
-    return Exponents(values, states, orders, lost), beside
+    exponents = Exponents(np.where(found, values, np.nan)[:k], states[:, :, :k], orders, lost)
+    if len(chosen) < k:
+        exponents = _with_decays(exponents, chain, system, made, at_once)
+    return exponents, beside
+
+
+def _with_decays(
+    known: Exponents, chain: Chain, system: PeriodicSystem, made: States, at_once: float
+) -> Exponents:
+    """Return exponents with the least damped decays that are over at once, NaN if not found.
+
+    Guesses are the decays of the mean equations.
+    """
+    fast = np.flatnonzero((-chain.rates.real > at_once) & (chain.rates.imag >= 0.0))
+    fast = fast[np.argsort(-chain.rates[fast].real)][: system.size - len(known.values)]
+    guess = chain.rates[fast].astype(complex), chain.shapes[None, :, fast]
+    given = chain, *guess, np.full(len(fast), np.inf), _LOST
+    values, states, orders, edges = with_all_harmonics(*given)
+    kept = np.flatnonzero((edges <= _LOST) & (-values.real > at_once))
+    values, states = values[kept], states[:, :, kept]
+    chosen, _ = one_of_each_family(values, states, orders, system, made, 2 * len(kept))
+    chosen = chosen[np.argsort(-values[chosen].real)]
+    every = np.union1d(known.orders, orders)
+    joined = np.full((len(every), 2 * system.size, system.size), np.nan + 0j)
+    first, last = len(known.values), len(known.values) + len(chosen)
+    joined[:, :, :last] = 0.0
+    joined[np.searchsorted(every, known.orders), :, :first] = known.states
+    joined[np.searchsorted(every, orders), :, first:last] = states[:, :, chosen]
+    all_values = np.full(system.size, np.nan + 0j)
+    all_values[:last] = np.r_[known.values, values[chosen]]
+    return Exponents(all_values, joined, every, known.lost)
 
 
 def _over_at_once(decays: np.ndarray, speed: float) -> tuple[float, int]:
