@@ -189,3 +189,15 @@ def test_floquets_method_takes_shorter_steps_on_stiff_supports():
     with pytest.warns(UserWarning, match="do not converge for all motions"):
         result = stability(asymmetric_shaft(), [1.0], supports=supports, method="floquet")
     assert np.all(result.stable)
+
+
+def test_motions_that_are_lost_among_copies_cost_none_of_the_others():
+    """The growth is Floquet's; at a thousandth of the lowest frequency some motions are lost."""
+    supports = [Support(name, np.diag([1e7, 1.5e7]), damping=10.0) for name in ("left", "right")]
+    with pytest.warns(UserWarning, match="do not converge for all motions"):
+        found, other = (
+            stability(asymmetric_shaft(), [1.0], supports=supports, method=way)
+            for way in ("hill", "floquet")
+        )
+    assert 0 < np.count_nonzero(np.isnan(found.exponents)) < found.exponents.size
+    np.testing.assert_allclose(found.growth, other.growth, rtol=1e-6)

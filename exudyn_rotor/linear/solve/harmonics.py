@@ -122,7 +122,7 @@ def with_all_harmonics(
         edges[at] = edge_energy(shapes[:, :, settled])
         done[at] = edges[at] <= least
     used = np.flatnonzero(np.any(shares(states) > _NONE, axis=1))
-    most_used = max(most - used[0], used[-1] - most)
+    most_used = np.max(np.abs(used - most), initial=0)
     inner = slice(most - most_used, most + most_used + 1)
     return values, states[inner], chain.step * np.arange(-most_used, most_used + 1), edges
 

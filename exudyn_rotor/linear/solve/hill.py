@@ -96,19 +96,20 @@ def hill_motions(
         beside, lost = Beside(values, states, orders, made), lost[:0]
     exponents = Exponents(np.where(found, values, np.nan)[:k], states[:, :, :k], orders, lost)
     if len(chosen) < k:
-        exponents = _with_decays(exponents, chain, system, made, at_once)
+        room = k - len(chosen) - max(0, wanted - count + 1) // 2
+        exponents = _with_decays(exponents, chain, system, made, at_once, room)
     return exponents, beside
 
 
 def _with_decays(
-    known: Exponents, chain: Chain, system: PeriodicSystem, made: States, at_once: float
+    known: Exponents, chain: Chain, system: PeriodicSystem, made: States, at_once: float, room: int
 ) -> Exponents:
-    """Return exponents with the least damped decays that are over at once, NaN if not found.
+    """Return k exponents: those known, and the least damped decays that are over at once.
 
-    Guesses are the decays of the mean equations.
+    Guesses are decays of the mean equations, as many as there is room for. The rest is NaN.
     """
     fast = np.flatnonzero((-chain.rates.real > at_once) & (chain.rates.imag >= 0.0))
-    fast = fast[np.argsort(-chain.rates[fast].real)][: system.size - len(known.values)]
+    fast = fast[np.argsort(-chain.rates[fast].real)][: max(room, 0)]
     guess = chain.rates[fast].astype(complex), chain.shapes[None, :, fast]
     given = chain, *guess, np.full(len(fast), np.inf), _LOST
     values, states, orders, edges = with_all_harmonics(*given)
