@@ -36,7 +36,7 @@ def first_forward(
     rad/s.
     """
     model = model_at(1.0)
-    content, motions_under = Content.of(model), _motions_under(model_at, speed)
+    content, motions_under = Content.of(model), _motions_under(model, model_at, speed)
 
     def margin(multiple: float) -> float:
         """Return the growth of the mode that grows most, beyond rounding [1/s]."""
@@ -64,10 +64,12 @@ def first_forward(
 
 
 def _motions_under(
-    model_at: Callable[[float], LinearModel], speed: float
+    model: LinearModel, model_at: Callable[[float], LinearModel], speed: float
 ) -> Callable[[Sequence[float]], Motions]:
-    """Return the motions under multiples, in which the stiffness is linear, as a function."""
-    model = model_at(1.0)
+    """Return the motions under multiples, in which the stiffness is linear, as a function.
+
+    The `model` is that under the multiple one.
+    """
     ends = model_at(0.0).coefficients(speed), model.coefficients(speed)
 
     def under(multiple: float) -> list[tuple[np.ndarray, np.ndarray]]:

@@ -58,7 +58,6 @@ class PointMass(Checked):
     def __post_init__(self) -> None:
         super().__post_init__()
         checks.count(self.node, "node")
-        checks.number(self.mass, "mass", "kg")
         checks.number(self.distance, "distance", "m", least=0.0)
 
 

@@ -295,7 +295,7 @@ class Search:
         for row, j in np.argwhere((signs[:-1] != signs[1:]) & ~gaps[:, None]):
             A, change = stack[row], stack[row + 1] - stack[row]
             width = speeds[row + 1] - speeds[row]
-            at = _zero_between(A, change, j)
+            at = _zero_between(A, change, values[row : row + 2, j], j)
             at = np.round(at, _DIGITS)  # of zeros that are one, orthogonal vectors
             guess, vectors = speeds[row] + at * width, basis @ np.linalg.eigh(A + at * change)[1]
             exact = guess, self.stiffness.motions(vectors[:, [j]], multiples)[..., 0]
@@ -387,9 +387,17 @@ def _eigenvalues(H: np.ndarray) -> np.ndarray:
     return np.where(np.abs(values) <= rounding, 0.0, values)
 
 
-def _zero_between(A: np.ndarray, change: np.ndarray, j: int) -> float:
-    """Return the share of a change, from 0 to 1, at which an eigenvalue of A is zero."""
-    return brentq(lambda at: _eigenvalues(A + at * change)[j], 0.0, 1.0, xtol=_FINE)
+def _zero_between(A: np.ndarray, change: np.ndarray, ends: np.ndarray, j: int) -> float:
+    """Return the share of a change, from 0 to 1, at which an eigenvalue of A is zero.
+
+    The values at both `ends` (2,) are known; rounding would else give a zero there another sign.
+    """
+    known = {0.0: ends[0], 1.0: ends[1]}
+
+    def value(at: float) -> float:
+        return known[at] if at in known else _eigenvalues(A + at * change)[j]
+
+    return brentq(value, 0.0, 1.0, xtol=_FINE)
 
 
 def _solved(H: np.ndarray, load: np.ndarray, reach: int) -> np.ndarray:

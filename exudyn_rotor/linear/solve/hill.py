@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from exudyn_rotor.linear.equations import PeriodicSystem, States
+from exudyn_rotor.linear.equations import PeriodicSystem, States, Terms, stacked
 from exudyn_rotor.linear.solve.harmonics import (
     Chain,
     chain_of,
@@ -91,14 +91,14 @@ def hill_motions(
     found = np.isin(np.arange(len(values)), chosen) & (edges <= _LOST)
     lost = lost_of(values[~found], system)
     values, states, found = better[chosen], states[:, :, chosen], found[chosen]
-    beside = None
+    whole = None
     if is_whole and np.all(found):
-        beside, lost = Beside(values, states, orders, made), lost[:0]
+        whole, lost = Beside(values, states, orders, made), lost[:0]
     exponents = Exponents(np.where(found, values, np.nan)[:k], states[:, :, :k], orders, lost)
     if len(chosen) < k:
         room = k - len(chosen) - max(0, wanted - count + 1) // 2
         exponents = _with_decays(exponents, chain, system, made, at_once, room)
-    return exponents, beside
+    return exponents, whole
 
 
 def _with_decays(
@@ -117,15 +117,19 @@ def _with_decays(
     values, states = values[kept], states[:, :, kept]
     chosen, _ = one_of_each_family(values, states, orders, system, made, 2 * len(kept))
     chosen = chosen[np.argsort(-values[chosen].real)]
-    every = np.union1d(known.orders, orders)
-    joined = np.full((len(every), 2 * system.size, system.size), np.nan + 0j)
-    first, last = len(known.values), len(known.values) + len(chosen)
-    joined[:, :, :last] = 0.0
-    joined[np.searchsorted(every, known.orders), :, :first] = known.states
-    joined[np.searchsorted(every, orders), :, first:last] = states[:, :, chosen]
-    all_values = np.full(system.size, np.nan + 0j)
-    all_values[:last] = np.r_[known.values, values[chosen]]
-    return Exponents(all_values, joined, every, known.lost)
+    values = np.r_[known.values, values[chosen]]
+    missing = system.size - len(values)
+    values = np.pad(values, (0, missing), constant_values=np.nan)
+
+    def by_order(orders: np.ndarray, states: np.ndarray) -> Terms:
+        """Return the harmonics of motions, one motion in each row, by their orders."""
+        return dict(zip(orders.tolist(), np.swapaxes(states, 1, 2), strict=True))
+
+    parts = by_order(known.orders, known.states), by_order(orders, states[:, :, chosen])
+    joined = stacked(parts)
+    states = np.swapaxes(list(joined.values()), 1, 2)
+    states = np.pad(states, [(0, 0), (0, 0), (0, missing)], constant_values=np.nan)
+    return Exponents(values, states, np.array(list(joined)), known.lost)
 
 
 def _over_at_once(decays: np.ndarray, speed: float) -> tuple[float, int]:
