@@ -201,3 +201,13 @@ def test_motions_that_are_lost_among_copies_cost_none_of_the_others():
         )
     assert 0 < np.count_nonzero(np.isnan(found.exponents)) < found.exponents.size
     np.testing.assert_allclose(found.growth, other.growth, rtol=1e-6)
+
+
+def test_of_real_exponents_the_less_damped_half_is_shown():
+    """By all eigenvalues of Hill's matrix with 24 harmonics on either side; one decay is -4899."""
+    supports = [
+        Support(name, np.diag([1e7, 1.5e7]), np.diag([1e4, 2e4])) for name in ("left", "right")
+    ]
+    found = stability(asymmetric_shaft(), [100.0, 125.0], supports=supports).exponents.real
+    expected = [-1256.04, -1158.24, -802.49, -792.98], [-1255.73, -1158.24, -802.60, -792.99]
+    np.testing.assert_allclose(np.sort(found)[:, :4], expected, atol=0.01)

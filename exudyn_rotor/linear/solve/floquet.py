@@ -66,7 +66,7 @@ def floquet_motions(system: PeriodicSystem, made: States) -> Exponents:
         none = np.full(k, np.nan + 0j), np.full((1, 2 * k, k), np.nan + 0j)
         return Exponents(*none, np.array([0]), np.zeros(1, dtype=complex))
     found, lost = np.flatnonzero(still), np.flatnonzero(~still)
-    given = values[found], states[:, :, found], orders, system, made, 2 * system.size
+    given = values[found], states[:, :, found], orders, system, made
     chosen = np.r_[found[one_of_each_family(*given)[0]], lost][: system.size]
     lost = lost_of(values[lost[~np.isnan(values[lost])]], system)
     values = np.where(still, values, np.nan)

@@ -78,25 +78,25 @@ def hill_motions(
     k, speed, least = system.size, abs(system.speed), _EDGE * tolerance
     chain = chain_of(system, made)
     at_once, wanted = _over_at_once(-chain.rates.real, speed)
-    for values, states, orders in _guesses(system, made, beside, at_once, wanted):
+    for values, states, orders in _guesses(system, made, beside, at_once):
         is_sum = orders is not None
         edges = edge_energy(states) if is_sum else np.full(len(values), np.inf)
         better, states, orders, edges = with_all_harmonics(chain, values, states, edges, least)
-        slow = np.abs(better) <= SLOW * speed
-        known = (edges <= np.where(slow, least, _LOST)) | ~_looked_at(better, system)
-        chosen, count = one_of_each_family(better, states, orders, system, made, wanted)
-        is_whole = count == wanted and bool(np.all(known[chosen]))
-        if is_whole:
+        slow = (np.abs(better) <= SLOW * speed) & _looked_at(better, system)
+        chosen, counts = one_of_each_family(better, states, orders, system, made)
+        enough = edges <= np.where(slow, least, _LOST)
+        missing = max(0, wanted - int(np.sum(counts[enough[chosen]])))
+        if not missing:
             break
     found = np.isin(np.arange(len(values)), chosen) & (edges <= _LOST)
-    lost = lost_of(values[~found], system)
-    values, states, found = better[chosen], states[:, :, chosen], found[chosen]
-    whole = None
-    if is_whole and np.all(found):
-        whole, lost = Beside(values, states, orders, made), lost[:0]
-    exponents = Exponents(np.where(found, values, np.nan)[:k], states[:, :, :k], orders, lost)
+    lost, whole = lost_of(values[~found], system), None
+    chosen = chosen[found[chosen]]
+    values, states = better[chosen], states[:, :, chosen]
+    if not missing:
+        lost, whole = lost[:0], Beside(values, states, orders, made)
+    exponents = Exponents(values[:k], states[:, :, :k], orders, lost)
     if len(chosen) < k:
-        room = k - len(chosen) - max(0, wanted - count + 1) // 2
+        room = max(0, k - len(chosen) - (missing + 1) // 2)
         exponents = _with_decays(exponents, chain, system, made, at_once, room)
     return exponents, whole
 
@@ -109,13 +109,13 @@ def _with_decays(
     Guesses are decays of the mean equations, as many as there is room for. The rest is NaN.
     """
     fast = np.flatnonzero((-chain.rates.real > at_once) & (chain.rates.imag >= 0.0))
-    fast = fast[np.argsort(-chain.rates[fast].real)][: max(room, 0)]
+    fast = fast[np.argsort(-chain.rates[fast].real)][:room]
     guess = chain.rates[fast].astype(complex), chain.shapes[None, :, fast]
     given = chain, *guess, np.full(len(fast), np.inf), _LOST
     values, states, orders, edges = with_all_harmonics(*given)
     kept = np.flatnonzero((edges <= _LOST) & (-values.real > at_once))
     values, states = values[kept], states[:, :, kept]
-    chosen, _ = one_of_each_family(values, states, orders, system, made, 2 * len(kept))
+    chosen, _ = one_of_each_family(values, states, orders, system, made)
     chosen = chosen[np.argsort(-values[chosen].real)]
     values = np.r_[known.values, values[chosen]]
     missing = system.size - len(values)
@@ -146,7 +146,7 @@ def _over_at_once(decays: np.ndarray, speed: float) -> tuple[float, int]:
 
 
 def _guesses(
-    system: PeriodicSystem, made: States, beside: Beside | None, at_once: float, wanted: int
+    system: PeriodicSystem, made: States, beside: Beside | None, at_once: float
 ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray | None]]:
     """Yield exponents, states and orders of guesses; those of motions beside have no orders."""
     k = system.size
@@ -163,7 +163,7 @@ def _guesses(
         values, states = _solved(made, orders, system.speed)
         stays = values.real >= -at_once
         values, states = values[stays], states[:, :, stays]
-        chosen, _ = one_of_each_family(values, states, orders, system, made, wanted)
+        chosen, _ = one_of_each_family(values, states, orders, system, made)
         yield values[chosen], states[:, :, chosen], orders
 
 
@@ -190,9 +190,8 @@ def one_of_each_family(
     orders: np.ndarray,
     system: PeriodicSystem,
     made: States,
-    wanted: int,
-) -> tuple[np.ndarray, int]:
-    """Return which of many exponents stand for all that are `wanted`, and for how many they do.
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return which of many exponents stand for all, and for how many each of them does.
 
     Of each motion, its copies and their conjugates one, whose harmonics lie around zero. Those that
     are their own conjugates come last, the least damped first.
@@ -207,7 +206,7 @@ def one_of_each_family(
     waiting = np.argsort(np.abs(mean - 1e-2) + 10.0 * (edges > _LOST), kind="stable")
     waits, pairs, single = np.ones(len(values), dtype=bool), [], []
     for i in waiting:
-        if 2 * len(pairs) + len(single) >= wanted:
+        if 2 * len(pairs) + len(single) >= 2 * system.size:
             break
         if not waits[i]:
             continue
@@ -223,7 +222,7 @@ def one_of_each_family(
         else:
             pairs.append(i)
     single.sort(key=lambda i: -values[i].real)
-    return np.array([*pairs, *single], dtype=int), 2 * len(pairs) + len(single)
+    return np.array([*pairs, *single], dtype=int), np.repeat([2, 1], [len(pairs), len(single)])
 
 
 def _copies(
